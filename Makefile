@@ -1,0 +1,38 @@
+# Needs Python 3.11, make and a C library. Everything else arrives in .venv.
+PYTHON ?= python3.11
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+.PHONY: demo serve test check format clean help
+
+help:            ## this list
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
+
+$(STAMP): pyproject.toml constraints.txt
+	@command -v $(PYTHON) >/dev/null 2>&1 || { echo "Python 3.11 is needed; if it has another name: make PYTHON=/path/to/python3.11"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,test]'
+	touch $@
+
+demo: $(STAMP)   ## the main job, end to end: tables on the terminal, one HTML report in out/
+	$(BIN)/friction-bench demo --report out/demo.html
+
+serve: $(STAMP)  ## the service and the page on the simulated bench
+	$(BIN)/friction-bench serve
+
+test: $(STAMP)   ## the tests
+	$(BIN)/pytest
+
+check: $(STAMP)  ## style, types and walls
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(STAMP) ## rewrite in the project's style
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+clean:           ## remove the environment and everything made
+	rm -rf $(VENV) out .mypy_cache .ruff_cache .pytest_cache .hypothesis

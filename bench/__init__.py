@@ -1,0 +1,1 @@
+"""Where drives, compensator, store and service are wired into one bench."""

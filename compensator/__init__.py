@@ -1,0 +1,1 @@
+"""The paper's friction compensation and the model lab: pure numerics on arrays, no I/O."""

@@ -1,0 +1,42 @@
+"""The channels a recording may have: one table of names, units and meanings.
+
+The unit is part of the name and is SI (angles in rad, temperature in deg C).
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One column of a recording: its name, its unit, and what it means."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+CHANNELS: dict[str, Channel] = {
+    channel.name: channel
+    for channel in (
+        Channel("time_s", "s", "time since the start of the trial"),
+        Channel("target_rad", "rad", "position set point, joint side"),
+        Channel("target_m", "m", "position set point of a linear joint"),
+        Channel("position_rad", "rad", "motor-side position / gear ratio; 0 is vertically down"),
+        Channel("position_m", "m", "position of a linear joint"),
+        Channel("velocity_rad_s", "rad/s", "motor-side speed / gear ratio"),
+        Channel("velocity_m_s", "m/s", "speed of a linear joint"),
+        Channel("duty", "1", "signed PWM duty applied, -1 .. 1"),
+        Channel("current_a", "A", "motor current measured by the drive"),
+        Channel("current_estimate_a", "A", "motor current from duty and speed, eq. (3)"),
+        Channel("current_command_a", "A", "motor current asked for"),
+        Channel("current_load_a", "A", "friction-compensated current, what the master is given"),
+        Channel("voltage_v", "V", "voltage at the motor terminals"),
+        Channel("supply_v", "V", "supply voltage"),
+        Channel("temperature_c", "degC", "temperature that the drive reports"),
+        Channel("torque_n_m", "N m", "joint torque of the motor"),
+        Channel("force_n", "N", "motor force of a linear joint"),
+        Channel("enabled", "1", "power stage on (1) or off (0)"),
+        Channel("age_s", "s", "age of the sample when it was received"),
+    )
+}
+EVENT_COLUMN = "event"

@@ -1,0 +1,1 @@
+"""The drive contract, its errors, and the real drives that satisfy it."""

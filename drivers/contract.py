@@ -1,0 +1,126 @@
+"""The drive contract: what the bench may ask of any drive, real or simulated.
+
+One exchange per control cycle: a command goes in, a sample comes out. Everything is SI and
+is seen from the joint: the position is measured on the motor side, before the backlash, and
+divided by the gear ratio. A quantity that the drive does not measure is NaN, never 0.
+"""
+
+from dataclasses import dataclass
+from enum import Enum, IntEnum
+from typing import NamedTuple, Protocol
+
+
+class Mode(Enum):
+    """What the command value means."""
+
+    OFF = "off"  # power stage off; the value is ignored
+    DUTY = "duty"  # signed PWM duty, -1 .. 1 of the supply
+    CURRENT = "current"  # motor current [A]
+    POSITION = "position"  # joint position [rad], closed by the drive itself
+
+
+class Status(IntEnum):
+    """State of the power stage, after CiA 402."""
+
+    DISABLED = 0
+    ENABLED = 1
+    QUICK_STOP = 2
+    FAULT = 3
+
+
+class Command(NamedTuple):
+    """One cycle's demand. The unit of the value follows the mode."""
+
+    mode: Mode
+    value: float = 0.0
+
+
+class Sample(NamedTuple):
+    """One cycle's measurement, SI, joint side.
+
+    Attributes:
+        time_s: the drive's own time stamp of the sample [s], monotonic, arbitrary origin.
+        age_s: time since the oldest quantity in the sample was measured [s].
+        position_rad: motor-side position / gear ratio [rad]; 0 is vertically down.
+        velocity_rad_s: motor-side speed / gear ratio [rad/s].
+        duty: PWM duty applied, -1 .. 1.
+        current_a: motor current measured by the drive [A]; NaN without a sensor.
+        supply_v: supply voltage [V].
+        temperature_c: temperature that the drive reports [deg C].
+        status: state of the power stage.
+    """
+
+    time_s: float
+    age_s: float
+    position_rad: float
+    velocity_rad_s: float
+    duty: float
+    current_a: float
+    supply_v: float
+    temperature_c: float
+    status: Status
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """Identity and capabilities of a drive, as found at connect.
+
+    Attributes:
+        device: the name used in messages.
+        vendor, product, firmware, serial: identity; empty where the drive does not tell.
+        simulated: True where no hardware is behind it.
+        modes: the modes that the drive closes itself.
+        measured: the names of the `Sample` fields that are measured (others are NaN).
+        resolution: smallest step of a quantity, by `Sample` field name, in its unit.
+        max_rate_hz: highest cycle rate that the drive sustains [Hz].
+        watchdog_s: time after the last command at which the drive stops by itself [s].
+    """
+
+    device: str
+    vendor: str
+    product: str
+    firmware: str
+    serial: str
+    simulated: bool
+    modes: frozenset[Mode]
+    measured: frozenset[str]
+    resolution: dict[str, float]
+    max_rate_hz: float
+    watchdog_s: float
+
+
+class Drive(Protocol):
+    """A servo drive with one joint on it. Every call returns in bounded time or raises `DriveError`."""
+
+    def describe(self) -> Description:
+        """Identity and capabilities. Complete once open."""
+
+    def open(self, period_s: float) -> None:
+        """Connect, set the watchdog and verify it. The power stage stays off.
+
+        Args:
+            period_s: control period at which `exchange` will be called [s].
+        """
+
+    def close(self) -> None:
+        """Power off and disconnect. Safe to call twice, and from any state."""
+
+    def enable(self, mode: Mode) -> None:
+        """Power the stage for a mode, with zero demand."""
+
+    def disable(self) -> None:
+        """Power off. Safe to call in any state of an open drive."""
+
+    def quick_stop(self) -> None:
+        """Brake as fast as the drive can, then power off."""
+
+    def clear_fault(self) -> None:
+        """Acknowledge a fault. The drive is left disabled."""
+
+    def exchange(self, command: Command) -> Sample:
+        """Send one command and return the sample of this cycle.
+
+        Raises:
+            DriveFault: the drive has switched itself off.
+            DriveConnectionError: no valid answer within the time limit.
+        """

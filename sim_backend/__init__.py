@@ -1,0 +1,1 @@
+"""Plant physics and the drives and devices that simulate it."""
