@@ -1,0 +1,60 @@
+"""Errors of the bench.
+
+Each message names the file or the quantity, what was found, what is allowed, the unit and the
+next step. Each class has the matching builtin as a second base.
+"""
+
+
+class BenchError(Exception):
+    """Base of all errors of the bench. Raised only through a subclass."""
+
+
+class ConfigurationError(BenchError, ValueError):
+    """Raised when a configuration or a rig cannot be used.
+
+    - a file that is missing or is no TOML
+    - an unknown key, a value of the wrong type or out of range
+    - a value that is needed and was left out (a torque constant, an arm length)
+    """
+
+
+class ParameterError(BenchError, ValueError):
+    """Raised before motion when the parameters of an experiment are unknown, of the wrong type or out of range."""
+
+
+class LimitError(BenchError, ValueError):
+    """Raised before motion when what is asked lies outside the limits of the bench."""
+
+
+class LimitTrip(BenchError, RuntimeError):
+    """Raised during motion when a measured quantity leaves its limits; the loop powers off."""
+
+
+class ExperimentError(BenchError, RuntimeError):
+    """Raised by a procedure that cannot go on: the joint does not settle, a search ends without an estimate."""
+
+
+class BusyError(BenchError, RuntimeError):
+    """Raised when an experiment is started while another one runs."""
+
+
+class UnknownKindError(BenchError, KeyError):
+    """Raised when an experiment kind is asked for that is not in the registry."""
+
+    def __str__(self) -> str:
+        return Exception.__str__(self)  # KeyError would show the message in quotes
+
+
+def quantity_message(quantity: str, found: float, allowed: str, unit: str, next_step: str = "") -> str:
+    """One sentence that names a quantity, what was found, what is allowed and its unit.
+
+    Args:
+        quantity: what is out of range, in words ("speed", "load_kg of trial 3").
+        found: the value, in `unit`.
+        allowed: the allowed range in words and numbers ("at most 2", "-1 .. 1"), in `unit`.
+        unit: SI unit; "" where the quantity has none.
+        next_step: what the reader can do about it.
+    """
+    suffix = f" {unit}" if unit else ""
+    message = f"{quantity} is {found:.6g}{suffix}; allowed is {allowed}{suffix}"
+    return f"{message}. {next_step}" if next_step else message
