@@ -34,6 +34,10 @@ class ExperimentError(BenchError, RuntimeError):
     """Raised by a procedure that cannot go on: the joint does not settle, a search ends without an estimate."""
 
 
+class RecordingError(BenchError, OSError):
+    """Raised when the rows of a running trial cannot be kept; the loop powers off."""
+
+
 class BusyError(BenchError, RuntimeError):
     """Raised when an experiment is started while another one runs."""
 

@@ -1,0 +1,66 @@
+"""What paces the control loop: the wall clock for hardware, nothing for the simulation."""
+
+import time
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """Paces control cycles."""
+
+    overruns: int
+    """Cycles that began more than a whole period late, since `start`."""
+
+    def start(self, period_s: float) -> None:
+        """The first cycle begins now."""
+
+    def wait(self) -> None:
+        """Return when the next cycle begins."""
+
+
+class VirtualClock:
+    """Never waits: time is whatever the drive's stamps say."""
+
+    overruns = 0
+
+    def start(self, period_s: float) -> None:
+        """Nothing to do."""
+
+    def wait(self) -> None:
+        """Return at once."""
+
+
+class WallClock:
+    """Waits for the wall: sleeps most of the period, and spins through the last part of it.
+
+    Deadlines lie on a grid, so lateness of one cycle does not shift the next. After a cycle that is late by more
+    than a period the grid starts anew: cycles are lost, and counted, but never made up for in a burst.
+
+    Args:
+        spin_s: how long before the deadline to stop sleeping [s]; the operating system's wake-up is later than this
+            now and then only.
+    """
+
+    def __init__(self, spin_s: float = 0.0003) -> None:
+        self.overruns = 0
+        self._spin_s = spin_s
+        self._period_s = 0.0
+        self._deadline_s = 0.0
+
+    def start(self, period_s: float) -> None:
+        """The first cycle begins now."""
+        self.overruns = 0
+        self._period_s = period_s
+        self._deadline_s = time.perf_counter()
+
+    def wait(self) -> None:
+        """Return when the next cycle begins, at once where it should have begun already."""
+        self._deadline_s += self._period_s
+        remaining_s = self._deadline_s - time.perf_counter()
+        if remaining_s < -self._period_s:
+            self.overruns += int(-remaining_s / self._period_s)
+            self._deadline_s -= remaining_s
+            return
+        if remaining_s > self._spin_s:
+            time.sleep(remaining_s - self._spin_s)
+        while time.perf_counter() < self._deadline_s:
+            pass

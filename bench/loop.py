@@ -1,0 +1,322 @@
+"""The control loop: one code path for every drive, real or simulated, and every experiment.
+
+Each cycle: send the procedure's command, take the sample, compare it with the limits, record it, and give it to the
+procedure. However a run ends, it ends in power-off, and the outcome says why.
+"""
+
+import threading
+from collections.abc import Generator
+from dataclasses import dataclass, field, replace
+from math import isnan, nan
+from typing import Any, Literal, NamedTuple
+
+from bench.clock import Clock
+from bench.errors import ConfigurationError, LimitTrip
+from bench.limits import Guard
+from bench.recorder import Recorder, Sink
+from bench.servo import CurrentServo
+from drivers.contract import Command, Drive, Mode, Sample, Status
+from drivers.errors import DriveStateError
+
+RECORDED: tuple[str, ...] = (
+    "time_s",
+    "target_rad",
+    "position_rad",
+    "velocity_rad_s",
+    "duty",
+    "current_a",
+    "current_estimate_a",
+    "current_command_a",
+    "current_load_a",
+    "supply_v",
+    "temperature_c",
+    "enabled",
+    "age_s",
+)
+"""The channels of a row, in order; all from `compensator.lab.channels`."""
+
+OFF = Command(Mode.OFF)
+OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
+
+
+class Reading(NamedTuple):
+    """What a procedure receives each cycle.
+
+    Attributes:
+        time_s: since the start of the trial, from the drive's own stamps [s].
+        sample: as the drive gave it.
+        velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
+        current_a: measured where the drive measures it, else eq. (3) [A].
+    """
+
+    time_s: float
+    sample: Sample
+    velocity_rad_s: float
+    current_a: float
+
+
+class Action(NamedTuple):
+    """What a procedure yields each cycle.
+
+    Attributes:
+        command: to the drive. Mode.CURRENT works on every drive.
+        target_rad: position set point [rad], recorded and compared with the tracking limit.
+        current_load_a: friction-compensated current [A], recorded.
+        event: (name, detail), recorded.
+    """
+
+    command: Command
+    target_rad: float = nan
+    current_load_a: float = nan
+    event: tuple[str, str] | None = None
+
+
+Procedure = Generator[Action, Reading, dict[str, Any]]
+"""Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes:
+        outcome: one of `OutcomeName`.
+        reason: why, in words; empty when completed.
+        results: what the procedure returned.
+        cycles: control cycles run.
+        overruns: cycles lost because the host was late.
+    """
+
+    outcome: OutcomeName
+    reason: str = ""
+    results: dict[str, Any] = field(default_factory=dict)
+    cycles: int = 0
+    overruns: int = 0
+
+
+class _StopRequested(Exception):
+    """Raised inside the loop when the stop event is set."""
+
+
+class ControlLoop:
+    """Runs procedures on an open drive.
+
+    Args:
+        drive: open and disabled; it is disabled again whenever `run` returns or raises.
+        clock: paces the cycles.
+        guard: the limits.
+        period_s: control period [s], as the drive was opened with.
+        current_servo: eq. (3); None where the rig does not say enough. Then there is no current estimate, and
+            current commands need a drive with a current mode.
+    """
+
+    def __init__(
+        self, drive: Drive, clock: Clock, guard: Guard, period_s: float, current_servo: CurrentServo | None = None
+    ) -> None:
+        self._drive = drive
+        self._clock = clock
+        self._guard = guard
+        self._period_s = period_s
+        self._current_servo = current_servo
+        self._has_current_mode = Mode.CURRENT in drive.describe().modes
+        self._mode = Mode.OFF  # of the power stage
+        self._origin_s = 0.0
+        self._previous: Sample | None = None
+        self._velocity_rad_s = 0.0
+        self.cycles = 0
+        self.last_reading: Reading | None = None
+
+    def run(self, procedure: Procedure, sink: Sink, stop: threading.Event) -> Outcome:
+        """Run one trial to its end.
+
+        Args:
+            procedure: fresh; it is closed when the run ends.
+            sink: receives the rows and events from a thread of its own.
+            stop: when set, the run ends in power-off within one cycle. An interrupt from the keyboard sets it too,
+                so that a series of trials ends with the first.
+
+        Returns:
+            The outcome. Errors of the procedure, the drive and the sink are outcomes, not exceptions.
+        """
+        recorder = Recorder(sink)
+        lost_before = self._clock.overruns
+        ending = Outcome("failed", "the run was torn down")
+        try:
+            ending = self._run_guarded(procedure, recorder, stop)
+        finally:
+            # also reached by what is no `Exception`: never leave the drive powered, nor the recorder running
+            ending = _with_notes(ending, self._power_off(brake=ending.outcome not in ("completed", "refused")))
+            procedure.close()
+            ending = self._close(recorder, ending)
+        return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
+
+    def _run_guarded(self, procedure: Procedure, recorder: Recorder, stop: threading.Event) -> Outcome:
+        """Run the cycles, and turn every way they can end into an outcome."""
+        try:
+            refusal = self._check_before_motion()
+            if refusal:
+                return Outcome("refused", refusal)
+            return Outcome("completed", results=self._run_cycles(procedure, recorder, stop))
+        except _StopRequested:
+            return Outcome("stopped", "stop was asked for")
+        except KeyboardInterrupt:
+            stop.set()
+            return Outcome("stopped", "interrupted from the keyboard")
+        except LimitTrip as trip:
+            return Outcome("tripped", str(trip))
+        except Exception as error:
+            return Outcome("failed", str(error) or type(error).__name__)
+
+    def _close(self, recorder: Recorder, ending: Outcome) -> Outcome:
+        time_s = self.last_reading.time_s if self.last_reading is not None else 0.0
+        try:
+            recorder.event(time_s, "end", _joined(ending.outcome, ending.reason))
+        except Exception as error:
+            ending = _with_notes(ending, [str(error)])
+        try:
+            recorder.close()
+        except Exception as error:
+            ending = _with_notes(ending, [str(error)])
+        return ending
+
+    def _check_before_motion(self) -> str:
+        """Take a sample with the power off, and say what forbids motion."""
+        self.cycles = 0
+        self._previous = None
+        self._velocity_rad_s = 0.0
+        sample = self._drive.exchange(OFF)
+        self._origin_s = sample.time_s
+        reading, _ = self._read(sample)
+        self.last_reading = reading
+        try:
+            self._guard.check(sample, reading.velocity_rad_s, reading.current_a, nan)
+        except LimitTrip as trip:
+            return f"before motion: {trip}"
+        return ""
+
+    def _run_cycles(self, procedure: Procedure, recorder: Recorder, stop: threading.Event) -> dict[str, Any]:
+        exchange, check, wait, record = self._drive.exchange, self._guard.check, self._clock.wait, recorder.row
+        send, stopping = procedure.send, stop.is_set
+        action = next(procedure)
+        self._clock.start(self._period_s)
+        while True:
+            wait()
+            if stopping():
+                raise _StopRequested
+            sample = exchange(self._wire_command(action.command))
+            reading, estimate_a = self._read(sample)
+            self.cycles += 1
+            self.last_reading = reading
+            record(_row(action, reading, estimate_a))
+            if action.event is not None:
+                recorder.event(reading.time_s, *action.event)
+            check(sample, reading.velocity_rad_s, reading.current_a, action.target_rad)
+            if self._mode is not Mode.OFF and sample.status is not Status.ENABLED:
+                raise DriveStateError(
+                    self._drive.describe().device,
+                    f"status is {sample.status.name} during motion; ENABLED is wanted. See the drive's own display",
+                )
+            try:
+                action = send(reading)
+            except StopIteration as end:
+                return end.value or {}
+
+    def _wire_command(self, command: Command) -> Command:
+        """The command in a mode that the drive closes itself; powers the stage for it where it is not."""
+        mode, value = command
+        if mode is Mode.CURRENT and not self._has_current_mode:
+            if self._current_servo is None or self._previous is None:
+                raise ConfigurationError(
+                    "the drive has no current mode, and the rig lacks the resistance, back-EMF constant or gear ratio "
+                    "that eq. (3) needs to do without; add them to the rig"
+                )
+            mode = Mode.DUTY
+            value = self._current_servo.duty(value, self._previous, self._velocity_rad_s)
+            command = Command(mode, value)
+        if mode is not self._mode:
+            self._switch(mode)
+        return command
+
+    def _switch(self, mode: Mode) -> None:
+        # marked before the call: an `enable` that fails half-way may have powered the stage
+        self._mode = mode
+        if mode is Mode.OFF:
+            self._drive.disable()
+        else:
+            self._drive.enable(mode)
+        self._clock.start(self._period_s)
+
+    def _read(self, sample: Sample) -> tuple[Reading, float]:
+        """The reading of a sample, and its current by eq. (3) (NaN where that is not known)."""
+        velocity_rad_s = sample.velocity_rad_s
+        if velocity_rad_s != velocity_rad_s:  # NaN
+            velocity_rad_s = self._derived_velocity(sample)
+        self._velocity_rad_s = velocity_rad_s
+        self._previous = sample
+        servo = self._current_servo
+        estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
+        current_a = estimate_a if isnan(sample.current_a) else sample.current_a
+        return Reading(sample.time_s - self._origin_s, sample, velocity_rad_s, current_a), estimate_a
+
+    def _derived_velocity(self, sample: Sample) -> float:
+        previous = self._previous
+        if previous is None:
+            return 0.0
+        elapsed_s = sample.time_s - previous.time_s
+        if elapsed_s <= 0.0:
+            return self._velocity_rad_s
+        return (sample.position_rad - previous.position_rad) / elapsed_s
+
+    def _power_off(self, brake: bool) -> list[str]:
+        """Take the power away, whatever happens meanwhile, and say what went wrong.
+
+        Each step is tried even when the one before failed or was interrupted; the last one twice, since a second
+        Ctrl-C may fall into it.
+        """
+        steps = [self._drive.disable]
+        if brake and self._mode is not Mode.OFF:
+            steps.insert(0, self._drive.quick_stop)
+        notes = []
+        for step in steps:
+            for _ in range(2):
+                try:
+                    step()
+                    break
+                except BaseException as error:  # the power has to go
+                    notes.append(f"{step.__name__} failed: {str(error) or type(error).__name__}")
+        self._mode = Mode.OFF
+        return notes
+
+
+def _row(action: Action, reading: Reading, estimate_a: float) -> tuple[float, ...]:
+    sample = reading.sample
+    command = action.command
+    return (
+        reading.time_s,
+        action.target_rad,
+        sample.position_rad,
+        reading.velocity_rad_s,
+        sample.duty,
+        sample.current_a,
+        estimate_a,
+        command.value if command.mode is Mode.CURRENT else nan,
+        action.current_load_a,
+        sample.supply_v,
+        sample.temperature_c,
+        1.0 if sample.status is Status.ENABLED else 0.0,
+        sample.age_s,
+    )
+
+
+def _joined(*reasons: str) -> str:
+    return "; ".join(dict.fromkeys(reason for reason in reasons if reason))
+
+
+def _with_notes(ending: Outcome, notes: list[str]) -> Outcome:
+    """An outcome that also says what went wrong while it ended; it is not a completed run then."""
+    if not notes:
+        return ending
+    outcome: OutcomeName = "failed" if ending.outcome == "completed" else ending.outcome
+    # the sink's failure ends the run and is met again at the close: said once
+    new = [note for note in notes if note not in ending.reason]
+    return replace(ending, outcome=outcome, reason=_joined(ending.reason, *new))

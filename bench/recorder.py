@@ -1,0 +1,107 @@
+"""Takes the rows of a running trial to its sink, on a thread of its own: the loop never waits for a disk."""
+
+import queue
+import threading
+import time
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import RecordingError
+
+Row = tuple[float, ...]
+Event = tuple[float, str, str]
+
+
+class Sink(Protocol):
+    """Where rows and events go. Called from one thread, in order; every call returns when its data are committed."""
+
+    def append(self, rows: NDArray[np.float64]) -> None:
+        """Commit rows of shape (n, number of channels)."""
+
+    def event(self, time_s: float, name: str, detail: str) -> None:
+        """Commit one event."""
+
+
+class Recorder:
+    """Gathers rows into blocks and hands them over. A killed process loses the block in hand, `BLOCK_S` at most.
+
+    Args:
+        sink: where they go.
+    """
+
+    BLOCK_S = 0.1  # of wall time
+    BLOCK_ROWS = 4000
+    BACKLOG = 64  # blocks that may wait for the sink
+    PATIENCE_S = 10.0  # how long a full backlog is waited for
+
+    def __init__(self, sink: Sink) -> None:
+        self.error: BaseException | None = None
+        self._sink = sink
+        self._rows: list[Row] = []
+        self._handed_s = time.monotonic()
+        self._queue: queue.Queue[list[Row] | Event | None] = queue.Queue(self.BACKLOG)
+        self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
+        self._thread.start()
+
+    def row(self, row: Row) -> None:
+        """Take one row.
+
+        Raises:
+            RecordingError: the sink failed or cannot keep up.
+        """
+        rows = self._rows
+        rows.append(row)
+        if len(rows) >= self.BLOCK_ROWS or time.monotonic() - self._handed_s > self.BLOCK_S:
+            self._hand_over()
+
+    def event(self, time_s: float, name: str, detail: str) -> None:
+        """Take one event; it follows the rows before it."""
+        self._hand_over()
+        self._put((time_s, name, detail))
+
+    def close(self) -> None:
+        """Hand over what is left and wait until it is committed.
+
+        Raises:
+            RecordingError: the sink failed; what came before the failure is kept.
+        """
+        try:
+            self._hand_over()
+        finally:
+            self._queue.put(None)
+            self._thread.join()
+        self._check()
+
+    def _hand_over(self) -> None:
+        self._check()
+        self._handed_s = time.monotonic()
+        if self._rows:
+            self._put(self._rows)
+            self._rows = []
+
+    def _put(self, item: list[Row] | Event) -> None:
+        try:
+            self._queue.put(item, timeout=self.PATIENCE_S)
+        except queue.Full:
+            raise RecordingError(
+                f"the store has not taken a block for {self.PATIENCE_S:g} s ({self.BACKLOG} are waiting); "
+                "look for a full or failing disk"
+            ) from None
+
+    def _check(self) -> None:
+        if self.error is not None:
+            raise RecordingError(f"the store failed: {self.error}") from self.error
+
+    def _write(self) -> None:
+        while (item := self._queue.get()) is not None:
+            if self.error is not None:
+                continue  # drain, so that the loop is never blocked by a sink that is gone
+            try:
+                if isinstance(item, tuple):
+                    self._sink.event(*item)
+                else:
+                    self._sink.append(np.array(item, dtype=np.float64))
+            except BaseException as error:  # whatever it is, the loop has to hear of it
+                self.error = error

@@ -1,0 +1,96 @@
+"""The position servo, and the current servo of drives without a current mode."""
+
+from math import isnan
+
+from bench.errors import ConfigurationError
+from bench.quantities import quantity
+from bench.rig import Rig, Section
+from compensator import motor
+from compensator.motor import MotorConstants
+from drivers.contract import Sample
+
+
+class ServoSettings(Section):
+    """Gains of the position servo; its output is motor current."""
+
+    proportional_a_rad: float = quantity(12.0, "A/rad", "Current per position error", ge=0, allow_inf_nan=False)
+    integral_a_rad_s: float = quantity(40.0, "A/(rad s)", "Current per integrated error", ge=0, allow_inf_nan=False)
+    derivative_a_s_rad: float = quantity(0.6, "A s/rad", "Current per speed error", ge=0, allow_inf_nan=False)
+    dead_band_rad: float = quantity(0.004, "rad", "Position error that is left alone", gt=0, allow_inf_nan=False)
+    current_a: float = quantity(1.6, "A", "Most current the servo asks for", gt=0, allow_inf_nan=False)
+
+
+class PositionServo:
+    """PID on position, with a dead-band (paper, section 3.2.2).
+
+    Within the dead-band the error counts as zero, so the integral stands and with it the steady current: whatever
+    value friction happens to allow. That is the paper's Fig. 4.
+    """
+
+    def __init__(self, settings: ServoSettings, period_s: float) -> None:
+        self.settings = settings
+        self._period_s = period_s
+        self._integral_a = 0.0
+
+    def reset(self, current_a: float = 0.0) -> None:
+        """Start anew, from the current that flows now."""
+        self._integral_a = current_a
+
+    def current_a(
+        self, target_rad: float, position_rad: float, velocity_rad_s: float, target_velocity_rad_s: float = 0.0
+    ) -> float:
+        """One control cycle: the current to ask for [A]."""
+        settings = self.settings
+        error_rad = target_rad - position_rad
+        if -settings.dead_band_rad <= error_rad <= settings.dead_band_rad:
+            error_rad = 0.0
+        limit_a = settings.current_a
+        integral_a = self._integral_a + settings.integral_a_rad_s * error_rad * self._period_s
+        wanted_a = (
+            integral_a
+            + settings.proportional_a_rad * error_rad
+            + settings.derivative_a_s_rad * (target_velocity_rad_s - velocity_rad_s)
+        )
+        clipped_a = min(max(wanted_a, -limit_a), limit_a)
+        # anti-windup: while the output is clipped, the integral may only come back
+        if clipped_a == wanted_a or (wanted_a - clipped_a) * error_rad < 0.0:
+            self._integral_a = min(max(integral_a, -limit_a), limit_a)
+        return clipped_a
+
+
+class CurrentServo:
+    """Eq. (3) both ways: current from duty and speed, and the duty that gives a wanted current.
+
+    Args:
+        rig: its resistance and back-EMF constant are needed; the supply voltage only where it is not measured.
+
+    Raises:
+        ConfigurationError: the rig leaves out a value that is needed.
+    """
+
+    def __init__(self, rig: Rig) -> None:
+        resistance_ohm, back_emf_v_s_rad = rig.motor.resistance_ohm, rig.motor.back_emf_v_s_rad
+        if resistance_ohm is None or back_emf_v_s_rad is None or rig.gear.ratio is None:
+            raise ConfigurationError(
+                f"rig '{rig.name}': eq. (3) needs motor.resistance_ohm, motor.back_emf_v_s_rad and gear.ratio; "
+                "add what is missing to the rig"
+            )
+        self._motor = MotorConstants(resistance_ohm, back_emf_v_s_rad)
+        self._ratio = rig.gear.ratio
+        self._nominal_supply_v = rig.supply.voltage_v
+
+    def _supply_v(self, sample: Sample) -> float:
+        if not isnan(sample.supply_v):
+            return sample.supply_v
+        if self._nominal_supply_v is None:
+            raise ConfigurationError("the drive does not measure its supply: add supply.voltage_v [V] to the rig")
+        return self._nominal_supply_v
+
+    def estimate_a(self, sample: Sample, velocity_rad_s: float) -> float:
+        """Motor current of a sample [A], eq. (3). The velocity is the joint's."""
+        return motor.current_a(self._motor, sample.duty, velocity_rad_s * self._ratio, self._supply_v(sample))
+
+    def duty(self, current_a: float, sample: Sample, velocity_rad_s: float) -> float:
+        """Duty that gives a current [A], eq. (3) inverted, within -1 .. 1."""
+        wanted = motor.duty(self._motor, current_a, velocity_rad_s * self._ratio, self._supply_v(sample))
+        return min(max(wanted, -1.0), 1.0)

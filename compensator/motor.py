@@ -1,0 +1,68 @@
+"""Motor current without a current sensor, and its friction part (paper, section 3.1).
+
+    I = (Vs d - Ke w) / R                       (3)
+    I_motor = I_load + I_friction               (5)
+    d_load = (Vs (d - d_friction) + Ke w) / Vs  (7)
+    d_load = d - d_friction         at w = 0    (8)
+
+`d_friction` is the duty that a balanced joint needs at the same steady speed, so it holds the
+back-EMF share: d_friction = (R I_friction + Ke w) / Vs. With that, (5) and (7) give the same load.
+
+Every function takes floats or arrays of one shape. `speed_rad_s` is that of the motor shaft.
+"""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compensator.errors import ModelParameterError
+
+Number = TypeVar("Number", float, NDArray[np.float64])
+
+
+@dataclass(frozen=True, slots=True)
+class MotorConstants:
+    """What eq. (3) needs to know of a PM DC motor.
+
+    Attributes:
+        resistance_ohm: of winding and leads [ohm]; above 0.
+        back_emf_v_s_rad: back-EMF constant at the shaft [V s/rad]; 0 or more.
+    """
+
+    resistance_ohm: float
+    back_emf_v_s_rad: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.resistance_ohm < float("inf"):
+            raise ModelParameterError(f"motor resistance is {self.resistance_ohm} ohm; allowed is above 0 ohm")
+        if not 0.0 <= self.back_emf_v_s_rad < float("inf"):
+            raise ModelParameterError(f"back-EMF constant is {self.back_emf_v_s_rad} V s/rad; allowed is 0 or more")
+
+
+def current_a(motor: MotorConstants, duty: Number, speed_rad_s: Number, supply_v: float) -> Number:
+    """Eq. (3): motor current [A] from PWM duty, motor speed and supply, in the steady state."""
+    return (supply_v * duty - motor.back_emf_v_s_rad * speed_rad_s) / motor.resistance_ohm
+
+
+def duty(motor: MotorConstants, current_a: Number, speed_rad_s: Number, supply_v: float) -> Number:
+    """Eq. (3) inverted: the duty that gives a wanted current [A]; beyond -1 .. 1 the supply cannot give it."""
+    return (motor.resistance_ohm * current_a + motor.back_emf_v_s_rad * speed_rad_s) / supply_v
+
+
+def load_current_a(current_a: Number, friction_current_a: Number) -> Number:
+    """Eq. (5): the load's share of the motor current [A]."""
+    return current_a - friction_current_a
+
+
+def friction_duty(motor: MotorConstants, friction_current_a: Number, speed_rad_s: Number, supply_v: float) -> Number:
+    """The duty of a balanced joint at a steady speed: friction and back-EMF, no load."""
+    return duty(motor, friction_current_a, speed_rad_s, supply_v)
+
+
+def load_duty(
+    motor: MotorConstants, duty: Number, friction_duty: Number, speed_rad_s: Number, supply_v: float
+) -> Number:
+    """Eq. (7): the duty of the load alone, back-EMF included; eq. (8) where the speed is 0."""
+    return (supply_v * (duty - friction_duty) + motor.back_emf_v_s_rad * speed_rad_s) / supply_v

@@ -1,0 +1,46 @@
+"""Eqs (1), (2), against hand-worked numbers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from compensator.errors import ModelParameterError
+from compensator.kinetic_friction import KineticFriction
+
+CURVE = KineticFriction(coulomb_a=0.2, static_a=0.3, stribeck_speed_rad_s=2.0, shape=2.0, viscous_a_s_rad=0.01)
+
+
+def test_eq_2_by_hand():
+    # at v = vs the Stribeck share is (0.3 - 0.2) / e, viscous 0.01 * 2
+    assert CURVE.sliding_a(2.0) == pytest.approx(0.2 + 0.1 / math.e + 0.02)
+    assert CURVE.sliding_a(20.0) == pytest.approx(0.2 + 0.2)
+
+
+def test_eq_2_is_odd_in_speed():
+    speeds = np.array([-5.0, -0.1, 0.1, 5.0])
+    np.testing.assert_allclose(CURVE.sliding_a(speeds), -CURVE.sliding_a(-speeds))
+
+
+@pytest.mark.parametrize(("applied", "friction"), [(0.1, 0.1), (-0.29, -0.29), (0.5, 0.3), (-0.5, -0.3)])
+def test_eq_1_at_standstill(applied, friction):
+    assert CURVE.friction_a(0.0, applied) == pytest.approx(friction)
+
+
+def test_eq_1_in_motion_does_not_ask_what_is_applied():
+    assert CURVE.friction_a(3.0, 99.0) == pytest.approx(CURVE.sliding_a(3.0))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"coulomb_a": -0.1, "static_a": 0.3, "stribeck_speed_rad_s": 1.0},
+        {"coulomb_a": 0.4, "static_a": 0.3, "stribeck_speed_rad_s": 1.0},
+        {"coulomb_a": 0.2, "static_a": 0.3, "stribeck_speed_rad_s": 0.0},
+        {"coulomb_a": 0.2, "static_a": 0.3, "stribeck_speed_rad_s": 1.0, "shape": 0.0},
+        {"coulomb_a": 0.2, "static_a": math.inf, "stribeck_speed_rad_s": 1.0},
+    ],
+)
+def test_impossible_curves_are_refused(wrong):
+    with pytest.raises(ModelParameterError):
+        KineticFriction(**wrong)
