@@ -1,0 +1,53 @@
+"""Bring a database to the tables of this version. Alembic is only loaded when there is something to do."""
+
+from importlib.metadata import version
+from pathlib import Path
+
+from sqlalchemy import Connection, inspect, text
+
+from bench.store.database import Database
+from bench.store.errors import StoreFileError, StoreVersionError
+
+HEAD = "0001"  # the newest revision in migrations/versions
+MIGRATIONS = Path(__file__).parent / "migrations"
+
+
+def migrate(database: Database) -> None:
+    """Create or upgrade the tables, in one transaction. Does nothing where they are up to date.
+
+    Raises:
+        StoreVersionError: the database was made by a newer version.
+        StoreFileError: the file belongs to another program.
+    """
+    with database.reading() as connection:
+        if _revision(connection) == HEAD:
+            return
+    with database.writing() as connection:  # another process may have been faster: look again under the lock
+        found = _revision(connection)
+        if found is None and inspect(connection).get_table_names():
+            raise StoreFileError(f"store '{database.path}' belongs to another program; name another file")
+        if found != HEAD:
+            _upgrade(connection, database.path, found)
+
+
+def _revision(connection: Connection) -> str | None:
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+
+
+def _upgrade(connection: Connection, path: Path, found: str | None) -> None:
+    from alembic import command
+    from alembic.config import Config
+    from alembic.script import ScriptDirectory
+
+    config = Config(attributes={"connection": connection})
+    config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
+    config.set_main_option("path_separator", "os")
+    known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
+    if found is not None and found not in known:
+        raise StoreVersionError(
+            f"store '{path}' was made by a newer version (schema {found}; version {version('friction-bench')} knows "
+            f"up to {HEAD}); install the newer version, or name another file"
+        )
+    command.upgrade(config, "head")

@@ -1,0 +1,1 @@
+"""Alembic's migrations of the store, from the first table on."""

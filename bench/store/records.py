@@ -1,0 +1,85 @@
+"""What the store returns: frozen records, one per row. Times are UTC with time zone."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from compensator.lab.recording import Condition, Event
+
+__all__ = ["OUTCOMES", "SOURCES", "Condition", "Event", "Experiment", "ModelRow", "StudyRow", "Trial"]
+
+OUTCOMES = ("running", "completed", "stopped", "tripped", "failed", "interrupted", "refused")
+SOURCES = ("simulated", "real", "imported")
+
+
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """What a user started: a kind, its parameters, and where it came from.
+
+    Attributes:
+        source: one of `SOURCES`.
+        outcome: one of `OUTCOMES`; `reason` says why.
+        rig: the rig as in `rig.toml`.
+        results: JSON-able, units in the names; empty while it runs.
+    """
+
+    id: int
+    kind: str
+    parameters: dict[str, Any]
+    source: str
+    operator: str
+    note: str
+    provenance: dict[str, Any]
+    rig: dict[str, Any]
+    started_utc: datetime
+    finished_utc: datetime | None
+    outcome: str
+    reason: str
+    results: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One recording under constant conditions.
+
+    Attributes:
+        conditions: what was held constant; the keys carry units.
+        channels: names of the recorded channels (compensator.lab.channels).
+        rows: committed rows.
+        outcome: one of `OUTCOMES`; `reason` says why.
+    """
+
+    id: int
+    experiment_id: int
+    name: str
+    kind: str
+    conditions: dict[str, Condition]
+    channels: tuple[str, ...]
+    rows: int
+    started_utc: datetime
+    finished_utc: datetime | None
+    outcome: str
+    reason: str
+    results: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class StudyRow:
+    """A study: which trials, and how they are split."""
+
+    id: int
+    name: str
+    definition: dict[str, Any]
+    created_utc: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class ModelRow:
+    """One model of a study: its effects, what came out, and the model it was made from."""
+
+    id: int
+    study_id: int
+    parent_id: int | None
+    effects: list[str]
+    result: dict[str, Any]
+    created_utc: datetime

@@ -1,0 +1,44 @@
+"""Fewer rows for a plot: MinMaxLTTB (Van Der Donckt et al. 2023, arXiv 2305.00332).
+
+Extremes are kept, so a spike of one sample is still seen.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from tsdownsample import MinMaxLTTBDownsampler
+
+from compensator.lab.recording import FloatArray
+
+MIN_POINTS = 4
+_REDUCE: Any = MinMaxLTTBDownsampler()  # type: ignore[no-untyped-call]
+
+
+def rows_to_keep(channels: dict[str, FloatArray], points: int) -> NDArray[np.intp]:
+    """Indices of the rows that matter to any of the channels, rising.
+
+    Each channel is reduced to `points` of its own, so up to points x channels rows may be kept. Rows
+    where a channel stops being known (NaN) are kept too, as long as they are not more than `points`,
+    so that a plot shows the gap.
+
+    Args:
+        channels: channel name -> samples, all of shape (n,). `time_s` asks for no rows of its own.
+        points: at least `MIN_POINTS`.
+    """
+    rows = len(next(iter(channels.values()), ()))
+    if rows <= points:
+        return np.arange(rows)
+    ends = np.array([0, rows - 1])
+    kept = [_of_channel(values, points) for name, values in channels.items() if name != "time_s"]
+    return np.unique(np.concatenate([ends, *kept]))
+
+
+def _of_channel(values: FloatArray, points: int) -> NDArray[np.intp]:
+    known = np.flatnonzero(~np.isnan(values))
+    if len(known) <= points:
+        return known
+    gaps = np.flatnonzero(np.diff(np.isnan(values).astype(np.int8)) == 1) + 1
+    chosen: NDArray[np.uint64] = _REDUCE.downsample(np.ascontiguousarray(values[known]), n_out=points)
+    kept = known[chosen.astype(np.intp)]
+    return np.union1d(kept, gaps) if 0 < len(gaps) <= points else kept

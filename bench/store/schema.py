@@ -1,0 +1,150 @@
+"""The tables. A change here needs a migration in `migrations/versions`."""
+
+from datetime import UTC, datetime
+
+from sqlalchemy import (
+    JSON,
+    Boolean,
+    Column,
+    DateTime,
+    Dialect,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    Table,
+    Text,
+    TypeDecorator,
+    UniqueConstraint,
+)
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """A time with time zone UTC, also where the database keeps none."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
+        """To UTC, before it is written."""
+        return None if value is None else value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
+        """Mark as UTC what was read without a zone."""
+        if value is None:
+            return None
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+METADATA = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+
+def _parent(table: str, name: str, *, nullable: bool = False, primary_key: bool = False) -> Column[int]:
+    key = ForeignKey(f"{table}.id", ondelete="CASCADE")
+    return Column(name, Integer, key, nullable=nullable, primary_key=primary_key, autoincrement=False)
+
+
+EXPERIMENT = Table(
+    "experiment",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("kind", Text, nullable=False),
+    Column("parameters", JSON, nullable=False),
+    Column("source", Text, nullable=False),  # simulated, real, imported
+    Column("operator", Text, nullable=False),
+    Column("note", Text, nullable=False),
+    Column("provenance", JSON, nullable=False),
+    Column("rig", JSON, nullable=False),
+    Column("owner", Text, nullable=True),  # who runs it, see owner.py; empty for an import
+    Column("started_utc", UtcDateTime, nullable=False),
+    Column("finished_utc", UtcDateTime, nullable=True),
+    Column("outcome", Text, nullable=False),
+    Column("reason", Text, nullable=False),
+    Column("results", JSON, nullable=False),
+    Index(None, "outcome"),
+    Index(None, "kind"),
+)
+
+TRIAL = Table(
+    "trial",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    _parent("experiment", "experiment_id"),
+    Column("name", Text, nullable=False),
+    Column("kind", Text, nullable=False),
+    Column("channels", JSON, nullable=False),  # names, in the order of the columns of a sample block
+    Column("rows", Integer, nullable=False),
+    Column("started_utc", UtcDateTime, nullable=False),
+    Column("finished_utc", UtcDateTime, nullable=True),
+    Column("outcome", Text, nullable=False),
+    Column("reason", Text, nullable=False),
+    Column("results", JSON, nullable=False),
+    UniqueConstraint("experiment_id", "name"),
+    Index(None, "outcome"),
+    Index(None, "kind"),
+)
+
+# exactly one of number, text and flag is set: it is the condition's type
+TRIAL_CONDITION = Table(
+    "trial_condition",
+    METADATA,
+    _parent("trial", "trial_id", primary_key=True),
+    Column("key", Text, primary_key=True),
+    Column("position", Integer, nullable=False),  # conditions keep their order
+    Column("number", Float, nullable=True),
+    Column("text", Text, nullable=True),
+    Column("flag", Boolean, nullable=True),
+    Index(None, "key", "number"),
+    Index(None, "key", "text"),
+)
+
+SAMPLE_BLOCK = Table(
+    "sample_block",
+    METADATA,
+    _parent("trial", "trial_id", primary_key=True),
+    Column("first_row", Integer, primary_key=True, autoincrement=False),
+    Column("rows", Integer, nullable=False),
+    Column("data", LargeBinary, nullable=False),  # see blocks.py
+)
+
+EVENT = Table(
+    "event",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    _parent("trial", "trial_id"),
+    Column("time_s", Float, nullable=False),
+    Column("name", Text, nullable=False),
+    Column("detail", Text, nullable=False),
+    Index(None, "trial_id", "time_s"),
+)
+
+STUDY = Table(
+    "study",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("name", Text, nullable=False),
+    Column("definition", JSON, nullable=False),
+    Column("created_utc", UtcDateTime, nullable=False),
+)
+
+MODEL = Table(
+    "model",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    _parent("study", "study_id"),
+    Column("parent_id", Integer, ForeignKey("model.id"), nullable=True),
+    Column("effects", JSON, nullable=False),
+    Column("result", JSON, nullable=False),
+    Column("created_utc", UtcDateTime, nullable=False),
+    Index(None, "study_id"),
+    Index(None, "parent_id"),
+)

@@ -1,0 +1,299 @@
+"""The store: everything that was measured, and every model made from it."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import Any, Self
+
+from bench.store import experiments, samples, studies, trials
+from bench.store.conditions import Wanted
+from bench.store.database import Database
+from bench.store.errors import StoreError, StoreValueError
+from bench.store.migration import migrate
+from bench.store.owner import Owner, lives
+from bench.store.records import Condition, Event, Experiment, ModelRow, StudyRow, Trial
+from bench.store.reduction import MIN_POINTS, rows_to_keep
+from bench.store.trial_writer import TrialWriter
+from compensator.lab.recording import FloatArray, Recording
+
+BUSY_TIMEOUT_S = 10.0
+LEFT_RUNNING = "the process that ran it ended without closing it (killed, crashed, or the power went)"
+
+
+class Store:
+    """Experiments, trials, samples, events, studies and models. Every method may be called from any thread.
+
+    One writer at a time, in all processes together; readers never wait and see whole transactions.
+    Use `open`, then `close`, or a `with` block.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+        self._owner: Owner | None = None
+
+    @classmethod
+    def open(cls, url: str, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Self:
+        """Open a database; create or upgrade its tables; mark as interrupted what a dead process left running.
+
+        Args:
+            url: "sqlite:///bench.sqlite".
+            busy_timeout_s: how long a write waits for another one before `StoreLockedError` [s].
+
+        Raises:
+            StoreFileError: no such folder, no database, a database of another program, or a damaged one.
+            StoreVersionError: made by a newer version.
+            StoreLockedError, StoreFullError, StoreReadOnlyError
+        """
+        store = cls(Database(url, busy_timeout_s))
+        try:
+            migrate(store._database)
+            store._interrupt(LEFT_RUNNING, lambda token: not lives(store._database.path, token))
+        except BaseException:
+            store.close()
+            raise
+        return store
+
+    def close(self) -> None:
+        """Close the database. What this store left running is marked interrupted. Safe to call twice."""
+        if self._owner is not None:
+            mine = self._owner.token
+            with suppress(StoreError):  # a full or locked database: the next to open it marks them
+                self._interrupt("the store was closed while it ran", lambda token: token == mine)
+            self._owner.release()
+            self._owner = None
+        self._database.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # experiments
+
+    def begin_experiment(
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        source: str,
+        provenance: dict[str, Any],
+        rig: dict[str, Any],
+        operator: str = "",
+        note: str = "",
+    ) -> int:
+        """Start an experiment from `source` "simulated", "real" or "imported". Returns its id.
+
+        For `provenance` see `bench.provenance`; `rig` is the rig as in `rig.toml`.
+        """
+        values = {
+            "kind": kind,
+            "parameters": parameters,
+            "source": source,
+            "provenance": provenance,
+            "rig": rig,
+            "operator": operator,
+            "note": note,
+        }
+        with self._database.writing() as connection:
+            return experiments.add(connection, self._claim(), **values)
+
+    def finish_experiment(
+        self, experiment_id: int, outcome: str, reason: str = "", results: dict[str, Any] | None = None
+    ) -> None:
+        """Close an experiment; a trial of it that still runs is given the same outcome and reason.
+
+        Raises:
+            NotFoundError: no such experiment.
+            StoreStateError: it is finished already.
+        """
+        with self._database.writing() as connection:
+            experiments.finish(connection, experiment_id, outcome, reason, results or {})
+
+    def experiment(self, experiment_id: int) -> Experiment:
+        """One experiment, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return experiments.get(connection, experiment_id)
+
+    def experiments(
+        self,
+        kind: str | None = None,
+        outcome: str | None = None,
+        source: str | None = None,
+        limit: int | None = None,
+        offset: int = 0,
+    ) -> list[Experiment]:
+        """Experiments, newest first; all of them without a limit."""
+        with self._database.reading() as connection:
+            return experiments.find(connection, kind, outcome, source, limit, offset)
+
+    def add_imported(
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        provenance: dict[str, Any],
+        rig: dict[str, Any],
+        recordings: Iterable[tuple[Recording, str, str]],
+    ) -> int:
+        """Add an experiment that was recorded elsewhere, with its trials: all, or nothing. Returns its id.
+
+        Each recording comes with its trial's outcome and reason.
+        """
+        values = {"kind": kind, "parameters": parameters, "provenance": provenance, "rig": rig}
+        with self._database.writing() as connection:
+            experiment_id = experiments.add(connection, None, **values, source="imported", operator="", note="")
+            for recording, outcome, reason in recordings:
+                names = tuple(recording.channels)
+                trial_id = trials.add(
+                    connection, experiment_id, recording.name, recording.kind, recording.conditions, names
+                )
+                samples.add(connection, trial_id, 0, samples.stack(recording.channels, names))
+                trials.add_events(connection, trial_id, recording.events)
+                trials.finish(connection, trial_id, outcome, reason, {})
+            experiments.finish(connection, experiment_id, "completed", "", {})
+        return experiment_id
+
+    # trials
+
+    def begin_trial(
+        self,
+        experiment_id: int,
+        name: str,
+        kind: str,
+        conditions: Mapping[str, Condition],
+        channels: Sequence[str],
+    ) -> TrialWriter:
+        """Start a trial of a running experiment.
+
+        Args:
+            experiment_id: the experiment that it is part of.
+            name: unique within the experiment.
+            kind: what is done ("steps", "load-sweep").
+            conditions: what is held constant; finite numbers, text, bools.
+            channels: names from `compensator.lab.channels`, in the order of the columns of the rows.
+
+        Raises:
+            NotFoundError: no such experiment.
+            StoreStateError: the experiment is finished.
+            StoreValueError: the name is taken, or a condition or channel cannot be kept.
+        """
+        with self._database.writing() as connection:
+            trial_id = trials.add(connection, experiment_id, name, kind, conditions, channels)
+        return TrialWriter(self._database, trial_id, tuple(channels))
+
+    def trial(self, trial_id: int) -> Trial:
+        """One trial, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return trials.get(connection, trial_id)
+
+    def trials(
+        self,
+        experiment_id: int | None = None,
+        kind: str | None = None,
+        outcome: str | None = None,
+        source: str | None = None,
+        conditions: Mapping[str, Wanted] | None = None,
+        limit: int | None = None,
+        offset: int = 0,
+    ) -> list[Trial]:
+        """Trials in the order in which they were made; all of them without a limit.
+
+        `conditions` maps a condition to the wanted value, or to the (lowest, highest) wanted number.
+        """
+        with self._database.reading() as connection:
+            return trials.find(connection, experiment_id, kind, outcome, source, conditions or {}, limit, offset)
+
+    def events(self, trial_id: int) -> list[Event]:
+        """The events of a trial, in order of time, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            trials.get(connection, trial_id)
+            return trials.events(connection, trial_id)
+
+    # samples
+
+    def samples(self, trial_id: int, channels: Sequence[str] | None = None) -> dict[str, FloatArray]:
+        """Channel name -> samples, each of shape (rows,): what is committed now.
+
+        All channels of the trial where `channels` is None.
+
+        Raises:
+            NotFoundError: no such trial, or it has no such channel.
+        """
+        with self._database.reading() as connection:
+            trial = trials.get(connection, trial_id)
+            return samples.read(connection, trial, trial.channels if channels is None else channels)
+
+    def samples_reduced(self, trial_id: int, channels: Sequence[str] | None, points: int) -> dict[str, FloatArray]:
+        """As `samples`, always with time_s, reduced to the rows that a plot needs.
+
+        Args:
+            trial_id: the trial.
+            channels: all channels of the trial where None.
+            points: rows that each channel may ask for, at least 4; all channels share the rows returned.
+
+        Raises:
+            NotFoundError: no such trial, or it has no such channel.
+            StoreValueError: too few points.
+        """
+        if points < MIN_POINTS:
+            raise StoreValueError(f"points is {points}; wanted at least {MIN_POINTS}")
+        names = None if channels is None else list(dict.fromkeys(["time_s", *channels]))
+        found = self.samples(trial_id, names)
+        rows = rows_to_keep(found, points)
+        return {name: values[rows] for name, values in found.items()}
+
+    # studies
+
+    def create_study(self, name: str, definition: dict[str, Any]) -> int:
+        """Add a study. Returns its id."""
+        with self._database.writing() as connection:
+            return studies.add(connection, name, definition)
+
+    def study(self, study_id: int) -> StudyRow:
+        """One study, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return studies.get(connection, study_id)
+
+    def studies(self, limit: int | None = None, offset: int = 0) -> list[StudyRow]:
+        """Studies, newest first; all of them without a limit."""
+        with self._database.reading() as connection:
+            return studies.find(connection, limit, offset)
+
+    def add_model(self, study_id: int, parent_id: int | None, effects: Sequence[str], result: dict[str, Any]) -> int:
+        """Add a model to a study, made from another model or from nothing. Returns its id."""
+        with self._database.writing() as connection:
+            return studies.add_model(connection, study_id, parent_id, effects, result)
+
+    def model(self, model_id: int) -> ModelRow:
+        """One model, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return studies.get_model(connection, model_id)
+
+    def models(self, study_id: int) -> list[ModelRow]:
+        """The models of a study, oldest first, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return studies.models(connection, study_id)
+
+    def remove_model(self, model_id: int) -> None:
+        """Remove a model; `StoreStateError` where others were made from it."""
+        with self._database.writing() as connection:
+            studies.remove_model(connection, model_id)
+
+    # who runs what
+
+    def _claim(self) -> str:
+        """The token under which this store runs experiments. Called inside a transaction that writes."""
+        if self._owner is None:
+            self._owner = Owner(self._database.path)
+        return self._owner.token
+
+    def _interrupt(self, reason: str, chosen: Callable[[str | None], bool]) -> None:
+        """Close the experiments that are marked running and whose owner's token is chosen."""
+        with self._database.reading() as connection:
+            if not experiments.running(connection):
+                return
+        with self._database.writing() as connection:
+            for experiment_id, token in experiments.running(connection).items():
+                if chosen(token):
+                    experiments.finish(connection, experiment_id, "interrupted", reason, {})

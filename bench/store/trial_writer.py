@@ -1,0 +1,76 @@
+"""Where the rows and events of a running trial go."""
+
+from typing import Any
+
+from sqlalchemy import Connection
+
+from bench.store import samples, trials
+from bench.store.database import Database
+from bench.store.errors import StoreStateError
+from bench.store.records import Event
+from compensator.lab.recording import FloatArray
+
+
+class TrialWriter:
+    """A trial that is being recorded. What `append` and `event` were given is committed when they return.
+
+    Attributes:
+        trial_id: the trial in the store.
+        rows: committed rows.
+    """
+
+    def __init__(self, database: Database, trial_id: int, channels: tuple[str, ...]) -> None:
+        self.trial_id = trial_id
+        self.rows = 0
+        self._database = database
+        self._channels = channels
+        self._finished = False
+
+    def append(self, rows: FloatArray) -> None:
+        """Write rows.
+
+        Args:
+            rows: shape (n, channels), columns in the order of the trial's channels.
+
+        Raises:
+            StoreValueError: the shape does not fit.
+            StoreStateError: the trial is finished.
+            StoreLockedError, StoreFullError, StoreReadOnlyError: nothing of these rows is kept.
+        """
+        samples.check_shape(rows, len(self._channels))
+        self._check_running()
+        if len(rows) == 0:
+            return
+        with self._database.writing() as connection:
+            samples.add(connection, self.trial_id, self.rows, rows)
+        self.rows += len(rows)
+
+    def event(self, time_s: float, name: str, detail: str = "") -> None:
+        """Write something that happened at a time of the trial [s]."""
+        self._check_running()
+        with self._database.writing() as connection:
+            trials.add_events(connection, self.trial_id, [Event(time_s, name, detail)])
+
+    def finish(self, outcome: str, reason: str = "", results: dict[str, Any] | None = None) -> None:
+        """Close the trial.
+
+        Args:
+            outcome: any of `OUTCOMES` but "running".
+            reason: why it ended.
+            results: JSON-able, units in the names; NaN is kept as null.
+
+        Raises:
+            StoreStateError: the trial is finished already.
+            StoreValueError: an outcome that does not exist.
+        """
+        self._check_running()
+        with self._database.writing() as connection:
+            self._close(connection, outcome, reason, results or {})
+        self._finished = True
+
+    def _close(self, connection: Connection, outcome: str, reason: str, results: dict[str, Any]) -> None:
+        trials.finish(connection, self.trial_id, outcome, reason, results)
+
+    def _check_running(self) -> None:
+        if self._finished:
+            raise StoreStateError(f"trial {self.trial_id} is finished; begin a new one for more rows")

@@ -1,0 +1,140 @@
+"""Rows of the tables of trials and events. Each function works inside the caller's transaction."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Row, insert, select, update
+from sqlalchemy.exc import IntegrityError
+
+from bench.store import conditions as condition_rows
+from bench.store.conditions import Wanted
+from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
+from bench.store.experiments import check_outcome, insert_row, now
+from bench.store.records import Condition, Event, Trial
+from bench.store.schema import EVENT, EXPERIMENT, TRIAL
+from compensator.lab.channels import CHANNELS
+
+
+def add(
+    connection: Connection,
+    experiment_id: int,
+    name: str,
+    kind: str,
+    conditions: Mapping[str, Condition],
+    channels: Sequence[str],
+) -> int:
+    """Insert a trial that starts now. Returns its id.
+
+    Raises:
+        StoreStateError: there is no such experiment, or it is finished.
+        StoreValueError: a second trial of that name, a channel or condition that cannot be kept.
+    """
+    _check_experiment(connection, experiment_id)
+    _check_channels(name, channels)
+    values = {
+        "experiment_id": experiment_id,
+        "name": name,
+        "kind": kind,
+        "channels": list(channels),
+        "rows": 0,
+        "started_utc": now(),
+        "outcome": "running",
+        "reason": "",
+        "results": {},
+    }
+    try:
+        trial_id = insert_row(connection, TRIAL, values)
+    except IntegrityError as error:
+        raise StoreValueError(
+            f"experiment {experiment_id} has a trial '{name}' already; give each trial a name of its own"
+        ) from error
+    condition_rows.add(connection, trial_id, conditions)
+    return trial_id
+
+
+def finish(connection: Connection, trial_id: int, outcome: str, reason: str, results: dict[str, Any]) -> None:
+    """Close a trial.
+
+    Raises:
+        StoreStateError: it is finished already.
+        StoreValueError: an outcome that does not exist.
+    """
+    check_outcome(outcome)
+    end = {"finished_utc": now(), "outcome": outcome, "reason": reason, "results": results}
+    running = (TRIAL.c.id == trial_id) & (TRIAL.c.outcome == "running")
+    if connection.execute(update(TRIAL).where(running).values(**end)).rowcount != 1:
+        raise StoreStateError(f"trial {trial_id} is finished already; it cannot finish twice")
+
+
+def add_events(connection: Connection, trial_id: int, events: Sequence[Event]) -> None:
+    """Insert events of a trial."""
+    if events:
+        connection.execute(insert(EVENT), [{"trial_id": trial_id, **event._asdict()} for event in events])
+
+
+def events(connection: Connection, trial_id: int) -> list[Event]:
+    """The events of a trial, in order of time."""
+    query = select(EVENT.c.time_s, EVENT.c.name, EVENT.c.detail).where(EVENT.c.trial_id == trial_id)
+    return [Event(*row) for row in connection.execute(query.order_by(EVENT.c.time_s, EVENT.c.id))]
+
+
+def get(connection: Connection, trial_id: int) -> Trial:
+    """One trial.
+
+    Raises:
+        NotFoundError: no such trial.
+    """
+    row = connection.execute(select(TRIAL).where(TRIAL.c.id == trial_id)).one_or_none()
+    if row is None:
+        raise NotFoundError(f"trial {trial_id} is not in the store; list the trials to see which are")
+    return _record(row, condition_rows.of_trials(connection, [row.id]))
+
+
+def find(
+    connection: Connection,
+    experiment_id: int | None,
+    kind: str | None,
+    outcome: str | None,
+    source: str | None,
+    conditions: Mapping[str, Wanted],
+    limit: int | None,
+    offset: int,
+) -> list[Trial]:
+    """Trials in the order in which they were made."""
+    query = select(TRIAL).order_by(TRIAL.c.id).limit(limit).offset(offset)
+    filters: list[ColumnElement[bool]] = [condition_rows.match(key, wanted) for key, wanted in conditions.items()]
+    if experiment_id is not None:
+        filters.append(TRIAL.c.experiment_id == experiment_id)
+    if kind is not None:
+        filters.append(TRIAL.c.kind == kind)
+    if outcome is not None:
+        filters.append(TRIAL.c.outcome == outcome)
+    if source is not None:
+        of_source = select(EXPERIMENT.c.id).where(EXPERIMENT.c.source == source)
+        filters.append(TRIAL.c.experiment_id.in_(of_source))
+    rows = connection.execute(query.where(*filters)).all()
+    found = condition_rows.of_trials(connection, [row.id for row in rows])
+    return [_record(row, found) for row in rows]
+
+
+def _check_experiment(connection: Connection, experiment_id: int) -> None:
+    query = select(EXPERIMENT.c.outcome).where(EXPERIMENT.c.id == experiment_id)
+    outcome = connection.execute(query).scalar_one_or_none()
+    if outcome is None:
+        raise NotFoundError(f"experiment {experiment_id} is not in the store; begin one before its trials")
+    if outcome != "running":
+        raise StoreStateError(f"experiment {experiment_id} is finished ({outcome}); begin a new one for more trials")
+
+
+def _check_channels(name: str, channels: Sequence[str]) -> None:
+    unknown = [channel for channel in channels if channel not in CHANNELS]
+    if unknown or len(set(channels)) != len(channels) or "time_s" not in channels:
+        raise StoreValueError(
+            f"trial '{name}' has the channels {', '.join(channels) or 'none'}; wanted time_s and any of "
+            f"{', '.join(CHANNELS)}, each once"
+        )
+
+
+def _record(row: Row[Any], conditions: Mapping[int, dict[str, Condition]]) -> Trial:
+    values = row._asdict() | {"channels": tuple(row.channels), "conditions": conditions[row.id]}
+    return Trial(**values)
