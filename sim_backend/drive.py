@@ -1,0 +1,243 @@
+"""The simulated drive: the drive contract on a plant, in virtual time."""
+
+from importlib.metadata import version
+from math import ceil, isfinite, nan, pi
+
+from drivers.contract import Command, Description, Mode, Sample, Status
+from drivers.errors import DriveConfigurationError, DriveFault, DriveStateError
+from sim_backend.errors import ParameterError
+from sim_backend.gravity import Load
+from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
+from sim_backend.parameters import PlantParameters
+from sim_backend.plant import COARSEST_STEP_S, Plant
+
+_WATCHDOG_FAULT = "watchdog: no command in time"
+
+
+class SimulatedDrive:
+    """A drive with one joint on it, both simulated.
+
+    Each exchange advances the plant by exactly one period under the command given, then measures: time passes in
+    exchanges alone. What the drive measures is in its samples; what really happens is in `plant.truth()`.
+
+    Args:
+        parameters: the joint, and what the drive measures of it.
+        seed: of the plant's own randomness; the same seed and commands give the same samples, bit for bit.
+        device: name used in messages.
+        watchdog_s: time without a command after which the drive switches itself off [s].
+
+    Raises:
+        ParameterError: the plant cannot be integrated.
+    """
+
+    def __init__(
+        self, parameters: PlantParameters, seed: int = 0, device: str = "sim", watchdog_s: float = 0.1
+    ) -> None:
+        self.plant = Plant(parameters, seed)
+        self._seed = seed
+        self._device = device
+        self._watchdog_s = watchdog_s
+        self._open = False
+        self._fault = ""
+        self._switch(Status.DISABLED)
+        self._steps = 0
+        self._duty_counts = parameters.supply.duty_counts
+        self._supply_v = parameters.supply.voltage_v
+        self._modes = {Mode.DUTY, Mode.CURRENT} if parameters.current_loop.present else {Mode.DUTY}
+
+    # the contract --------------------------------------------------------------------------------
+
+    def describe(self) -> Description:
+        """Identity and capabilities."""
+        parameters = self.plant.parameters
+        measured = {"time_s", "position_rad", "velocity_rad_s", "duty", "supply_v"}
+        if parameters.current_sensor.present:
+            measured.add("current_a")
+        if parameters.heat.present:
+            measured.add("temperature_c")
+        count_rad = 2.0 * pi / (parameters.encoder.counts_per_turn * parameters.gear.ratio)
+        return Description(
+            device=self._device,
+            vendor="friction-bench",
+            product="simulated joint",
+            firmware=version("friction-bench"),
+            serial=f"seed {self._seed}",
+            simulated=True,
+            modes=frozenset(self._modes),
+            measured=frozenset(measured),
+            resolution={
+                "position_rad": count_rad,
+                "velocity_rad_s": count_rad / parameters.encoder.speed_window_s,
+                "duty": 1.0 / self._duty_counts,
+            },
+            max_rate_hz=1.0 / COARSEST_STEP_S,
+            watchdog_s=self._watchdog_s,
+        )
+
+    def open(self, period_s: float) -> None:
+        """Connect. The power stage stays off.
+
+        Raises:
+            DriveConfigurationError: the period is shorter than a plant step, or longer than the watchdog waits.
+        """
+        if not COARSEST_STEP_S <= period_s < self._watchdog_s:
+            raise DriveConfigurationError(
+                self._device,
+                f"period {period_s:g} s: at least {COARSEST_STEP_S:g} s (a plant step) and less than "
+                f"{self._watchdog_s:g} s (the watchdog) is wanted; change the control period",
+            )
+        # the longest step that divides the period
+        self._steps = ceil(period_s / COARSEST_STEP_S - 1e-9)
+        self.plant.use_step(period_s / self._steps)
+        self._open = True
+        self._switch(Status.DISABLED)
+
+    def close(self) -> None:
+        """Power off and disconnect."""
+        self._switch(Status.DISABLED)
+        self._open = False
+
+    def enable(self, mode: Mode) -> None:
+        """Power the stage for a mode, with zero demand.
+
+        Raises:
+            DriveConfigurationError: the drive does not have the mode.
+            DriveStateError: the drive is not open, has a fault, or is stopping.
+        """
+        self._require_open("enable")
+        if mode not in self._modes:
+            names = ", ".join(sorted(known.value for known in self._modes))
+            raise DriveConfigurationError(self._device, f"mode '{mode.value}' is not one of its modes ({names})")
+        if self._status in (Status.FAULT, Status.QUICK_STOP):
+            raise DriveStateError(self._device, f"cannot be enabled in state {self._state_text()}; {self._next_step()}")
+        self._switch(Status.ENABLED, mode)
+
+    def disable(self) -> None:
+        """Power off; a fault stays until it is cleared."""
+        self._require_open("disable")
+        if self._status is not Status.FAULT:
+            self._switch(Status.DISABLED)
+
+    def quick_stop(self) -> None:
+        """Brake with shorted terminals, during the exchanges that follow, until the motor stands; then power off."""
+        self._require_open("quick_stop")
+        if self._status is Status.ENABLED:
+            self._switch(Status.QUICK_STOP)
+
+    def clear_fault(self) -> None:
+        """Acknowledge a fault. The drive is left disabled."""
+        self._require_open("clear_fault")
+        if self._status is Status.FAULT:
+            self._fault = ""
+            self._switch(Status.DISABLED)
+
+    def exchange(self, command: Command) -> Sample:
+        """Advance the plant by one period under a command, and measure.
+
+        Raises:
+            DriveFault: the drive has switched itself off, and motion was commanded.
+            DriveStateError: the drive is not open, or motion was commanded in a mode that is not enabled.
+            DriveConfigurationError: the command is not finite, or a duty is outside -1 .. 1.
+        """
+        mode, value = command
+        if mode is Mode.OFF:
+            self._require_open("exchange")
+            if self._status is Status.ENABLED:
+                self._switch(Status.DISABLED)
+            return self._exchange_unpowered()
+        if self._status is not Status.ENABLED or mode is not self._mode:
+            self._refuse_motion(mode)
+        if not isfinite(value):
+            raise DriveConfigurationError(self._device, f"{mode.value} demand {value}: a finite number is wanted")
+        if mode is Mode.CURRENT:
+            return self._advance(CURRENT, value, nan)
+        if not -1.0 <= value <= 1.0:
+            raise DriveConfigurationError(self._device, f"duty {value:g}: -1 .. 1 is allowed; limit the demand")
+        duty = round(value * self._duty_counts) / self._duty_counts
+        return self._advance(VOLTAGE, duty, duty)
+
+    # what only a simulation can do -----------------------------------------------------------------
+
+    def hang_load(self, load_kg: float, balanced: bool) -> None:
+        """Do the technician's work: hang a load on the arm, and put the arm at rest at angle 0.
+
+        Raises:
+            DriveStateError: the power stage is on; nobody reaches into a powered arm.
+            DriveConfigurationError: the load is negative or not finite.
+        """
+        if self._status in (Status.ENABLED, Status.QUICK_STOP):
+            raise DriveStateError(
+                self._device, f"a load can be hung only with power off, not {self._state_text()}; disable it"
+            )
+        try:
+            load = Load(mass_kg=load_kg, balanced=balanced)
+        except ParameterError as error:
+            raise DriveConfigurationError(self._device, str(error)) from error
+        self.plant.hang(load)
+
+    def idle(self, duration_s: float) -> None:
+        """Let time pass while nobody talks to the drive. After `watchdog_s` a powered drive switches itself off.
+
+        Args:
+            duration_s: simulated time [s], in whole periods.
+        """
+        self._require_open("idle")
+        period_s = self._steps * self.plant.step_s
+        stage, demand = self._held
+        for cycle in range(round(duration_s / period_s)):
+            if self._status in (Status.ENABLED, Status.QUICK_STOP) and cycle * period_s >= self._watchdog_s:
+                self._fault = _WATCHDOG_FAULT
+                self._switch(Status.FAULT)
+                stage, demand = self._held
+            self.plant.advance(stage, demand, self._steps)
+
+    # the inside ---------------------------------------------------------------------------------------
+
+    def _advance(self, stage: int, demand: float, duty: float) -> Sample:
+        self._held = stage, demand
+        position_rad, velocity_rad_s, current_a, temperature_c = self.plant.advance(stage, demand, self._steps).tolist()
+        return Sample(
+            self.plant.time_s, 0.0, position_rad, velocity_rad_s, duty, current_a,
+            self._supply_v, temperature_c, self._status,
+        )  # fmt: skip
+
+    def _exchange_unpowered(self) -> Sample:
+        if self._status is not Status.QUICK_STOP:
+            return self._advance(OPEN, 0.0, 0.0)
+        sample = self._advance(BRAKE, 0.0, 0.0)
+        if sample.velocity_rad_s == 0.0:
+            self._switch(Status.DISABLED)
+        return sample
+
+    def _switch(self, status: Status, mode: Mode = Mode.OFF) -> None:
+        self._status = status
+        self._mode = mode
+        # what the stage does until the next command
+        if status is Status.ENABLED:
+            self._held = (CURRENT if mode is Mode.CURRENT else VOLTAGE), 0.0
+        else:
+            self._held = (BRAKE if status is Status.QUICK_STOP else OPEN), 0.0
+
+    def _require_open(self, call: str) -> None:
+        if not self._open:
+            raise DriveStateError(self._device, f"{call} before open; call open(period_s) first")
+
+    def _refuse_motion(self, mode: Mode) -> None:
+        """Raise for a command that the state does not allow."""
+        self._require_open("exchange")
+        if self._status is Status.FAULT:
+            raise DriveFault(self._device, f"switched itself off: {self._fault}; {self._next_step()}")
+        raise DriveStateError(
+            self._device, f"a {mode.value} command in state {self._state_text()}; {self._next_step(mode)}"
+        )
+
+    def _state_text(self) -> str:
+        text = self._status.name.lower().replace("_", " ")
+        return f"'{text}' ({self._mode.value})" if self._status is Status.ENABLED else f"'{text}'"
+
+    def _next_step(self, mode: Mode = Mode.DUTY) -> str:
+        if self._status is Status.FAULT:
+            return "find the cause, then clear the fault"
+        if self._status is Status.QUICK_STOP:
+            return "exchange OFF commands until it stands"
+        return f"enable {mode.value} mode first"

@@ -1,0 +1,20 @@
+"""The one place where functions are handed to numba, with their types kept."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def jitted(function: Function) -> Function:
+    """Compile a small function of the kernel. LLVM inlines it into its callers."""
+    compiled: Function = numba.njit(function)
+    return compiled
+
+
+def jitted_and_cached(function: Function) -> Function:
+    """Compile a kernel on its first call and keep the machine code on disk for later starts."""
+    compiled: Function = numba.njit(function, cache=True)
+    return compiled

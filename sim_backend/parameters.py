@@ -1,0 +1,103 @@
+"""The whole plant: one component each for what it is made of. Mechanisms that are off have an amplitude of 0."""
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any
+
+from sim_backend.contact import Gear
+from sim_backend.coulomb_asymmetry import CoulombAsymmetry
+from sim_backend.drag import Drag
+from sim_backend.errors import ParameterError
+from sim_backend.friction import Friction
+from sim_backend.gravity import Arm, CentreOfMass, Load
+from sim_backend.heat import Heat
+from sim_backend.load_friction import LoadFriction
+from sim_backend.lubricant import Lubricant
+from sim_backend.motor import CurrentLoop, Motor, Supply
+from sim_backend.periodic_friction import PeriodicFriction
+from sim_backend.randomness import Scatter
+from sim_backend.sensing import CurrentSensor, Encoder, Latency
+from sim_backend.spring import Spring
+from sim_backend.viscous_asymmetry import ViscousAsymmetry
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantParameters:
+    """One geared joint.
+
+    `friction` is the drive side's (rotor and gear train), at the motor shaft; `arm_friction` the arm side's, at
+    the joint.
+    """
+
+    motor: Motor
+    supply: Supply
+    gear: Gear
+    arm: Arm
+    encoder: Encoder
+    load: Load = field(default_factory=Load)
+    friction: Friction = field(default_factory=Friction)
+    arm_friction: Friction = field(default_factory=Friction)
+    load_friction: LoadFriction = field(default_factory=LoadFriction)
+    current_loop: CurrentLoop = field(default_factory=CurrentLoop)
+    current_sensor: CurrentSensor = field(default_factory=CurrentSensor)
+    latency: Latency = field(default_factory=Latency)
+    scatter: Scatter = field(default_factory=Scatter)
+    heat: Heat = field(default_factory=Heat)
+    # mechanisms to hide from whoever explains the data
+    viscous_asymmetry: ViscousAsymmetry = field(default_factory=ViscousAsymmetry)
+    coulomb_asymmetry: CoulombAsymmetry = field(default_factory=CoulombAsymmetry)
+    drag: Drag = field(default_factory=Drag)
+    periodic_friction: PeriodicFriction = field(default_factory=PeriodicFriction)
+    spring: Spring = field(default_factory=Spring)
+    centre_of_mass: CentreOfMass = field(default_factory=CentreOfMass)
+    lubricant: Lubricant = field(default_factory=Lubricant)
+
+    def __post_init__(self) -> None:
+        if self.current_loop.present and not self.current_sensor.present:
+            raise ParameterError("CurrentLoop.present = True: a loop needs CurrentSensor.present = True to close on")
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any], base: "PlantParameters | None" = None) -> "PlantParameters":
+        """Return parameters from nested tables, as TOML gives them; what is left out comes from `base`.
+
+        Raises:
+            ParameterError: a key is unknown, a value is impossible, or, without a base, one is missing.
+        """
+        _know(values, [item.name for item in fields(cls)], "plant")
+        made = {name: _component(cls, name, table, base) for name, table in values.items()}
+        if base is not None:
+            return replace(base, **made)
+        missing = [name for name in ("motor", "supply", "gear", "arm", "encoder") if name not in made]
+        if missing:
+            raise ParameterError(
+                f"plant: the tables {', '.join(missing)} are missing; give them, or start from a preset"
+            )
+        return cls(**made)
+
+
+def _component(owner: type, name: str, table: Any, base: PlantParameters | None) -> Any:
+    kind = next(item.type for item in fields(owner) if item.name == name)
+    if not isinstance(table, Mapping) or not isinstance(kind, type) or not is_dataclass(kind):
+        raise ParameterError(f"plant.{name}: a table of parameters is wanted, found {table!r}")
+    _know(table, [item.name for item in fields(kind)], f"plant.{name}")
+    flags = [item.name for item in fields(kind) if item.type is bool]
+    for key in table:
+        if (key in flags) != isinstance(table[key], bool):
+            raise ParameterError(
+                f"plant.{name}.{key} = {table[key]!r}: {'true or false' if key in flags else 'a number'} is wanted"
+            )
+    try:
+        return kind(**table) if base is None else replace(getattr(base, name), **table)
+    except ParameterError as error:
+        raise ParameterError(f"plant.{name}: {error}") from error
+    except TypeError as error:  # a required parameter is missing; the message names it
+        raise ParameterError(f"plant.{name}: {str(error).split('() ')[-1]}") from error
+
+
+def _know(values: Mapping[str, Any], known: list[str], where: str) -> None:
+    for key in values:
+        if key not in known:
+            near = difflib.get_close_matches(key, known, 1)
+            hint = f"did you mean '{near[0]}'? " if near else ""
+            raise ParameterError(f"{where}: unknown key '{key}'; {hint}known are {', '.join(known)}")

@@ -1,0 +1,144 @@
+"""The plant: parameters, state and the compiled kernel behind four calls."""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_backend.errors import ParameterError
+from sim_backend.gravity import Load
+from sim_backend.kernel import advance, stored_energy
+from sim_backend.motor import OPEN
+from sim_backend.parameters import PlantParameters
+from sim_backend.record import pack
+from sim_backend.state import at_rest
+
+COARSEST_STEP_S = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """What no sensor of the drive shows. For tests and demonstrations only. Rotor angles are motor angles / ratio."""
+
+    time_s: float
+    rotor_rad: float
+    rotor_rad_s: float
+    arm_rad: float
+    arm_rad_s: float
+    current_a: float
+    contact_n_m: float
+    winding_c: float
+    housing_c: float
+
+
+@dataclass(frozen=True, slots=True)
+class Energy:
+    """Energy since the plant was made [J]: supplied = lost + stored (+ what a technician's hand put in)."""
+
+    supplied_j: float
+    lost_j: float
+    stored_j: float
+
+
+class Plant:
+    """One joint, with its load hung on, at rest at angle 0.
+
+    Args:
+        parameters: what it is made of.
+        seed: of its own randomness; the same seed gives the same bytes, however the steps are grouped into calls.
+        step_s: integration step [s].
+
+    Raises:
+        ParameterError: the step is too coarse for the teeth.
+    """
+
+    def __init__(self, parameters: PlantParameters, seed: int = 0, step_s: float = COARSEST_STEP_S) -> None:
+        self.parameters = parameters
+        self._packed = pack(parameters)
+        self._state = pack(at_rest(seed, parameters.heat.start_c))
+        self._measured = np.zeros(4)
+        self._origin_s = 0.0
+        self._origin_steps = 0
+        self.step_s = step_s
+        self.use_step(step_s)
+
+    def use_step(self, step_s: float) -> None:
+        """Go on with another integration step [s]; the drive's speed window starts afresh.
+
+        Raises:
+            ParameterError: the step is coarser than 0.1 ms, or too coarse for the teeth.
+        """
+        self._check_step(step_s)
+        self._origin_s = self.time_s
+        self._origin_steps = int(self._state["steps"][0])
+        self.step_s = step_s
+        self._window = max(round(self.parameters.encoder.speed_window_s / step_s), 1)
+        self._delay = round(self.parameters.latency.delay_s / step_s)
+        self._forget()
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time since the plant was made [s]."""
+        return self._origin_s + (int(self._state["steps"][0]) - self._origin_steps) * self.step_s
+
+    def advance(self, stage: int, demand: float, steps: int) -> NDArray[np.float64]:
+        """Advance at a constant demand and measure.
+
+        Args:
+            stage: OPEN, VOLTAGE, CURRENT or BRAKE of `motor`.
+            demand: duty -1 .. 1, or current [A], after the stage.
+            steps: number of integration steps.
+
+        Returns:
+            position [rad], velocity [rad/s], current [A], temperature [degC] as the drive measures them; shape (4,),
+            overwritten by the next call.
+        """
+        advance(
+            self._packed, self._state, self._history, self._measured,
+            stage, demand, steps, self.step_s, self._window, self._delay,
+        )  # fmt: skip
+        return self._measured
+
+    def hang(self, load: Load) -> None:
+        """Hang a load on the arm and put the arm at rest at angle 0, in the middle of the free play."""
+        self.parameters = replace(self.parameters, load=load)
+        self._packed = pack(self.parameters)
+        for name in ("rotor_rad", "rotor_rad_s", "arm_rad", "arm_rad_s", "current_a", "contact_n_m"):
+            self._state[name] = 0.0
+        self._forget()
+
+    def truth(self) -> Truth:
+        """Return the true state."""
+        state = self._state[0]
+        names = [name for name in Truth.__dataclass_fields__ if name != "time_s"]
+        return Truth(self.time_s, *(float(state[name]) for name in names))
+
+    def energy(self) -> Energy:
+        """Return the energy balance so far."""
+        state = self._state[0]
+        lost = ("electrical_loss_j", "friction_loss_j", "arm_friction_loss_j", "contact_loss_j")
+        return Energy(
+            float(state["supplied_j"]),
+            float(sum(state[name] for name in lost)),
+            stored_energy(self._packed, self._state),
+        )
+
+    def _check_step(self, step_s: float) -> None:
+        if not 0.0 < step_s <= COARSEST_STEP_S:
+            raise ParameterError(f"step = {step_s:g} [s]: must be above 0 and at most {COARSEST_STEP_S:g}")
+        gear, arm = self.parameters.gear, self.parameters.arm
+        rotor_kg_m2 = gear.ratio**2 * self.parameters.motor.rotor_inertia_kg_m2
+        fastest_rad_s = sqrt(gear.stiffness_n_m_rad * (1.0 / rotor_kg_m2 + 1.0 / arm.inertia_kg_m2))
+        if step_s * fastest_rad_s > 1.0:
+            raise ParameterError(
+                f"step = {step_s:g} [s]: too coarse for Gear.stiffness_n_m_rad = {gear.stiffness_n_m_rad:g} [N m/rad], "
+                f"which swings at {fastest_rad_s:.3g} rad/s; at most {1.0 / fastest_rad_s:.3g} s, or a softer gear"
+            )
+
+    def _forget(self) -> None:
+        """Fill the drive's memory with what it would see at rest here."""
+        self._history = np.zeros((self._window + self._delay + 1, 2))
+        self.advance(OPEN, 0.0, 0)
+        position = self._state["rotor_rad"][0] * self.parameters.gear.ratio
+        self._history[:, 0] = np.floor(position * self.parameters.encoder.counts_per_turn / (2.0 * np.pi))

@@ -1,0 +1,66 @@
+"""The plant's own randomness: friction differs from stop to stop and along the path, and the sensor is noisy."""
+
+from dataclasses import dataclass
+from math import cos, exp, log, pi, sqrt
+
+import numpy as np
+
+from sim_backend.component import Component, quantity
+from sim_backend.jit import jitted
+from sim_backend.state import State
+
+_INCREMENT = np.uint64(0x9E3779B97F4A7C15)
+_MIX_A = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_B = np.uint64(0x94D049BB133111EB)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scatter(Component):
+    """How far drive-side dry friction strays from its nominal value.
+
+    Static friction is drawn anew at each stop. Coulomb friction wanders along the path as a stationary
+    Gauss-Markov process in the distance travelled.
+    """
+
+    static_fraction: float = quantity("1, standard deviation", at_least=0, at_most=0.2, default=0.0)
+    coulomb_fraction: float = quantity("1, standard deviation", at_least=0, at_most=0.2, default=0.0)
+    coulomb_length_rad: float = quantity("rad of the joint", above=0, default=0.05)
+
+
+@jitted
+def uniform(state: State) -> float:
+    """Return a number in (0, 1] from the state's own stream (splitmix64: Steele, Lea, Flood 2014)."""
+    state.random = state.random + _INCREMENT
+    z = state.random
+    z = (z ^ (z >> np.uint64(30))) * _MIX_A
+    z = (z ^ (z >> np.uint64(27))) * _MIX_B
+    z = z ^ (z >> np.uint64(31))
+    return (float(z >> np.uint64(11)) + 1.0) * (1.0 / 9007199254740992.0)
+
+
+@jitted
+def normal(state: State) -> float:
+    """Return a standard normal number (Box and Muller)."""
+    return sqrt(-2.0 * log(uniform(state))) * cos(2.0 * pi * uniform(state))
+
+
+@jitted
+def draw_static_factor(state: State, scatter: Scatter) -> float:
+    """Return this stop's static friction over the nominal one, within three standard deviations."""
+    if scatter.static_fraction == 0.0:
+        return 1.0
+    return 1.0 + scatter.static_fraction * min(max(normal(state), -3.0), 3.0)
+
+
+@jitted
+def wander(state: State, scatter: Scatter, distance_rad: float) -> None:
+    """Move the Coulomb factor on by a distance travelled [rad of the joint]; drawn 16 times per correlation length."""
+    if scatter.coulomb_fraction == 0.0:
+        return
+    state.wandered_rad += distance_rad
+    if state.wandered_rad < scatter.coulomb_length_rad / 16.0:
+        return
+    kept = exp(-state.wandered_rad / scatter.coulomb_length_rad)
+    fresh = scatter.coulomb_fraction * sqrt(1.0 - kept * kept) * normal(state)
+    state.coulomb_factor = max(1.0 + kept * (state.coulomb_factor - 1.0) + fresh, 0.2)
+    state.wandered_rad = 0.0

@@ -1,0 +1,36 @@
+"""The plant's state."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class State:
+    """All that the kernel remembers from step to step. Angles and speeds are the joint's: motor's / ratio."""
+
+    random: np.uint64  # the plant's own stream, see randomness.py
+    steps: np.int64  # taken since the plant was made
+    rotor_rad: float = 0.0
+    rotor_rad_s: float = 0.0
+    arm_rad: float = 0.0
+    arm_rad_s: float = 0.0
+    current_a: float = 0.0
+    contact_n_m: float = 0.0  # torque of the teeth on the arm, mean over the last step
+    static_factor: float = 1.0  # this stop's static friction over the nominal one
+    coulomb_factor: float = 1.0  # Coulomb friction here over the nominal one
+    wandered_rad: float = 0.0  # way since that was last drawn
+    winding_c: float = 25.0
+    housing_c: float = 25.0
+    # energy since the plant was made
+    supplied_j: float = 0.0
+    electrical_loss_j: float = 0.0
+    friction_loss_j: float = 0.0
+    arm_friction_loss_j: float = 0.0
+    contact_loss_j: float = 0.0
+
+
+def at_rest(seed: int, temperature_c: float) -> State:
+    """Return the state at rest at angle 0."""
+    random = np.random.SeedSequence(seed).generate_state(1, np.uint64)[0]
+    return State(random, np.int64(0), winding_c=temperature_c, housing_c=temperature_c)
