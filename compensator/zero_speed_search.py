@@ -10,8 +10,9 @@ What "just moved" means. The sensor sits on the motor side, before the backlash,
 motion is first only a *departure*: the sensor left its place by more than `onset_rad`. The current is then held.
 If the sensor comes to rest again, the motor crossed its free play or the teeth gave way elastically, and the ramp
 goes on from there. Only when it travels further than free play allows (`clear_travel_rad`, counted from the start of
-the ramp) has the joint itself moved, and the breakaway current is that of the last departure, halfway between the
-last step that held and the step that did not.
+the ramp) has the joint itself moved. The breakaway current is that of the last departure, back-dated to where it
+began: halfway between the last step through which the sensor stood still and the step after it. (Motion begins far
+slower than it goes on, and by the time `onset_rad` is reached the ramp has gone a few steps further.)
 """
 
 from collections.abc import Callable
@@ -117,7 +118,7 @@ class SearchState(NamedTuple):
     command_a: float = nan  # of the present step
     step_cycles: int = 0  # in the present step
     step_sum_a: float = 0.0  # of the current over the present step
-    held_a: float = nan  # mean current of the last step that held the joint
+    held_a: float = nan  # mean current of the last step through which the sensor stood still
     departure_a: float = nan  # NaN while the joint stands
     max_current_a: float = nan
     min_current_a: float = nan
@@ -228,7 +229,7 @@ def _hold_step(settings: SearchSettings, state: SearchState, reading: SearchRead
     if abs(reading.position_rad - state.anchor_rad) > settings.onset_rad:
         if isnan(state.held_a):
             return _fail(state, Reason.MOVED_EARLY)
-        # the back-EMF term of eq. (3) is not to be trusted in the cycle of the departure: take the command's change
+        # the step after the one that held: by the command's change, since eq. (3) is for steady speed
         step_a = _RAMP_SIGN[state.phase] * settings.current_step_a
         return state._replace(departure_a=state.held_a + step_a / 2, phase_cycles=0), state.command_a
     if cycles < settings.step_cycles:
@@ -236,7 +237,9 @@ def _hold_step(settings: SearchSettings, state: SearchState, reading: SearchRead
     command_a = state.command_a + _RAMP_SIGN[state.phase] * settings.current_step_a
     if abs(command_a) > settings.ceiling_a:
         return _fail(state, Reason.CEILING)
-    return state._replace(command_a=command_a, step_cycles=0, step_sum_a=0.0, held_a=total_a / cycles), command_a
+    stands = abs(reading.position_rad - state.anchor_rad) <= settings.still_rad
+    held_a = total_a / cycles if stands else state.held_a
+    return state._replace(command_a=command_a, step_cycles=0, step_sum_a=0.0, held_a=held_a), command_a
 
 
 def _watch_departure(settings: SearchSettings, state: SearchState, reading: SearchReading) -> Step:
@@ -256,6 +259,9 @@ def _watch_departure(settings: SearchSettings, state: SearchState, reading: Sear
 
 
 def _break_away(state: SearchState) -> Step:
-    found = "max_current_a" if state.phase is Phase.RAISING else "min_current_a"
     following = _AFTER[state.phase]
-    return state._replace(phase=following, phase_cycles=0, still_cycles=0, **{found: state.departure_a}), None
+    if state.phase is Phase.RAISING:
+        state = state._replace(max_current_a=state.departure_a)
+    else:
+        state = state._replace(min_current_a=state.departure_a)
+    return state._replace(phase=following, phase_cycles=0, still_cycles=0), None

@@ -1,0 +1,120 @@
+"""The bench configuration (`bench.toml`): rig, drive, limits, servo, search, store."""
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, ValidationError
+
+from bench.errors import ConfigurationError
+from bench.limits import Limits
+from bench.quantities import quantity
+from bench.rig import Rig, Section
+from bench.servo import ServoSettings
+from bench.validation import problems
+
+PRESETS = resources.files("bench") / "presets"
+DEFAULT_PRESET = "paper"
+
+
+class SimulatedDriveSettings(Section):
+    """A drive and a joint in software."""
+
+    kind: Literal["sim"] = "sim"
+    preset: str = quantity("paper", "", "Plant that is simulated")
+    seed: int = quantity(1, "", "Seed of the plant's scatter and noise; the same seed gives the same samples", ge=0)
+    plant: dict[str, Any] = Field(default_factory=dict, description="Plant parameters that differ from the preset")
+
+
+class ControlSettings(Section):
+    """The control loop."""
+
+    period_s: float = quantity(0.005, "s", "Control period", ge=0.0005, le=0.1)
+
+
+class MotionSettings(Section):
+    """How the joint is moved between set points."""
+
+    speed_rad_s: float = quantity(3.0, "rad/s", "Top speed of a move", gt=0, allow_inf_nan=False)
+    acceleration_rad_s2: float = quantity(30.0, "rad/s2", "Acceleration of a move", gt=0, allow_inf_nan=False)
+    settled_cycles: int = quantity(20, "cycles", "Cycles without motion after which the joint is settled", ge=1)
+    settle_timeout_s: float = quantity(10.0, "s", "Longest wait for the joint to settle", gt=0, allow_inf_nan=False)
+
+
+class SearchSettings(Section):
+    """The zero-speed search (Fig. 5 of the paper)."""
+
+    current_step_a: float = quantity(0.004, "A", "One step of the ramp", gt=0, allow_inf_nan=False)
+    step_s: float = quantity(0.02, "s", "Length of one step", gt=0, allow_inf_nan=False)
+    onset_counts: float = quantity(4.0, "", "Encoder counts that make a departure", ge=2, allow_inf_nan=False)
+    free_play_rad: float | None = quantity(
+        None, "rad", "Travel without the joint moving; the rig's backlash where left out", ge=0, allow_inf_nan=False
+    )
+    excursion_rad: float = quantity(0.15, "rad", "Farthest from the set point", gt=0, allow_inf_nan=False)
+    ceiling_a: float = quantity(1.5, "A", "Largest current of the ramp, either way", gt=0, allow_inf_nan=False)
+    creep_timeout_s: float = quantity(3.0, "s", "Longest creep without an outcome", gt=0, allow_inf_nan=False)
+
+
+class StoreSettings(Section):
+    """Where the trials are kept."""
+
+    url: str = quantity("sqlite:///bench.sqlite", "", "Database address")
+
+
+class BenchConfiguration(Section):
+    """One bench."""
+
+    name: str = Field(description="Name of the bench")
+    rig: Rig
+    drive: SimulatedDriveSettings = SimulatedDriveSettings()
+    control: ControlSettings = ControlSettings()
+    limits: Limits = Limits()
+    motion: MotionSettings = MotionSettings()
+    servo: ServoSettings = ServoSettings()
+    search: SearchSettings = SearchSettings()
+    store: StoreSettings = StoreSettings()
+
+
+def read_configuration(path: Path) -> BenchConfiguration:
+    """Read `bench.toml`. Its `rig` is a table, or the path of a `rig.toml` beside it.
+
+    Raises:
+        ConfigurationError: naming the file, each key, its value, what is allowed and the unit.
+    """
+    values = _read_toml(path)
+    rig = values.get("rig")
+    if isinstance(rig, str):
+        values["rig"] = _read_toml(path.parent / rig)
+    return parse_configuration(values, str(path))
+
+
+def default_configuration() -> BenchConfiguration:
+    """The simulated bench of the paper, which needs no file."""
+    return preset_configuration(DEFAULT_PRESET)
+
+
+def preset_configuration(name: str) -> BenchConfiguration:
+    """A configuration that comes with the package."""
+    file = PRESETS / f"{name}.toml"
+    if not file.is_file():
+        known = ", ".join(sorted(item.name.removesuffix(".toml") for item in PRESETS.iterdir()))
+        raise ConfigurationError(f"there is no preset '{name}'; known are {known}")
+    return parse_configuration(tomllib.loads(file.read_text(encoding="utf-8")), f"preset {name}")
+
+
+def parse_configuration(values: dict[str, Any], source: str) -> BenchConfiguration:
+    """A configuration from nested tables; `source` is named in errors."""
+    try:
+        return BenchConfiguration.model_validate(values)
+    except ValidationError as error:
+        raise ConfigurationError("\n".join(f"{source}: {problem}" for problem in problems(error))) from error
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"{path}: is no TOML: {error}") from error

@@ -1,0 +1,1 @@
+"""The kinds of experiment: what a user starts, one kind per file."""

@@ -1,0 +1,177 @@
+"""The joint in the hand of its position servo: the parts that procedures are composed of, with `yield from`."""
+
+from collections.abc import Generator, Iterable
+from dataclasses import dataclass
+from math import ceil, nan, pi
+from typing import TypeVar
+
+from bench.configuration import BenchConfiguration
+from bench.errors import ConfigurationError, ExperimentError
+from bench.experiments.profile import SetPoint, Trapezoid
+from bench.loop import OFF, Action, Reading
+from bench.servo import PositionServo
+from compensator import zero_speed_search
+from compensator.zero_speed_search import SearchReading, SearchSettings, SearchState
+from drivers.contract import Command, Mode
+
+Result = TypeVar("Result")
+Part = Generator[Action, Reading, Result]
+
+
+@dataclass(frozen=True, slots=True)
+class Steady:
+    """The joint at rest in the dead-band.
+
+    Attributes:
+        position_rad: where it came to rest.
+        current_a: mean motor current of the settled cycles, friction and all.
+    """
+
+    position_rad: float
+    current_a: float
+
+
+class Joint:
+    """Parts of a procedure that move the joint.
+
+    Args:
+        configuration: of the bench; its rig must know gear ratio and encoder counts.
+
+    Raises:
+        ConfigurationError: the rig leaves out what is needed.
+    """
+
+    def __init__(self, configuration: BenchConfiguration) -> None:
+        self._motion = configuration.motion
+        self._period_s = configuration.control.period_s
+        self._dead_band_rad = configuration.servo.dead_band_rad
+        self._servo = PositionServo(configuration.servo, self._period_s)
+        self._still_rad = 1.5 * resolution_rad(configuration)
+        self._search_settings = search_settings(configuration)
+        self._reading: Reading | None = None
+        self._command_a = 0.0
+
+    def wake(self) -> Part[Reading]:
+        """Take the first reading with the power off; the servo starts from there."""
+        self._servo.reset()
+        self._reading = yield Action(OFF)
+        return self._reading
+
+    def follow(self, set_points: Iterable[SetPoint]) -> Part[list[Reading]]:
+        """Track one set point per cycle; the readings, one for each."""
+        readings = []
+        for target_rad, velocity_rad_s in set_points:
+            readings.append((yield from self._servo_cycle(target_rad, velocity_rad_s)))
+        return readings
+
+    def move(self, target_rad: float) -> Part[None]:
+        """Go to an angle with the speed and acceleration of the configuration."""
+        profile = Trapezoid(
+            self._last().sample.position_rad, target_rad, self._motion.speed_rad_s, self._motion.acceleration_rad_s2
+        )
+        cycles = ceil(profile.duration_s / self._period_s)
+        yield from self.follow(profile.at((cycle + 1) * self._period_s) for cycle in range(cycles))
+
+    def settle(self, target_rad: float) -> Part[Steady]:
+        """Wait until the joint rests in the dead-band.
+
+        Raises:
+            ExperimentError: it does not, in the time that the configuration gives it.
+        """
+        rest_rad, currents_a = nan, [0.0]
+        for _ in range(ceil(self._motion.settle_timeout_s / self._period_s)):
+            reading = yield from self._servo_cycle(target_rad)
+            position_rad = reading.sample.position_rad
+            in_place = abs(position_rad - target_rad) <= self._dead_band_rad
+            if not in_place or not abs(position_rad - rest_rad) <= self._still_rad:
+                rest_rad = position_rad
+                currents_a.clear()
+            currents_a.append(reading.current_a)
+            if len(currents_a) > self._motion.settled_cycles and in_place:
+                return Steady(position_rad, sum(currents_a) / len(currents_a))
+        raise ExperimentError(
+            f"the joint did not settle within {self._dead_band_rad:.4g} rad of {target_rad:.4g} rad in "
+            f"{self._motion.settle_timeout_s:g} s; it stands at {self._last().sample.position_rad:.4g} rad. "
+            "Look at the servo's gains and the load"
+        )
+
+    def search(self, set_point_rad: float) -> Part[SearchState]:
+        """The zero-speed search of Fig. 5, round an angle at which the joint is settled."""
+        settings = self._search_settings
+        state = zero_speed_search.begin(set_point_rad)
+        reading = self._last()
+        while not state.finished:
+            search_reading = SearchReading(reading.sample.position_rad, reading.current_a, self._command_a)
+            phase = state.phase
+            state, ramp_a = zero_speed_search.advance(settings, state, search_reading)
+            event = None if state.phase is phase else ("search", state.phase.value)
+            if ramp_a is None:
+                reading = yield from self._servo_cycle(set_point_rad, event=event)
+            else:
+                self._command_a = ramp_a
+                reading = yield Action(Command(Mode.CURRENT, ramp_a), set_point_rad, event=event)
+                self._reading = reading
+        return state
+
+    def reflect(self, target_rad: float, load_current_a: float, cycles: int = 20) -> Part[None]:
+        """Hold an angle, and record the compensated current that the master would be given."""
+        for _ in range(cycles):
+            yield from self._servo_cycle(target_rad, load_current_a=load_current_a)
+
+    def _servo_cycle(
+        self,
+        target_rad: float,
+        velocity_rad_s: float = 0.0,
+        load_current_a: float = nan,
+        event: tuple[str, str] | None = None,
+    ) -> Part[Reading]:
+        reading = self._last()
+        self._command_a = self._servo.current_a(
+            target_rad, reading.sample.position_rad, reading.velocity_rad_s, velocity_rad_s
+        )
+        self._reading = yield Action(Command(Mode.CURRENT, self._command_a), target_rad, load_current_a, event)
+        return self._reading
+
+    def _last(self) -> Reading:
+        if self._reading is None:
+            raise ExperimentError("the procedure moves the joint before its first reading; begin with wake()")
+        return self._reading
+
+
+def resolution_rad(configuration: BenchConfiguration) -> float:
+    """The joint angle of one encoder count [rad]."""
+    counts, ratio = configuration.rig.sensor.counts_per_turn, configuration.rig.gear.ratio
+    if counts is None or ratio is None:
+        raise ConfigurationError(
+            f"rig '{configuration.rig.name}': sensor.counts_per_turn and gear.ratio are needed to tell motion from "
+            "rest; add them to the rig"
+        )
+    return 2.0 * pi / (counts * ratio)
+
+
+def search_settings(configuration: BenchConfiguration) -> SearchSettings:
+    """The search in control cycles and encoder counts.
+
+    Raises:
+        ConfigurationError: the rig leaves out counts, ratio or backlash.
+    """
+    search, period_s = configuration.search, configuration.control.period_s
+    free_play_rad = configuration.rig.gear.backlash_rad if search.free_play_rad is None else search.free_play_rad
+    if free_play_rad is None:
+        raise ConfigurationError(
+            f"rig '{configuration.rig.name}': gear.backlash_rad [rad] is needed to tell free play from motion; add it "
+            "to the rig, or give search.free_play_rad"
+        )
+    return SearchSettings(
+        dead_band_rad=configuration.servo.dead_band_rad,
+        still_rad=1.5 * resolution_rad(configuration),
+        onset_rad=search.onset_counts * resolution_rad(configuration),
+        free_play_rad=free_play_rad,
+        excursion_rad=search.excursion_rad,
+        current_step_a=search.current_step_a,
+        step_cycles=max(1, round(search.step_s / period_s)),
+        ceiling_a=search.ceiling_a,
+        settled_cycles=configuration.motion.settled_cycles,
+        settle_timeout_cycles=ceil(configuration.motion.settle_timeout_s / period_s),
+        creep_timeout_cycles=ceil(search.creep_timeout_s / period_s),
+    )

@@ -1,0 +1,70 @@
+"""What every kind of experiment offers: parameters, a plan of trials, a refusal before motion, a summary."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from bench.configuration import BenchConfiguration
+from bench.loop import OutcomeName, Procedure
+from compensator.lab.recording import Condition
+
+
+class Parameters(BaseModel):
+    """Parameters of an experiment. One definition for REST, form and command line."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TrialPlan:
+    """One trial to come.
+
+    Attributes:
+        name: unique within its experiment.
+        conditions: what is held constant; the keys carry units.
+        procedure: makes a fresh procedure.
+        load_kg, balanced: what has to hang on the arm.
+    """
+
+    name: str
+    conditions: dict[str, Condition]
+    procedure: Callable[[], Procedure]
+    load_kg: float
+    balanced: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class FinishedTrial:
+    """One trial that was run."""
+
+    name: str
+    conditions: dict[str, Condition]
+    outcome: OutcomeName
+    results: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class ExperimentKind:
+    """One kind of experiment.
+
+    Attributes:
+        name: as typed ("load-sweep").
+        title: as shown ("Load sweep").
+        summary: one or two sentences: what is done, and what it tells.
+        parameters: the pydantic model of its parameters.
+        plan: the trials, in order.
+        refuse: raises `LimitError` or `ConfigurationError` before motion when the bench must not or cannot do it.
+        duration_s: estimate of the time it takes in real time [s].
+        summarise: results of the whole from those of its trials; JSON-able, units in the names.
+    """
+
+    name: str
+    title: str
+    summary: str
+    parameters: type[Parameters]
+    plan: Callable[[Any, BenchConfiguration], list[TrialPlan]]
+    refuse: Callable[[Any, BenchConfiguration], None]
+    duration_s: Callable[[Any, BenchConfiguration], float]
+    summarise: Callable[[Any, list[FinishedTrial]], dict[str, Any]]

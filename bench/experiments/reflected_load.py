@@ -1,0 +1,30 @@
+"""The load that a motor current reflects, by the torque constant, the gear ratio and the lever of the rig."""
+
+from math import sin
+
+from bench.errors import ConfigurationError
+from bench.rig import Rig
+
+STANDARD_GRAVITY_M_S2 = 9.80665
+LEAST_LEVER = 0.1  # of the arm's length; below, gravity has no moment worth dividing by
+
+
+def reflected_load_kg(load_current_a: float, angle_rad: float, rig: Rig) -> float | None:
+    """Mass at the tip [kg] that a friction-compensated current holds up at an angle; None near angle 0.
+
+        m g L sin(q) = I Kt N - (arm's own moment) g sin(q)
+
+    Raises:
+        ConfigurationError: the rig leaves out the torque constant, the gear ratio or the arm's length.
+    """
+    torque_constant, ratio, length_m = rig.motor.torque_constant_n_m_a, rig.gear.ratio, rig.arm.length_m
+    if torque_constant is None or ratio is None or length_m is None:
+        raise ConfigurationError(
+            f"rig '{rig.name}': a reflected load needs motor.torque_constant_n_m_a, gear.ratio and arm.length_m; add "
+            "what is missing to the rig"
+        )
+    if abs(sin(angle_rad)) < LEAST_LEVER:
+        return None
+    own_moment_kg_m = (rig.arm.mass_kg or 0.0) * (rig.arm.centre_of_mass_m or 0.0)
+    moment_kg_m = load_current_a * torque_constant * ratio / (STANDARD_GRAVITY_M_S2 * sin(angle_rad))
+    return (moment_kg_m - own_moment_kg_m) / length_m

@@ -1,0 +1,37 @@
+"""All kinds of experiment, by name."""
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from bench.errors import ParameterError, UnknownKindError
+from bench.experiments import excitation, load_sweep, steps
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.validation import problems
+
+KINDS: dict[str, ExperimentKind] = {kind.name: kind for kind in (steps.KIND, load_sweep.KIND, excitation.KIND)}
+
+__all__ = ["KINDS", "ExperimentKind", "FinishedTrial", "Parameters", "TrialPlan", "find_kind", "parse_parameters"]
+
+
+def find_kind(name: str) -> ExperimentKind:
+    """The kind of that name.
+
+    Raises:
+        UnknownKindError: naming those that exist.
+    """
+    if name not in KINDS:
+        raise UnknownKindError(f"there is no experiment '{name}'; known are {', '.join(KINDS)}")
+    return KINDS[name]
+
+
+def parse_parameters(kind: ExperimentKind, values: dict[str, Any]) -> Parameters:
+    """Parameters from what a user gave; what is left out has its default.
+
+    Raises:
+        ParameterError: naming each parameter, its value, what is allowed and the unit.
+    """
+    try:
+        return kind.parameters.model_validate(values)
+    except ValidationError as error:
+        raise ParameterError(f"{kind.name}: " + "; ".join(problems(error))) from error

@@ -1,0 +1,89 @@
+"""Repeated steps from angle 0 to one angle, under one load (Fig. 4 of the paper)."""
+
+from functools import partial
+from typing import Any
+
+from bench.configuration import BenchConfiguration
+from bench.experiments.at_rest import RIGHT_ANGLE_RAD, SECONDS, measure_at_rest
+from bench.experiments.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.reflected_load import reflected_load_kg
+from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.quantities import quantity
+
+
+class StepsParameters(Parameters):
+    """Parameters of repeated steps."""
+
+    load_kg: float = quantity(0.1, "kg", "Load at the tip of the arm", ge=0)
+    angle_rad: float = quantity(RIGHT_ANGLE_RAD, "rad", "Angle that is stepped to; 0 is vertically down")
+    repeats: int = quantity(25, "", "Number of steps", ge=1, le=1000)
+
+
+def _plan(parameters: StepsParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
+    return [
+        TrialPlan(
+            name=f"step-{repeat:03d}",
+            conditions=conditions(
+                configuration,
+                load_kg=parameters.load_kg,
+                balanced=False,
+                angle_rad=parameters.angle_rad,
+                repeat=repeat,
+            ),
+            procedure=partial(measure_at_rest, configuration, parameters.angle_rad),
+            load_kg=parameters.load_kg,
+        )
+        for repeat in range(1, parameters.repeats + 1)
+    ]
+
+
+def _refuse(parameters: StepsParameters, configuration: BenchConfiguration) -> None:
+    refuse_load("load_kg", parameters.load_kg, configuration)
+    refuse_angles("angle_rad", [0.0, parameters.angle_rad], configuration.search.excursion_rad, configuration)
+    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
+    refuse_currents(configuration)
+    reflected_load_kg(0.0, parameters.angle_rad, configuration.rig)
+
+
+def _duration_s(parameters: StepsParameters, _configuration: BenchConfiguration) -> float:
+    return SECONDS * parameters.repeats
+
+
+def _summarise(_parameters: StepsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+    steady_a = _values(trials, "steady_current_a")
+    load_a = _values(trials, "load_current_a")
+    reflected_kg = _values(trials, "reflected_load_kg")
+    summary: dict[str, Any] = {"steps": len(trials), "estimates": len(load_a)}
+    for name, values in (
+        ("steady_current_a", steady_a),
+        ("load_current_a", load_a),
+        ("reflected_load_kg", reflected_kg),
+    ):
+        if values:
+            summary |= {
+                f"min_{name}": min(values),
+                f"max_{name}": max(values),
+                f"spread_{name}": max(values) - min(values),
+                f"mean_{name}": sum(values) / len(values),
+            }
+    if load_a and summary["spread_load_current_a"] > 0.0:
+        summary["spread_ratio"] = summary["spread_steady_current_a"] / summary["spread_load_current_a"]
+    return summary
+
+
+def _values(trials: list[FinishedTrial], name: str) -> list[float]:
+    return [trial.results[name] for trial in trials if trial.results.get(name) is not None]
+
+
+KIND = ExperimentKind(
+    name="steps",
+    title="Repeated steps",
+    summary="Steps the joint to one angle again and again. The steady current differs from step to step, because "
+    "friction holds the joint; the friction-compensated current does not.",
+    parameters=StepsParameters,
+    plan=_plan,
+    refuse=_refuse,
+    duration_s=_duration_s,
+    summarise=_summarise,
+)
