@@ -1,0 +1,19 @@
+"""Recording sets: the one format in which trials enter and leave."""
+
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.mapping import Mapping, read_mapping
+from bench.recording_set.read import read_recording_set
+from bench.recording_set.recording_set import RecordingSet
+from bench.recording_set.transfer import export_experiment, import_recording_set
+from bench.recording_set.write import write_recording_set
+
+__all__ = [
+    "Mapping",
+    "RecordingSet",
+    "RecordingSetError",
+    "export_experiment",
+    "import_recording_set",
+    "read_mapping",
+    "read_recording_set",
+    "write_recording_set",
+]

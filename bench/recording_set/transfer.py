@@ -1,0 +1,78 @@
+"""Recording sets into the store, and experiments out of it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from bench.provenance import software
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.recording_set import RecordingSet
+from bench.recording_set.write import write_recordings
+from bench.rig import Rig
+from bench.store import Store, Trial
+from bench.store.records import OUTCOMES
+from bench.validation import problems
+from compensator.lab.recording import Recording
+
+IMPORT_KIND = "import"
+FEWEST_ROWS = 2  # fewer make no recording
+
+
+def import_recording_set(store: Store, recording_set: RecordingSet, name: str) -> int:
+    """Add a recording set to the store as one experiment: all of it, or nothing.
+
+    Args:
+        store: where it goes.
+        recording_set: checked already, since it could be read.
+        name: under which its user will look for it.
+
+    Returns:
+        The experiment's id.
+    """
+    parameters = {"name": name, "recording_set": recording_set.name}
+    rig = recording_set.rig.model_dump(mode="json", exclude_none=True)
+    recordings = (_with_outcome(recording) for recording in recording_set.recordings)
+    return store.add_imported(IMPORT_KIND, parameters, {"software": software()}, rig, recordings)
+
+
+def export_experiment(store: Store, experiment_id: int, path: Path) -> None:
+    """Write an experiment as a recording set: a folder, or a zip where the name ends in .zip.
+
+    A trial that did not complete carries its outcome and reason as tags. Trials of fewer than two rows,
+    such as refused ones, are no recordings and are left out.
+
+    Raises:
+        NotFoundError: no such experiment.
+        RecordingSetError: it has no trial with rows, or the place cannot be written.
+    """
+    experiment = store.experiment(experiment_id)
+    where = f"experiment {experiment_id}"
+    try:
+        rig = Rig.model_validate(experiment.rig)
+    except ValidationError as error:
+        raise RecordingSetError(where, "its rig cannot be written: " + "; ".join(problems(error))) from error
+    trials = [trial for trial in store.trials(experiment_id) if trial.rows >= FEWEST_ROWS]
+    if not trials:
+        raise RecordingSetError(where, f"has no trial of at least {FEWEST_ROWS} rows; there is nothing to write")
+    write_recordings(rig, _recordings(store, trials), path)
+
+
+def _recordings(store: Store, trials: list[Trial]) -> Iterator[Recording]:
+    for trial in trials:
+        conditions = dict(trial.conditions)
+        if trial.outcome != "completed":
+            conditions |= {"outcome": trial.outcome, "reason": trial.reason}
+        yield Recording(trial.name, trial.kind, conditions, store.samples(trial.id), store.events(trial.id))
+
+
+def _with_outcome(recording: Recording) -> tuple[Recording, str, str]:
+    """A recording, and the outcome and reason that an export put among its conditions."""
+    conditions = dict(recording.conditions)
+    outcome = conditions.get("outcome")
+    if outcome not in OUTCOMES or outcome in ("running", "completed"):
+        return recording, "completed", ""
+    reason = str(conditions.pop("reason", ""))
+    del conditions["outcome"]
+    bare = Recording(recording.name, recording.kind, conditions, recording.channels, recording.events)
+    return bare, str(outcome), reason
