@@ -10,11 +10,11 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def jitted(function: Function) -> Function:
     """Compile a small function of the kernel. LLVM inlines it into its callers."""
-    compiled: Function = numba.njit(function)
+    compiled: Function = numba.njit(function, error_model="numpy")
     return compiled
 
 
 def jitted_and_cached(function: Function) -> Function:
     """Compile a kernel on its first call and keep the machine code on disk for later starts."""
-    compiled: Function = numba.njit(function, cache=True)
+    compiled: Function = numba.njit(function, cache=True, error_model="numpy")
     return compiled

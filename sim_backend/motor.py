@@ -1,6 +1,7 @@
 """Permanent-magnet DC motor on a PWM stage."""
 
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 from sim_backend.component import Component, quantity
 from sim_backend.jit import jitted
@@ -43,37 +44,71 @@ class CurrentLoop(Component):
     time_constant_s: float = quantity("s", above=0, default=5e-4)
 
 
+class Electrics(Protocol):
+    """The components that make the motor current; the plant's parameters have them."""
+
+    @property
+    def motor(self) -> Motor: ...  # noqa: D102
+    @property
+    def supply(self) -> Supply: ...  # noqa: D102
+    @property
+    def current_loop(self) -> CurrentLoop: ...  # noqa: D102
+
+
+class CurrentLine(NamedTuple):
+    """Motor current over a step: constant - slope * w, w the motor's mean speed [rad/s].
+
+    Affine in the speed, so that the back-EMF damps the rotor implicitly, however small R is.
+    """
+
+    constant_a: float
+    slope_a_s_rad: float
+
+
 @jitted
 def current_line(
-    stage: int,
-    demand: float,
-    current_a: float,
-    speed_rad_s: float,
-    motor: Motor,
-    supply: Supply,
-    loop: CurrentLoop,
-    step_s: float,
-) -> tuple[float, float]:
-    """Return (i0, g): over the coming step the current is i0 - g * w, w the motor's mean speed [rad/s].
+    stage: int, demand: float, before_a: float, speed_rad_s: float, parameters: Electrics, step_s: float
+) -> CurrentLine:
+    """Return the current over the coming step. Backward Euler in the inductance.
 
-    Affine in the speed, so that the back-EMF damps the rotor implicitly, however small R is. Backward Euler in L.
+    Args:
+        stage: OPEN, VOLTAGE, CURRENT or BRAKE.
+        demand: duty or current [A], after the stage.
+        before_a: current at the start of the step [A].
+        speed_rad_s: motor speed at the start of the step [rad/s].
+        parameters: of the plant.
+        step_s: length of the step [s].
     """
+    motor, supply = parameters.motor, parameters.supply
     if stage == OPEN:
-        return 0.0, 0.0
-    inertia_ohm = motor.inductance_h / step_s
-    if stage == CURRENT:
-        tracked_a = current_a + (demand - current_a) * step_s / (step_s + loop.time_constant_s)
-        needed_v = (
-            motor.resistance_ohm * tracked_a
-            + motor.torque_constant_n_m_a * speed_rad_s
-            + inertia_ohm * (tracked_a - current_a)
-        )
-        if abs(needed_v) <= supply.voltage_v:
-            return tracked_a, 0.0
-        voltage_v = supply.voltage_v if needed_v > 0.0 else -supply.voltage_v
-    elif stage == VOLTAGE:
+        return CurrentLine(0.0, 0.0)
+    reactance_ohm = motor.inductance_h / step_s
+    voltage_v = 0.0
+    if stage == VOLTAGE:
         voltage_v = demand * supply.voltage_v
-    else:
-        voltage_v = 0.0
-    impedance_ohm = motor.resistance_ohm + inertia_ohm
-    return (voltage_v + inertia_ohm * current_a) / impedance_ohm, motor.torque_constant_n_m_a / impedance_ohm
+    elif stage == CURRENT:
+        wanted_a = before_a + (demand - before_a) * step_s / (step_s + parameters.current_loop.time_constant_s)
+        needed_v = motor.torque_constant_n_m_a * speed_rad_s + reactance_ohm * (wanted_a - before_a)
+        needed_v += motor.resistance_ohm * wanted_a
+        if abs(needed_v) <= supply.voltage_v:
+            return CurrentLine(wanted_a, 0.0)
+        voltage_v = supply.voltage_v if needed_v > 0.0 else -supply.voltage_v
+    impedance_ohm = motor.resistance_ohm + reactance_ohm
+    return CurrentLine(
+        (voltage_v + reactance_ohm * before_a) / impedance_ohm, motor.torque_constant_n_m_a / impedance_ohm
+    )
+
+
+@jitted
+def electrical_energy(
+    stage: int, before_a: float, current_a: float, speed_rad_s: float, motor: Motor, step_s: float
+) -> tuple[float, float]:
+    """Return (drawn from the supply, lost in the winding) over a step [J]."""
+    if stage == OPEN:
+        return 0.0, 0.5 * motor.inductance_h * before_a * before_a
+    change_a = current_a - before_a
+    voltage_v = motor.resistance_ohm * current_a + motor.torque_constant_n_m_a * speed_rad_s
+    voltage_v += motor.inductance_h * change_a / step_s
+    # backward Euler takes half the square of the change with it
+    lost_j = step_s * motor.resistance_ohm * current_a * current_a + 0.5 * motor.inductance_h * change_a * change_a
+    return step_s * voltage_v * current_a, lost_j

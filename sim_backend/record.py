@@ -5,6 +5,7 @@ kernel without touching any signature. Compiled functions are annotated with the
 """
 
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -18,24 +19,23 @@ def pack(component: Any) -> Records:
 
     Leaves keep their type where it is int64 or uint64; every other number or flag becomes a float64.
     """
-    packed: Records = np.zeros(1, dtype=_layout(component))
+    packed: Records = np.zeros(1, dtype=_layout(type(component)))
     packed[0] = _values(component)
     return packed
 
 
-def _layout(component: Any) -> np.dtype[np.void]:
-    return np.dtype([(name, _leaf_type(value)) for name, value in _items(component)])
+# one object per type: numba knows a record by the identity of its dtype, and compares field by field otherwise
+@cache
+def _layout(kind: Any) -> np.dtype[np.void]:
+    return np.dtype([(item.name, _leaf(item.type)) for item in fields(kind)])
 
 
-def _leaf_type(value: Any) -> Any:
-    if is_dataclass(value):
-        return _layout(value)
-    return value.dtype if isinstance(value, np.integer) else np.float64
+def _leaf(kind: Any) -> Any:
+    if is_dataclass(kind):
+        return _layout(kind)
+    return kind if issubclass(kind, np.integer) else np.float64
 
 
 def _values(component: Any) -> tuple[Any, ...]:
-    return tuple(_values(value) if is_dataclass(value) else value for _, value in _items(component))
-
-
-def _items(component: Any) -> list[tuple[str, Any]]:
-    return [(item.name, getattr(component, item.name)) for item in fields(component)]
+    values = (getattr(component, item.name) for item in fields(component))
+    return tuple(_values(value) if is_dataclass(value) else value for value in values)

@@ -1,0 +1,138 @@
+"""One integration step: every mechanism asked once, then both bodies moved.
+
+An implicit midpoint rule in the speeds: positions move with the mean of old and new speed, linear torques (teeth,
+viscous friction, back-EMF) act on that mean, dry friction is set-valued (`stick_slip`), torques of position (gravity,
+spring) are taken half a step ahead. So every torque does exactly the work that the kinetic energy gains, stiff teeth
+never blow up, and smooth motion is second order in the step.
+"""
+
+from typing import NamedTuple
+
+from sim_backend.contact import contact_energy, flank, is_pull, penetration
+from sim_backend.gravity import STANDARD_GRAVITY_M_S2, arm_inertia, gravity_torque, moment_kg_m
+from sim_backend.heat import warm
+from sim_backend.jit import jitted
+from sim_backend.motor import CurrentLine, current_line, electrical_energy
+from sim_backend.parameters import PlantParameters
+from sim_backend.randomness import draw_static_factor, wander
+from sim_backend.resistance import arm_side, drive_side
+from sim_backend.spring import spring_torque
+from sim_backend.state import State
+from sim_backend.stick_slip import Body, coupled_speeds, free_speeds
+
+
+class Motion(NamedTuple):
+    """What comes of a step: speeds at its end [rad/s], and the torque of the teeth on the arm during it [N m]."""
+
+    rotor_rad_s: float
+    arm_rad_s: float
+    contact_n_m: float
+
+
+@jitted
+def step(parameters: PlantParameters, state: State, stage: int, demand: float, step_s: float) -> None:
+    """Advance the state by one step at a constant demand (duty or current [A], after the stage)."""
+    ratio = parameters.gear.ratio
+    line = current_line(stage, demand, state.current_a, ratio * state.rotor_rad_s, parameters, step_s)
+    rotor = _rotor(parameters, state, line, step_s)
+    arm = _arm(parameters, state, step_s)
+    motion = _move(parameters, state, rotor, arm, step_s)
+    mean_r = 0.5 * (state.rotor_rad_s + motion.rotor_rad_s)
+    mean_a = 0.5 * (state.arm_rad_s + motion.arm_rad_s)
+    current_a = line.constant_a - line.slope_a_s_rad * ratio * mean_r
+
+    # where the energy went
+    supplied_j, electrical_j = electrical_energy(
+        stage, state.current_a, current_a, ratio * mean_r, parameters.motor, step_s
+    )
+    friction_j = _friction_loss(rotor, -motion.contact_n_m, motion.rotor_rad_s, mean_r, step_s)
+    state.supplied_j += supplied_j
+    state.electrical_loss_j += electrical_j
+    state.friction_loss_j += friction_j
+    state.arm_friction_loss_j += _friction_loss(arm, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
+    state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
+
+    # what friction and temperature remember
+    if motion.rotor_rad_s == 0.0 and state.rotor_rad_s != 0.0:
+        state.static_factor = draw_static_factor(state, parameters.scatter)
+    wander(state, parameters.scatter, abs(step_s * mean_r))
+    if parameters.heat.present:
+        warm(state, parameters.heat, electrical_j, friction_j, step_s)
+
+    state.rotor_rad += step_s * mean_r
+    state.arm_rad += step_s * mean_a
+    state.rotor_rad_s = motion.rotor_rad_s
+    state.arm_rad_s = motion.arm_rad_s
+    state.contact_n_m = motion.contact_n_m
+    state.current_a = current_a
+    state.steps += 1
+
+
+@jitted
+def _rotor(parameters: PlantParameters, state: State, line: CurrentLine, step_s: float) -> Body:
+    """Return the rotor's share: motor torque, with the back-EMF as viscous friction, and the drive side's friction."""
+    ratio, speed = parameters.gear.ratio, state.rotor_rad_s
+    strength = ratio * parameters.motor.torque_constant_n_m_a
+    lower, upper, viscous = drive_side(parameters, state, _weight(parameters))
+    damping = viscous + strength * ratio * line.slope_a_s_rad
+    inertia = ratio * ratio * parameters.motor.rotor_inertia_kg_m2
+    impulse = inertia * speed + step_s * (strength * line.constant_a - 0.5 * damping * speed)
+    return Body(inertia + 0.5 * step_s * damping, impulse, step_s * lower, step_s * upper, viscous)
+
+
+@jitted
+def _arm(parameters: PlantParameters, state: State, step_s: float) -> Body:
+    """Return the arm's share: gravity and spring, half a step ahead, and the arm side's friction."""
+    speed = state.arm_rad_s
+    middle_rad = state.arm_rad + 0.5 * step_s * speed
+    pull = gravity_torque(moment_kg_m(parameters.arm, parameters.load), parameters.centre_of_mass, middle_rad)
+    pull += spring_torque(parameters.spring, middle_rad)
+    dry, viscous = arm_side(parameters, state, _weight(parameters))
+    inertia = arm_inertia(parameters.arm, parameters.load)
+    impulse = inertia * speed + step_s * (pull - 0.5 * viscous * speed)
+    return Body(inertia + 0.5 * step_s * viscous, impulse, step_s * dry, step_s * dry, viscous)
+
+
+@jitted
+def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, step_s: float) -> Motion:
+    """Return the motion: through the teeth where they touch and push, each body on its own where they do not."""
+    gear = parameters.gear
+    twist_rad = state.rotor_rad - state.arm_rad
+    side = flank(gear, twist_rad)
+    if side != 0.0:
+        # spring and damper at mid-step: a known part, and one that follows the new speeds
+        rate = 0.25 * step_s * gear.stiffness_n_m_rad + 0.5 * gear.damping_n_m_s_rad
+        slip_rad_s = state.rotor_rad_s - state.arm_rad_s
+        known_n_m = gear.stiffness_n_m_rad * penetration(gear, side, twist_rad) + rate * slip_rad_s
+        rotor_rad_s, arm_rad_s = coupled_speeds(rotor, arm, step_s * rate, step_s * known_n_m, state.arm_rad_s)
+        contact_n_m = known_n_m + rate * (rotor_rad_s - arm_rad_s)
+        if not is_pull(gear, side, contact_n_m):
+            return Motion(rotor_rad_s, arm_rad_s, contact_n_m)
+    rotor_rad_s, arm_rad_s = free_speeds(rotor, arm)
+    return Motion(rotor_rad_s, arm_rad_s, 0.0)
+
+
+@jitted
+def _weight(parameters: PlantParameters) -> float:
+    """Return the weight hung on the axis [N]."""
+    return STANDARD_GRAVITY_M_S2 * parameters.load.mass_kg
+
+
+@jitted
+def _friction_loss(body: Body, contact_n_m: float, new_rad_s: float, mean_rad_s: float, step_s: float) -> float:
+    """Return what friction took from a body [J]: dry (the impulse that is missing) and viscous."""
+    dry_impulse = body.impulse + step_s * contact_n_m - body.diagonal * new_rad_s
+    return dry_impulse * mean_rad_s + step_s * body.viscous * mean_rad_s * mean_rad_s
+
+
+@jitted
+def _contact_loss(
+    parameters: PlantParameters, state: State, contact_n_m: float, slip_rad_s: float, step_s: float
+) -> float:
+    """Return what the teeth took [J]: damping while they push; what is left in the spring when they let go."""
+    if contact_n_m != 0.0:
+        return step_s * parameters.gear.damping_n_m_s_rad * slip_rad_s * slip_rad_s
+    twist_rad = state.rotor_rad - state.arm_rad
+    if flank(parameters.gear, twist_rad) == 0.0:
+        return 0.0
+    return contact_energy(parameters.gear, twist_rad) - contact_energy(parameters.gear, twist_rad + step_s * slip_rad_s)
