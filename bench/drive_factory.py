@@ -31,17 +31,14 @@ def is_simulated(configuration: BenchConfiguration) -> bool:
 
 def _simulated(settings: SimulatedDriveSettings) -> Equipment:
     # imported here: a bench with a real drive needs neither the physics nor its compiler
-    from sim_backend import presets
     from sim_backend.drive import SimulatedDrive
     from sim_backend.errors import ParameterError
     from sim_backend.parameters import PlantParameters
+    from sim_backend.presets import by_name
 
-    preset = getattr(presets, settings.preset, None)
-    if preset is None or settings.preset.startswith("_"):
-        raise ConfigurationError(f"drive.preset: there is no simulated plant '{settings.preset}'")
     try:
-        parameters = PlantParameters.from_dict(settings.plant, base=preset())
+        parameters = PlantParameters.from_dict(settings.plant, base=by_name(settings.preset))
+        drive = SimulatedDrive(parameters, seed=settings.seed)
     except ParameterError as error:
-        raise ConfigurationError(f"drive.{error}") from error
-    drive = SimulatedDrive(parameters, seed=settings.seed)
+        raise ConfigurationError(f"simulated drive: {error}") from error
     return Equipment(drive, SimulatedTechnician(drive))

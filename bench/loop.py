@@ -7,7 +7,7 @@ procedure. However a run ends, it ends in power-off, and the outcome says why.
 import threading
 from collections.abc import Generator
 from dataclasses import dataclass, field, replace
-from math import isnan, nan
+from math import ceil, isnan, nan
 from typing import Any, Literal, NamedTuple
 
 from bench.clock import Clock
@@ -36,6 +36,7 @@ RECORDED: tuple[str, ...] = (
 """The channels of a row, in order; all from `compensator.lab.channels`."""
 
 OFF = Command(Mode.OFF)
+BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
 OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
 
 
@@ -94,6 +95,9 @@ class Outcome:
     overruns: int = 0
 
 
+_BRAKING = Action(OFF)
+
+
 class _StopRequested(Exception):
     """Raised inside the loop when the stop event is set."""
 
@@ -145,7 +149,9 @@ class ControlLoop:
             ending = self._run_guarded(procedure, recorder, stop)
         finally:
             # also reached by what is no `Exception`: never leave the drive powered, nor the recorder running
-            ending = _with_notes(ending, self._power_off(brake=ending.outcome not in ("completed", "refused")))
+            if ending.outcome not in ("completed", "refused"):
+                ending = _with_notes(ending, self._brake(recorder, ending.reason))
+            ending = _with_notes(ending, self._power_off())
             procedure.close()
             ending = self._close(recorder, ending)
         return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
@@ -267,23 +273,35 @@ class ControlLoop:
             return self._velocity_rad_s
         return (sample.position_rad - previous.position_rad) / elapsed_s
 
-    def _power_off(self, brake: bool) -> list[str]:
-        """Take the power away, whatever happens meanwhile, and say what went wrong.
-
-        Each step is tried even when the one before failed or was interrupted; the last one twice, since a second
-        Ctrl-C may fall into it.
-        """
-        steps = [self._drive.disable]
-        if brake and self._mode is not Mode.OFF:
-            steps.insert(0, self._drive.quick_stop)
-        notes = []
-        for step in steps:
-            for _ in range(2):
-                try:
-                    step()
+    def _brake(self, recorder: Recorder, known: str) -> list[str]:
+        """Let the drive brake the joint until it stands, and record it; says what went wrong and is not known yet."""
+        if self._mode is Mode.OFF:
+            return []
+        try:
+            self._drive.quick_stop()
+            for _ in range(ceil(BRAKING_S / self._period_s)):
+                self._clock.wait()
+                sample = self._drive.exchange(OFF)
+                reading, estimate_a = self._read(sample)
+                self.last_reading = reading
+                if recorder.error is None:
+                    recorder.row(_row(_BRAKING, reading, estimate_a))
+                if sample.status is not Status.QUICK_STOP:
                     break
-                except BaseException as error:  # the power has to go
-                    notes.append(f"{step.__name__} failed: {str(error) or type(error).__name__}")
+        except BaseException as error:  # a second Ctrl-C, too: on to power-off
+            what = str(error) or type(error).__name__
+            return [] if what in known else [f"quick stop failed: {what}"]
+        return []
+
+    def _power_off(self) -> list[str]:
+        """Take the power away, and say what went wrong. Tried again when it fails or is interrupted."""
+        notes = []
+        for _ in range(3):
+            try:
+                self._drive.disable()
+                break
+            except BaseException as error:  # the power has to go, whatever happens meanwhile
+                notes.append(f"power-off failed: {str(error) or type(error).__name__}")
         self._mode = Mode.OFF
         return notes
 

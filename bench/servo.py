@@ -94,3 +94,9 @@ class CurrentServo:
         """Duty that gives a current [A], eq. (3) inverted, within -1 .. 1."""
         wanted = motor.duty(self._motor, current_a, velocity_rad_s * self._ratio, self._supply_v(sample))
         return min(max(wanted, -1.0), 1.0)
+
+
+def current_servo(rig: Rig) -> CurrentServo | None:
+    """The current servo of a rig; None where it lacks what eq. (3) needs, as drives with a current mode can do."""
+    known = (rig.motor.resistance_ohm, rig.motor.back_emf_v_s_rad, rig.gear.ratio)
+    return None if None in known else CurrentServo(rig)

@@ -104,7 +104,7 @@ def test_each_limit_trips(wrong, message):
     assert message in outcome.reason
     assert outcome.cycles == 10
     assert "quick_stop" in drive.calls
-    assert len(rows_of(sink)["time_s"]) == 10  # the sample that tripped is on record
+    assert len(rows_of(sink)["time_s"]) == 11  # the sample that tripped is on record, and that of the braking
 
 
 @pytest.mark.parametrize(("wrong", "message"), [trip for trip in TRIPS if "tracking" not in trip[1]])
@@ -126,12 +126,16 @@ def test_stop_is_honoured_within_one_cycle():
     drive = FakeDrive(before=lambda cycle: stop.set() if cycle == 7 else None)
     outcome, _ = run(drive, push(1000), stop)
     assert (outcome.outcome, outcome.reason) == ("stopped", "stop was asked for")
-    assert drive.exchanges == 8
+    assert drive.commands[8:] == [OFF]  # the braking
 
 
 def raise_at(cycle, error):
+    """Raise once, as a signal does, or for good, as a fault does."""
+    raised = []
+
     def before(now):
-        if now == cycle:
+        if now >= cycle and not (raised and isinstance(error, KeyboardInterrupt)):
+            raised.append(now)
             raise error
 
     return before
@@ -217,7 +221,7 @@ def test_power_off_is_tried_again_when_it_is_interrupted():
     drive.disable = interrupted_once
     outcome, _ = run(drive, push(1000))
     assert outcome.outcome == "stopped"
-    assert "KeyboardInterrupt" in outcome.reason
+    assert "power-off failed: KeyboardInterrupt" in outcome.reason
     assert len(attempts) == 2
 
 

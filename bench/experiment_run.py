@@ -1,0 +1,161 @@
+"""One experiment under way: its trials one after the other, in a thread of its own, and how it ended."""
+
+import threading
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.drive_factory import Equipment
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.live import LiveBuffer
+from bench.loop import RECORDED, ControlLoop, Outcome, OutcomeName, Reading
+from bench.recorder import Sink
+from bench.store import Store
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What a user asked for."""
+
+    kind: str
+    parameters: dict[str, Any]
+    operator: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """Everything that an experiment needs, checked; the drive is open and off."""
+
+    kind: ExperimentKind
+    parameters: Parameters
+    plans: list[TrialPlan]
+    duration_s: float
+    equipment: Equipment
+    loop: ControlLoop
+
+
+@dataclass(slots=True)
+class ExperimentRun:
+    """One experiment, from the request to the end of its record.
+
+    Attributes:
+        request: what was asked for.
+        experiment_id: of its record, once there is one.
+        outcome, reason: "running" until the record is closed.
+        trial_index: the trial that runs, from 0.
+    """
+
+    request: Request
+    experiment_id: int | None = None
+    outcome: OutcomeName = "running"
+    reason: str = ""
+    trial_index: int = 0
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _stop_reason: str = "stop was asked for"
+    _prepared: Prepared | None = None
+    _finished: list[FinishedTrial] = field(default_factory=list)
+
+    def stop(self, reason: str) -> None:
+        """Stop within one control cycle; also an experiment that is only about to begin."""
+        if not self._stop.is_set():
+            self._stop_reason = reason or self._stop_reason
+            self._stop.set()
+
+    def end(self, outcome: OutcomeName, reason: str) -> None:
+        """Say how it ended; the outcome last, so that who sees it sees the reason too."""
+        self.reason = reason
+        self.outcome = outcome
+
+    @property
+    def reading(self) -> Reading | None:
+        """The last one."""
+        return self._prepared.loop.last_reading if self._prepared is not None else None
+
+    @property
+    def trial_count(self) -> int:
+        """Trials of the experiment."""
+        return len(self._prepared.plans) if self._prepared is not None else 0
+
+    @property
+    def progress(self) -> float:
+        """Share that is done, 0 .. 1; within a trial by the estimated duration."""
+        prepared, reading = self._prepared, self.reading
+        if self.outcome == "completed":
+            return 1.0
+        if prepared is None or not prepared.plans:
+            return 0.0
+        trial_s = max(prepared.duration_s / len(prepared.plans), 1e-3)
+        share = min(reading.time_s / trial_s, 0.99) if reading is not None else 0.0
+        return (self.trial_index + share) / len(prepared.plans)
+
+    def carry_out(self, prepared: Prepared, store: Store, live: LiveBuffer) -> None:
+        """Run the trials, close the drive, close the record. Never raises: how it ended is in `outcome`."""
+        self._prepared = prepared
+        outcome, reason = self._run_trials(prepared, store, live)
+        try:
+            prepared.equipment.drive.close()
+        except Exception as error:
+            outcome, reason = _worse(outcome, reason, f"closing the drive: {error}")
+        results: dict[str, Any] = {}
+        try:
+            results = prepared.kind.summarise(prepared.parameters, self._finished)
+        except Exception as error:
+            outcome, reason = _worse(outcome, reason, f"no summary: {str(error) or type(error).__name__}")
+        try:
+            store.finish_experiment(self._id(), outcome, reason, results)
+        except Exception as error:
+            outcome, reason = _worse(outcome, reason, f"the record could not be closed: {error}")
+        self.end(outcome, reason)
+
+    def _run_trials(self, prepared: Prepared, store: Store, live: LiveBuffer) -> tuple[OutcomeName, str]:
+        for index, plan in enumerate(prepared.plans):
+            self.trial_index = index
+            if self._stop.is_set():
+                return "stopped", self._stop_reason
+            try:
+                prepared.equipment.technician.hang_load(plan.load_kg, plan.balanced)
+                outcome = self._run_trial(plan, prepared.loop, store, live)
+            except Exception as error:
+                return "failed", f"trial '{plan.name}': {str(error) or type(error).__name__}"
+            if outcome.outcome != "completed":
+                return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
+        return "completed", ""
+
+    def _run_trial(self, plan: TrialPlan, loop: ControlLoop, store: Store, live: LiveBuffer) -> Outcome:
+        writer = store.begin_trial(self._id(), plan.name, self.request.kind, plan.conditions, RECORDED)
+        live.begin_trial()
+        outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
+        if outcome.outcome == "stopped" and self._stop_reason:
+            outcome = replace(outcome, reason=self._stop_reason)
+        self._finished.append(FinishedTrial(plan.name, plan.conditions, outcome.outcome, outcome.results))
+        results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
+        writer.finish(outcome.outcome, outcome.reason, results)
+        return outcome
+
+    def _id(self) -> int:
+        if self.experiment_id is None:
+            raise RuntimeError("an experiment was carried out before its record was begun")
+        return self.experiment_id
+
+
+class _WatchedSink:
+    """Commits to the store, then shows to whoever watches."""
+
+    def __init__(self, sink: Sink, live: LiveBuffer) -> None:
+        self._sink = sink
+        self._live = live
+
+    def append(self, rows: NDArray[np.float64]) -> None:
+        self._sink.append(rows)
+        self._live.append(rows)
+
+    def event(self, time_s: float, name: str, detail: str) -> None:
+        self._sink.event(time_s, name, detail)
+
+
+def _worse(outcome: OutcomeName, reason: str, problem: str) -> tuple[OutcomeName, str]:
+    """An ending with one more problem; a completed run is not, then."""
+    return ("failed" if outcome == "completed" else outcome), "; ".join(filter(None, (reason, problem)))

@@ -1,0 +1,205 @@
+"""Runs one experiment at a time: start, watch, stop."""
+
+import threading
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from bench.clock import VirtualClock, WallClock
+from bench.configuration import BenchConfiguration
+from bench.drive_factory import is_simulated, make_equipment
+from bench.errors import BenchError, BusyError, ParameterError
+from bench.experiment_run import ExperimentRun, Prepared, Request
+from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
+from bench.limits import Guard, Limits
+from bench.live import LiveBuffer, LiveRows
+from bench.loop import RECORDED, ControlLoop, OutcomeName, Reading
+from bench.provenance import provenance
+from bench.servo import current_servo
+from bench.store import Store
+from drivers.contract import Description
+from drivers.errors import DriveError
+
+Pace = Literal["real-time", "fast"]
+PACES: tuple[Pace, ...] = ("real-time", "fast")
+
+
+@dataclass(frozen=True, slots=True)
+class RunnerStatus:
+    """What the bench is doing, or did last.
+
+    Attributes:
+        experiment_id: None before the first experiment.
+        kind: "" before the first experiment.
+        outcome: "running" while it runs; "" before the first.
+        reason: why it ended.
+        trial_index: the trial that runs, from 0.
+        trial_count: trials of the experiment.
+        progress: share that is done, 0 .. 1.
+        reading: the last one.
+        description: the drive, once it has been opened.
+        limits: of the bench.
+    """
+
+    experiment_id: int | None
+    kind: str
+    outcome: OutcomeName | Literal[""]
+    reason: str
+    trial_index: int
+    trial_count: int
+    progress: float
+    reading: Reading | None
+    description: Description | None
+    limits: Limits
+
+
+class Runner:
+    """The bench in operation.
+
+    Args:
+        configuration: of the bench.
+        store: where trials are kept. Rows are written to it from a thread of the control loop's own.
+    """
+
+    def __init__(self, configuration: BenchConfiguration, store: Store) -> None:
+        self.configuration = configuration
+        self._store = store
+        self._starting = threading.Lock()
+        self._thread: threading.Thread | None = None
+        self._run: ExperimentRun | None = None
+        self._description: Description | None = None
+        self._live = LiveBuffer(RECORDED)
+        self._closed = False
+
+    def start(
+        self, kind: str, parameters: dict[str, Any], operator: str = "", note: str = "", pace: Pace | None = None
+    ) -> int:
+        """Start an experiment; it moves the joint.
+
+        Args:
+            kind: its name in the registry.
+            parameters: what differs from the defaults.
+            operator: who stands at the bench.
+            note: kept with the record.
+            pace: "real-time", or "fast" as a simulated drive allows and then has by default.
+
+        Returns:
+            The id of its record.
+
+        Raises:
+            BusyError: another one runs, or the runner is closed.
+            UnknownKindError: no such kind.
+            ParameterError, LimitError, ConfigurationError: it is refused; that is on record too.
+            DriveError: the drive cannot be opened; that is on record too.
+        """
+        found = find_kind(kind)
+        with self._starting:
+            self._refuse_when_busy()
+            run = ExperimentRun(Request(kind, parameters, operator, note))
+            self._run = run  # from here on `stop` reaches it
+            try:
+                return self._launch(run, found, pace)
+            except BaseException as error:
+                if run.outcome == "running":
+                    run.end("failed", str(error) or type(error).__name__)
+                raise
+
+    def status(self) -> RunnerStatus:
+        """What the bench is doing, or did last. Never waits."""
+        run, description, limits = self._run, self._description, self.configuration.limits
+        if run is None:
+            return RunnerStatus(None, "", "", "", 0, 0, 0.0, None, description, limits)
+        outcome, reason = run.outcome, run.reason
+        return RunnerStatus(
+            run.experiment_id, run.request.kind, outcome, reason if outcome != "running" else "", run.trial_index,
+            run.trial_count, run.progress, run.reading, description, limits,
+        )  # fmt: skip
+
+    def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
+        """Rows of the running trial after the one of a number, as they are recorded; at most the newest `limit`."""
+        return self._live.since(after_row, limit)
+
+    def stop(self, reason: str = "") -> None:
+        """Stop what runs: within one control cycle the joint is braked, then powered off.
+
+        Never waits, and takes no lock of the runner: safe in a signal handler.
+        """
+        run = self._run
+        if run is not None and run.outcome == "running":
+            run.stop(reason)
+
+    def wait(self, timeout_s: float | None = None) -> bool:
+        """Wait until nothing runs; False where that takes longer than `timeout_s`."""
+        thread = self._thread
+        if thread is not None:
+            thread.join(timeout_s)
+        return thread is None or not thread.is_alive()
+
+    def close(self) -> None:
+        """Stop what runs, and wait until the joint is off. Nothing can be started afterwards."""
+        self._closed = True
+        self.stop("the bench was closed")
+        with self._starting:  # a start that was under way has heard of the stop
+            self.wait()
+
+    def _refuse_when_busy(self) -> None:
+        if self._closed:
+            raise BusyError("the bench is closed; nothing can be started")
+        if not self.wait(0.0) and self._run is not None:
+            name = f"experiment {self._run.experiment_id} ({self._run.request.kind})"
+            raise BusyError(f"{name} is running; wait for its end, or stop it")
+
+    def _launch(self, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None) -> int:
+        try:
+            prepared = self._prepare(run.request, kind, pace)
+        except (BenchError, DriveError) as error:
+            # failed starts are on record too
+            run.experiment_id = self._begin(run.request, run.request.parameters)
+            run.end("refused" if isinstance(error, BenchError) else "failed", str(error))
+            self._store.finish_experiment(run.experiment_id, run.outcome, run.reason, {})
+            raise
+        try:
+            run.experiment_id = self._begin(run.request, prepared.parameters.model_dump(mode="json"))
+        except BaseException:
+            prepared.equipment.drive.close()
+            raise
+        self._thread = threading.Thread(
+            target=run.carry_out, args=(prepared, self._store, self._live), name=f"experiment {run.experiment_id}"
+        )
+        self._thread.start()
+        return run.experiment_id
+
+    def _prepare(self, request: Request, kind: ExperimentKind, pace: Pace | None) -> Prepared:
+        """Check everything that can be checked before motion, and open the drive."""
+        configuration = self.configuration
+        clock = WallClock() if self._is_real_time(pace) else VirtualClock()
+        parameters = parse_parameters(kind, request.parameters)
+        kind.refuse(parameters, configuration)
+        plans = kind.plan(parameters, configuration)
+        duration_s = kind.duration_s(parameters, configuration)
+        servo = current_servo(configuration.rig)
+        equipment = make_equipment(configuration)
+        period_s = configuration.control.period_s
+        equipment.drive.open(period_s)
+        self._description = equipment.drive.describe()
+        loop = ControlLoop(equipment.drive, clock, Guard(configuration.limits), period_s, servo)
+        return Prepared(kind, parameters, plans, duration_s, equipment, loop)
+
+    def _is_real_time(self, pace: Pace | None) -> bool:
+        simulated = is_simulated(self.configuration)
+        if pace is not None and pace not in PACES:
+            raise ParameterError(f"pace is '{pace}'; allowed is {' or '.join(PACES)}")
+        if pace == "fast" and not simulated:
+            raise ParameterError("pace is 'fast'; a real drive runs in real time")
+        return pace == "real-time" or not simulated
+
+    def _begin(self, request: Request, parameters: dict[str, Any]) -> int:
+        configuration, simulated = self.configuration, is_simulated(self.configuration)
+        return self._store.begin_experiment(
+            request.kind,
+            parameters,
+            "simulated" if simulated else "real",
+            provenance(configuration, self._description, configuration.drive.seed if simulated else None),
+            configuration.rig.model_dump(mode="json", exclude_none=True),
+            request.operator,
+            request.note,
+        )
