@@ -5,12 +5,13 @@ from bench.recording_set.mapping import Mapping, read_mapping
 from bench.recording_set.read import read_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.transfer import export_experiment, import_recording_set
-from bench.recording_set.write import write_recording_set
+from bench.recording_set.write import csv_chunks, write_recording_set
 
 __all__ = [
     "Mapping",
     "RecordingSet",
     "RecordingSetError",
+    "csv_chunks",
     "export_experiment",
     "import_recording_set",
     "read_mapping",

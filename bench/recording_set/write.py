@@ -63,7 +63,7 @@ def _write(rig: Rig, recordings: Iterable[Recording], path: Path, *, zipped: boo
         for recording in recordings:
             name = _file_name(recording.name, taken)
             with open_file(name) as file:
-                _write_recording(file, recording)
+                file.writelines(csv_chunks(recording))
             entries.append(TrialEntry(name, recording.name, recording.kind, recording.conditions, len(recording)))
         with open_file(TRIALS_FILE) as file:
             write_trials_csv(file, entries)
@@ -109,17 +109,18 @@ def _file_name(name: str, taken: set[str]) -> str:
     return file
 
 
-def _write_recording(file: IO[str], recording: Recording) -> None:
+def csv_chunks(recording: Recording) -> Iterator[str]:
+    """The CSV of a recording, in pieces of `CHUNK_ROWS` lines: the text of one piece is in memory at a time."""
     names = list(recording.channels)
     time_s = recording.channels["time_s"]
     cells = _event_cells(recording.events, time_s)
-    file.write(",".join([*names, EVENT_COLUMN] if cells else names) + "\n")
+    yield ",".join([*names, EVENT_COLUMN] if cells else names) + "\n"
     for start in range(0, len(recording), CHUNK_ROWS):
         rows = slice(start, start + CHUNK_ROWS)
         columns = [_texts(recording.channels[name][rows]) for name in names]
         if cells:
             columns.append([_quoted(cells.get(row, "")) for row in range(*rows.indices(len(recording)))])
-        file.writelines(f"{line}\n" for line in map(",".join, zip(*columns, strict=True)))
+        yield "".join(f"{line}\n" for line in map(",".join, zip(*columns, strict=True)))
 
 
 def _texts(values: FloatArray) -> list[str]:

@@ -1,0 +1,77 @@
+"""The commands and the options that stand before them."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from bench.cli import demo, effects, experiments, recordings, run, serve, service, study, trials
+from bench.cli.bench_session import BenchSession
+from bench.cli.exit_codes import HELP, errors_as_messages
+from bench.cli.output import say
+
+
+class _Group(TyperGroup):
+    """Errors of every command end here."""
+
+    def invoke(self, ctx: Any) -> Any:
+        with errors_as_messages():
+            return super().invoke(ctx)
+
+
+app = typer.Typer(
+    cls=_Group, name="friction-bench", no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="markdown"
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        say(f"friction-bench {version('friction-bench')}")
+        raise typer.Exit
+
+
+@app.callback(epilog=HELP)
+def options(
+    context: typer.Context,
+    config: Annotated[
+        Path | None,
+        typer.Option(envvar="FRICTION_BENCH_CONFIG", help="bench.toml; without it the simulated bench of the paper."),
+    ] = None,
+    store: Annotated[
+        str | None,
+        typer.Option(
+            envvar="FRICTION_BENCH_STORE",
+            help="SQLite file or database URL; without it friction-bench.sqlite in the working directory.",
+        ),
+    ] = None,
+    version: Annotated[  # noqa: ARG001  its callback has done it
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Test bench for a geared servo joint: run experiments, and find the effect that a model is missing.
+
+    Start with `friction-bench demo`, or `friction-bench serve` and open the page that it names.
+    """
+    context.obj = BenchSession(config, store)
+
+
+app.command("serve")(serve.serve)
+app.add_typer(run.app, name="run")
+app.command("status")(service.status)
+app.command("stop")(service.stop)
+app.command("experiments")(experiments.experiments)
+app.command("trials")(trials.trials)
+app.command("trial")(trials.trial)
+app.command("export")(recordings.export)
+app.command("import")(recordings.import_)
+app.add_typer(study.app, name="study")
+app.command("effects")(effects.effects)
+app.command("demo")(demo.demo)
+
+
+def main() -> None:
+    """Entry point of the console script."""
+    app()

@@ -1,0 +1,91 @@
+"""What the commands print: tables for people, JSON for programs, errors on stderr."""
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from datetime import datetime
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
+_MOST_COLUMNS = 200
+
+
+def console() -> Console:
+    """The terminal. Made at each call, because stdout may have been exchanged since the last."""
+    plain = Console()
+    # a pipe has no width of its own; do not cut lines that a program will read
+    return plain if plain.is_terminal else Console(width=_MOST_COLUMNS)
+
+
+def say(sentence: str) -> None:
+    """One sentence."""
+    console().print(escape(sentence), highlight=False)
+
+
+def complain(sentence: str) -> None:
+    """One error, on stderr."""
+    Console(stderr=True, soft_wrap=True).print(f"[bold red]error:[/] {escape(sentence)}", highlight=False)
+
+
+def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """A table; columns whose name ends in '#' hold numbers and stand to the right."""
+    made = Table(title=escape(title), title_justify="left", header_style="bold")
+    for name in columns:
+        made.add_column(escape(name.removesuffix("#")), justify="right" if name.endswith("#") else "left")
+    for row in rows:
+        made.add_row(*(escape(text(cell)) for cell in row))
+    console().print(made)
+
+
+def print_json(value: Any) -> None:
+    """JSON on stdout; NaN becomes null."""
+    typer.echo(json.dumps(_finite(value), indent=2, default=_encode, allow_nan=False))
+
+
+def text(value: object) -> str:
+    """A cell: short numbers, local times, '-' for nothing."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, datetime):
+        return value.astimezone().strftime("%Y-%m-%d %H:%M:%S")
+    return str(value)
+
+
+def percent(share: float | None) -> str:
+    """A share of 1 as per cent."""
+    return "-" if share is None or math.isnan(share) else f"{100 * share:.2f} %"
+
+
+def share_interval(value: float | None, low: float | None, high: float | None) -> str:
+    """A share with its interval."""
+    if low is None or high is None:
+        return percent(value)
+    return f"{percent(value)} ({percent(low)} to {percent(high)})"
+
+
+def conditions(values: dict[str, Any]) -> str:
+    """Conditions of a trial on one line."""
+    return ", ".join(f"{key}={text(value)}" for key, value in values.items())
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _finite(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _encode(value: Any) -> Any:
+    if isinstance(value, datetime):
+        return value.isoformat()
+    if hasattr(value, "tolist"):
+        return _finite(value.tolist())
+    return str(value)

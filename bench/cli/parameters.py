@@ -1,0 +1,84 @@
+"""Command-line options out of the parameters of an experiment kind: one definition for REST, form and terminal."""
+
+import inspect
+from collections.abc import Callable
+from typing import Annotated, Any
+
+import typer
+
+from bench.cli.output import Json
+from bench.experiments.kind import ExperimentKind
+
+_BOUNDS = (("minimum", ">="), ("exclusiveMinimum", ">"), ("maximum", "<="), ("exclusiveMaximum", "<"))
+
+
+def parameter_command(kind: ExperimentKind, run: Callable[..., None], **common: Any) -> Any:
+    """A command with one option per parameter of the kind.
+
+    Args:
+        kind: its parameters' JSON schema gives names, units, bounds and defaults.
+        run: called as run(context, kind, parameters, <common options>); parameters as text, None where not given.
+        common: annotation of each further option, by name; all are optional.
+    """
+    schema = kind.parameters.model_json_schema()
+    properties: dict[str, dict[str, Any]] = schema.get("properties", {})
+
+    def command(context: typer.Context, **options: Any) -> None:
+        parameters = {name: options.pop(name) for name in properties}
+        run(context, kind, parameters, **options)
+
+    options = {name: _option(name, each, name in schema.get("required", [])) for name, each in properties.items()}
+    annotations: dict[str, Any] = {"context": typer.Context, **options, **common, "as_json": Json}
+    defaults = {"as_json": False}
+    command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # what typer reads
+        [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                annotation=annotation,
+                default=inspect.Parameter.empty if name == "context" else defaults.get(name),
+            )
+            for name, annotation in annotations.items()
+        ]
+    )
+    command.__annotations__ = annotations
+    command.__doc__ = kind.summary
+    made = typer.Typer(add_completion=False, rich_markup_mode="markdown", pretty_exceptions_enable=False)
+    made.command(kind.name, help=f"{kind.title}. {kind.summary}")(command)
+    return typer.main.get_command(made)
+
+
+def given(kind: ExperimentKind, options: dict[str, str | None]) -> dict[str, Any]:
+    """What was typed, as the values that the parameters' model reads; lists are separated by commas."""
+    properties = kind.parameters.model_json_schema().get("properties", {})
+    return {name: _value(text, properties[name]) for name, text in options.items() if text is not None}
+
+
+def _value(text: str, schema: dict[str, Any]) -> Any:
+    if schema.get("type") == "array":
+        return [part.strip() for part in text.split(",") if part.strip()]
+    return text
+
+
+def _option(name: str, schema: dict[str, Any], required: bool) -> Any:
+    unit = schema.get("unit", "")
+    hint = f"{schema.get('description', '')}{f' [{unit}]' if unit else ''}."
+    limits = [f"{sign} {_bounded(schema)[key]:g}" for key, sign in _BOUNDS if key in _bounded(schema)]
+    if limits:
+        hint += f" {', '.join(limits)}."
+    hint += " Required." if required else f" Default: {_shown(schema.get('default'))}."
+    metavar = {"array": "A,B,...", "integer": "INTEGER", "number": "NUMBER", "boolean": "true|false"}
+    flag = "--" + name.replace("_", "-")
+    return Annotated[str | None, typer.Option(flag, metavar=metavar.get(schema.get("type", ""), "TEXT"), help=hint)]
+
+
+def _bounded(schema: dict[str, Any]) -> dict[str, Any]:
+    """Where the bounds of a value stand: for a list, in its items."""
+    items: dict[str, Any] = schema.get("items", {}) if schema.get("type") == "array" else schema
+    return items
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, list | tuple):
+        return ",".join(_shown(one) for one in value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,58 @@
+"""`friction-bench export` and `import`: recording sets leave and enter."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from bench.cli.bench_session import session_of
+from bench.cli.output import Json, print_json, say
+from bench.rig import Rig
+
+
+def export(
+    context: typer.Context,
+    experiment: Annotated[int, typer.Argument(help="Number of the experiment.")],
+    path: Annotated[Path, typer.Argument(help="A folder to make, or a file that ends in .zip.")],
+) -> None:
+    """Write all trials of an experiment as a recording set: rig.toml, trials.csv, one CSV per trial."""
+    from bench.recording_set import export_experiment
+
+    with session_of(context).open_store() as store:
+        export_experiment(store, experiment, path)
+    say(f"experiment {experiment} is in {path}")
+
+
+def import_(
+    context: typer.Context,
+    path: Annotated[Path, typer.Argument(help="Folder or .zip with rig.toml, trials.csv and one CSV per trial.")],
+    rig: Annotated[Path | None, typer.Option(help="rig.toml, where the set has none or another is wanted.")] = None,
+    mapping: Annotated[
+        Path | None, typer.Option(help="mapping.toml, for files whose columns have other names.")
+    ] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the import; without it, that of the set.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Read trials of any bench into the store: all of them, or none and the file, line and column at fault."""
+    from bench.recording_set import import_recording_set, read_mapping, read_recording_set
+
+    chosen_mapping = None if mapping is None else read_mapping(mapping)
+    recording_set = read_recording_set(path, chosen_mapping, None if rig is None else _read_rig(rig))
+    with session_of(context).open_store() as store:
+        experiment_id = import_recording_set(store, recording_set, name or recording_set.name)
+    rows = sum(len(recording) for recording in recording_set.recordings)
+    trials = len(recording_set.recordings)
+    if as_json:
+        print_json({"experiment_id": experiment_id, "name": name or recording_set.name, "trials": trials, "rows": rows})
+    else:
+        say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
+
+
+def _read_rig(path: Path) -> Rig:
+    from bench.recording_set import RecordingSetError
+    from bench.recording_set.toml_file import parse_toml
+
+    try:
+        return parse_toml(path.read_bytes(), Rig, path.name)
+    except OSError as error:
+        raise RecordingSetError(str(path), f"cannot be read: {error.strerror}; name a rig file") from error

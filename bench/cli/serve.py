@@ -1,0 +1,24 @@
+"""`friction-bench serve`: the REST interface and the page."""
+
+from typing import Annotated
+
+import typer
+
+from bench.cli.bench_session import session_of
+from bench.cli.output import say
+
+
+def serve(
+    context: typer.Context,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; beyond loopback only with a configured token.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8000,
+    allow_host: Annotated[
+        list[str] | None, typer.Option(help="Another name under which browsers may address the service; repeatable.")
+    ] = None,
+) -> None:
+    """Serve the page and the REST interface for the bench, until Ctrl-C. Stops the joint when it ends."""
+    from bench.service.server import Address, serve_bench
+
+    serve_bench(session_of(context).configuration(), Address(host, port, tuple(allow_host or ())), say)

@@ -1,0 +1,53 @@
+"""`friction-bench status` and `stop`: a service that is running, by its address."""
+
+from typing import Annotated, Any
+
+import httpx
+import typer
+
+from bench.cli.bench_session import BenchSession, session_of
+from bench.cli.exit_codes import ServiceError
+from bench.cli.output import Json, print_json, say, table
+
+TIMEOUT_S = 5.0
+Url = Annotated[str, typer.Option(envvar="FRICTION_BENCH_URL", help="Address of the service.")]
+DEFAULT_URL = "http://127.0.0.1:8000"
+
+
+def status(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
+    """Show what a running service's bench is doing."""
+    found = _ask(session_of(context), "GET", url, "/bench")
+    if as_json:
+        print_json(found)
+        return
+    run = found["run"] or {}
+    facts = {"bench": found["name"], "drive": "simulated" if found["simulated"] else "real", "state": found["state"]}
+    facts |= {name: run[name] for name in ("kind", "experiment_id", "outcome", "reason", "progress") if name in run}
+    table(url, ["what", "value"], facts.items())
+
+
+def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
+    """Stop the joint of a running service and power it off."""
+    found = _ask(session_of(context), "POST", url, "/stop", {"reason": "friction-bench stop"})
+    print_json(found) if as_json else say(found["detail"])
+
+
+def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
+    from bench.service.tokens import find_token, token_file
+
+    token = find_token(token_file(session.store_url()))
+    headers = {} if token is None else {"Authorization": f"Bearer {token}"}
+    try:
+        answer = httpx.request(method, f"{url}/api/v1{path}", json=body, headers=headers, timeout=TIMEOUT_S)
+    except (httpx.HTTPError, httpx.InvalidURL) as error:
+        raise ServiceError(f"{url} does not answer ({error}); is 'friction-bench serve' running there?") from error
+    if answer.is_error:
+        raise ServiceError(f"{url} answered {answer.status_code}: {_detail(answer)}")
+    return answer.json()
+
+
+def _detail(answer: httpx.Response) -> str:
+    try:
+        return str(answer.json()["detail"])
+    except (ValueError, KeyError, TypeError):
+        return answer.reason_phrase

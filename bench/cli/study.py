@@ -1,0 +1,99 @@
+"""`friction-bench study ...`: compare, diagnose, add, drop, ladder."""
+
+from typing import Annotated, Any
+
+import typer
+
+from bench.cli import study_tables as tables
+from bench.cli.bench_session import session_of
+from bench.cli.output import Json, print_json, table
+
+app = typer.Typer(no_args_is_help=True)
+StudyId = Annotated[int, typer.Argument(metavar="STUDY", help="Number of the study.")]
+Effect = Annotated[str, typer.Argument(help="Name of the effect; list them with: friction-bench effects")]
+Model = Annotated[int | None, typer.Option(help="Which model; without it, the newest of the study.")]
+
+
+@app.callback()
+def _study() -> None:
+    """Compare measured with predicted, name the missing effect, add it, watch the error fall."""
+
+
+@app.command("new")
+def new(
+    context: typer.Context,
+    name: Annotated[str, typer.Argument(help="Name of the study.")],
+    experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are used; repeatable.")],
+    hold_out: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUE",
+            help="Trials that judge the model instead of being fitted; KEY is a condition, `trial` or `kind`; "
+            "repeatable. Without it, each trial is left out in turn.",
+        ),
+    ] = None,
+    base: Annotated[
+        list[str] | None, typer.Option(help="Effect of the first model; repeatable. Without it, the default.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Create a study: which trials are fitted, and which judge the fit."""
+    _show(
+        context,
+        as_json,
+        tables.study,
+        "create_study",
+        name,
+        experiment_ids=experiment,
+        hold_out=hold_out or [],
+        base=base,
+    )
+
+
+@app.command("list")
+def list_(context: typer.Context, as_json: Json = False) -> None:
+    """List the studies."""
+    with session_of(context).open_store() as store:
+        found = store.studies()
+    if as_json:
+        print_json([{"study_id": one.id, "name": one.name, "created_utc": one.created_utc} for one in found])
+    else:
+        table("Studies", ["id#", "name", "created"], [(one.id, one.name, one.created_utc) for one in found])
+
+
+@app.command("compare")
+def compare(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """Measured against predicted: error per trial and regime, parameters, the floor."""
+    _show(context, as_json, tables.comparison, "compare", study, model_id=model)
+
+
+@app.command("diagnose")
+def diagnose(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """Which physical effect is missing, how sure is that, and what would adding it bring."""
+    _show(context, as_json, tables.diagnosis, "diagnose", study, model_id=model)
+
+
+@app.command("add")
+def add(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
+    """Add an effect to a model and refit: the error before and after."""
+    _show(context, as_json, tables.change, "add_effect", study, effect, model_id=model)
+
+
+@app.command("drop")
+def drop(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
+    """Drop an effect from a model and refit: the error before and after."""
+    _show(context, as_json, tables.change, "drop_effect", study, effect, model_id=model)
+
+
+@app.command("ladder")
+def ladder(context: typer.Context, study: StudyId, as_json: Json = False) -> None:
+    """The error from model to model, training and held-out, down towards the floor."""
+    _show(context, as_json, tables.ladder, "ladder", study)
+
+
+def _show(context: typer.Context, as_json: bool, show: Any, name: str, *args: Any, **kwargs: Any) -> None:
+    from bench import study
+
+    with session_of(context).open_store() as store:
+        found = getattr(study, name)(store, *args, **kwargs)
+    print_json(found) if as_json else show(found)

@@ -1,0 +1,115 @@
+"""What the `study` commands print: one function per answer of `bench.study`."""
+
+from typing import Any
+
+from bench.cli.output import conditions, percent, say, share_interval, table, text
+
+Found = dict[str, Any]
+
+
+def study(found: Found) -> None:
+    """A study and its trials."""
+    say(f"study {found['study_id']}: {found['name']}, effort: {found['effort']['name']} [{found['effort']['unit']}]")
+    rows = [(one["trial_id"], one["name"], one["role"], conditions(one["conditions"])) for one in found["trials"]]
+    table("Trials", ["id#", "name", "role", "conditions"], rows)
+
+
+def comparison(found: Found) -> None:
+    """Errors, parameters, trials and regimes of a model."""
+    unit = found["effort"]["unit"]
+    say(f"model {found['model_id']}: {', '.join(found['effects'])}")
+    kinds = {
+        "training": "training",
+        "held_out": (found["error"]["held_out"] or {}).get("kind", "held out"),
+        "floor": "floor",
+    }
+    errors = [(kinds[name], found["error"][name]) for name in kinds if found["error"].get(name)]
+    table(
+        "Error",
+        ["on", f"rms [{unit}]#", "relative#"],
+        [(name, one["rms"], percent(one["relative"])) for name, one in errors],
+    )
+    rows = [
+        (one["effect"], one["name"], one["value"], one["low"], one["high"], one["unit"], one["note"])
+        for one in found["parameters"]
+    ]
+    table("Parameters", ["effect", "name", "value#", "low#", "high#", "unit", "note"], rows)
+    _errors("Trials", f"rms [{unit}]#", [({"name": one["name"], **one}, one["role"]) for one in found["trials"]])
+    _errors("Regimes", f"rms [{unit}]#", [(one, f"{one['rows']} rows") for one in found["regimes"]])
+    for note in found["notes"]:
+        say(note)
+
+
+def diagnosis(found: Found) -> None:
+    """The verdict and the ranking."""
+    say(found["sentence"])
+    for problem in found["data_problems"]:
+        say(f"data: {problem}")
+    for one in found["classes"]:
+        say(one["sentence"])
+        if one["separating_trial"]:
+            say(f"  to tell them apart: {one['separating_trial']}")
+    rows = [
+        (
+            one["effect"],
+            "yes" if one["in_class"] else "",
+            one["score"],
+            one["p_value"],
+            percent(one["held_out_before"]),
+            percent(one["held_out_after"]),
+            share_interval(one["gain"], one["gain_low"], one["gain_high"]),
+            text(one["d_prime"]),
+        )
+        for one in found["ranking"]
+    ]
+    table(
+        "Effects by evidence", ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#"], rows
+    )
+    for note in found["notes"]:
+        say(note)
+
+
+def change(found: Found) -> None:
+    """What adding or dropping an effect did."""
+    say(found["sentence"])
+    rows = [
+        (name, percent(found["before"][key]), percent(found["after"][key]))
+        for key, name in (("training", "training"), ("held_out", "held out"))
+    ]
+    table(f"Model {found['model_id']}", ["error on", "before#", "after#"], rows)
+
+
+def ladder(found: Found) -> None:
+    """The rungs."""
+    rows = [
+        (
+            one["model_id"],
+            _change(one),
+            percent(one["training"]),
+            share_interval(one["held_out"], one["held_out_low"], one["held_out_high"]),
+        )
+        for one in found["rungs"]
+    ]
+    table(f"Ladder of study {found['study_id']}", ["model#", "change", "training error#", "held-out error#"], rows)
+    floor = found["floor"]
+    if floor is not None:
+        say(f"floor, from repeated trials: {percent(floor['relative'] if isinstance(floor, dict) else floor)}")
+
+
+def _change(rung: Found) -> str:
+    signs = [f"+ {name}" for name in _names(rung["added"])] + [f"- {name}" for name in _names(rung["removed"])]
+    return ", ".join(signs) or f"base: {', '.join(rung['effects'])}"
+
+
+def _names(value: str | list[str] | None) -> list[str]:
+    if value is None:
+        return []
+    return [value] if isinstance(value, str) else value
+
+
+def _errors(title: str, unit: str, rows: list[tuple[Found, str]]) -> None:
+    table(
+        title,
+        ["name", "", unit, "relative#"],
+        [(one["name"], extra, one["rms"], percent(one["relative"])) for one, extra in rows],
+    )

@@ -1,0 +1,1 @@
+"""The REST service and the page: the bench over HTTP, on loopback unless told otherwise."""

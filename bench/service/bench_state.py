@@ -1,0 +1,130 @@
+"""/bench: what stands there and what it is doing. /stop: stops it. /token: whether a token is the right one."""
+
+from importlib.metadata import version
+from typing import Any
+
+from fastapi import APIRouter, Depends
+from pydantic import BaseModel, ConfigDict, Field
+
+from bench.drive_factory import is_simulated
+from bench.limits import Limits
+from bench.service.access import allow_read, require_token
+from bench.service.json_numbers import plain
+from bench.service.problems import problems
+from bench.service.services import RunnerOf
+from bench.service.status import Status, status_of
+from drivers.contract import Description
+
+router = APIRouter(tags=["bench"])
+
+
+class DriveDescription(BaseModel):
+    """Identity and capabilities of the drive."""
+
+    device: str
+    vendor: str
+    product: str
+    firmware: str
+    serial: str
+    modes: list[str]
+    measured: list[str] = Field(description="quantities that the drive measures")
+    resolution: dict[str, float] = Field(description="smallest step of a quantity, in its unit")
+    max_rate_hz: float
+    watchdog_s: float = Field(description="time without a command after which the drive stops by itself")
+
+
+class Limit(BaseModel):
+    """One limit of the bench."""
+
+    name: str
+    description: str
+    value: float
+    unit: str
+
+
+class Bench(Status):
+    """The bench: its drive, its limits, and what it is doing."""
+
+    name: str
+    software_version: str
+    drive: DriveDescription | None = Field(description="null until the drive has been opened for the first time")
+    limits: list[Limit]
+    rig: dict[str, Any]
+
+
+class Stop(BaseModel):
+    """Why it is stopped; kept with the record."""
+
+    model_config = ConfigDict(extra="forbid")
+    reason: str = Field(default="", max_length=200, examples=["cable is caught"])
+
+
+class Stopped(BaseModel):
+    """What the stop found."""
+
+    detail: str
+    was_running: bool
+
+
+class Accepted(BaseModel):
+    """The token is the right one."""
+
+    accepted: bool = True
+
+
+@router.get("/bench", summary="Drive, limits and state", dependencies=[Depends(allow_read)])
+def bench(runner: RunnerOf) -> Bench:
+    """Reading this never moves anything."""
+    found = runner.status()
+    configuration = runner.configuration
+    return Bench(
+        **status_of(found, is_simulated(configuration)),
+        name=configuration.name,
+        software_version=version("friction-bench"),
+        drive=None if found.description is None else _drive(found.description),
+        limits=_limits(configuration.limits),
+        rig=configuration.rig.model_dump(exclude_none=True),
+    )
+
+
+# async on purpose: it runs on the event loop itself and never waits for a free worker thread
+@router.post(
+    "/stop",
+    summary="Stop the joint and power it off",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 403),
+)
+async def stop(runner: RunnerOf, body: Stop | None = None) -> Stopped:
+    """Any holder of a token, always. The control loop honours it within one cycle; the record says who and why."""
+    was_running = runner.status().outcome == "running"
+    reason = body.reason if body and body.reason else "stopped over REST"
+    runner.stop(reason)
+    detail = (
+        "Stop accepted: the joint is being powered off." if was_running else "Nothing was running; the joint is off."
+    )
+    return Stopped(detail=detail, was_running=was_running)
+
+
+@router.get("/token", summary="Check a token", dependencies=[Depends(require_token)], responses=problems(401))
+async def token() -> Accepted:
+    """Changes nothing; for programs that want to know before they need it."""
+    return Accepted()
+
+
+def _drive(found: Description) -> DriveDescription:
+    names = ("device", "vendor", "product", "firmware", "serial", "max_rate_hz", "watchdog_s")
+    fields: dict[str, Any] = {name: plain(getattr(found, name)) for name in names}
+    modes = sorted(mode.value for mode in found.modes)
+    return DriveDescription(**fields, modes=modes, measured=sorted(found.measured), resolution=plain(found.resolution))
+
+
+def _limits(limits: Limits) -> list[Limit]:
+    return [
+        Limit(name=name, description=field.description or "", value=getattr(limits, name), unit=_unit(field))
+        for name, field in Limits.model_fields.items()
+    ]
+
+
+def _unit(field: Any) -> str:
+    extra = field.json_schema_extra
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""

@@ -1,0 +1,169 @@
+"""/experiment-kinds and /experiments: what can be started, starting it, and what has been run."""
+
+import tempfile
+from datetime import datetime
+from pathlib import Path as FilePath
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi.responses import FileResponse
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.background import BackgroundTask
+
+from bench.experiments.registry import KINDS
+from bench.recording_set import export_experiment
+from bench.service.access import allow_read, require_token
+from bench.service.json_numbers import plain
+from bench.service.problems import problems
+from bench.service.services import RunnerOf, StoreOf
+from bench.store.records import Experiment as StoredExperiment
+
+router = APIRouter(tags=["experiments"], dependencies=[Depends(allow_read)])
+ExperimentId = Annotated[int, Path(ge=1, description="number of the experiment")]
+
+
+class Kind(BaseModel):
+    """One kind of experiment and the schema of its parameters."""
+
+    name: str = Field(examples=["steps"])
+    title: str
+    summary: str
+    parameters: dict[str, Any] = Field(description="JSON schema; each property has its `unit`, bounds and default")
+
+
+class Kinds(BaseModel):
+    """All kinds."""
+
+    items: list[Kind]
+
+
+class NewExperiment(BaseModel):
+    """What to start."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"kind": "steps", "parameters": {"repeats": 3, "load_kg": 0.1}, "operator": "R. Saini"}]
+        },
+    )
+    kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
+    parameters: dict[str, Any] = Field(default={}, description="what differs from the defaults, SI")
+    operator: str = Field(default="", max_length=200)
+    note: str = Field(default="", max_length=2000)
+    pace: Literal["real-time", "fast"] | None = Field(
+        default=None, description="fast: as fast as the computer can, simulated drive only, and the default there"
+    )
+
+
+class Started(BaseModel):
+    """The experiment that has begun."""
+
+    experiment_id: int
+    kind: str
+
+
+class Experiment(BaseModel):
+    """What was started, where it came from, and how it ended."""
+
+    experiment_id: int
+    kind: str
+    parameters: dict[str, Any]
+    source: str = Field(description="simulated, real or imported")
+    operator: str
+    note: str
+    provenance: dict[str, Any] = Field(description="software version and commit, configuration, drive, seed")
+    rig: dict[str, Any]
+    started_utc: datetime
+    finished_utc: datetime | None
+    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
+    reason: str = Field(description="why it ended")
+    results: dict[str, Any] = Field(description="what came out, units in the names")
+
+
+class Experiments(BaseModel):
+    """One page of experiments, newest first."""
+
+    items: list[Experiment]
+    limit: int
+    offset: int
+    next_offset: int | None = Field(description="offset of the next page; null on the last")
+
+
+def represent(found: StoredExperiment) -> Experiment:
+    """A stored experiment as it is answered."""
+    fields = {name: plain(getattr(found, name)) for name in Experiment.model_fields if name != "experiment_id"}
+    return Experiment(experiment_id=found.id, **fields)
+
+
+@router.get("/experiment-kinds", summary="What can be started")
+def kinds() -> Kinds:
+    """Each kind with the JSON schema of its parameters: units, bounds, defaults."""
+    return Kinds(
+        items=[
+            Kind(name=kind.name, title=kind.title, summary=kind.summary, parameters=kind.parameters.model_json_schema())
+            for kind in KINDS.values()
+        ]
+    )
+
+
+@router.post(
+    "/experiments",
+    status_code=201,
+    summary="Start an experiment: the joint moves",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 403, 404, 409, 422, 502),
+)
+def start(runner: RunnerOf, request: Request, response: Response, body: NewExperiment) -> Started:
+    """Refused before any motion (422, with value, limit and unit) where it would leave the limits.
+
+    409 while another one runs. Watch it with GET /live, end it with POST /stop.
+    """
+    experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+    response.headers["Location"] = f"{request.url.path}/{experiment_id}"
+    return Started(experiment_id=experiment_id, kind=body.kind)
+
+
+@router.get("/experiments", summary="What has been run", responses=problems(422))
+def experiments(
+    store: StoreOf,
+    kind: Annotated[str, Query(max_length=100)] = "",
+    outcome: Annotated[str, Query(max_length=20)] = "",
+    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+) -> Experiments:
+    """Newest first, failed starts included."""
+    found = store.experiments(kind=kind or None, outcome=outcome or None, limit=limit + 1, offset=offset)
+    more = offset + limit if len(found) > limit else None
+    return Experiments(items=[represent(one) for one in found[:limit]], limit=limit, offset=offset, next_offset=more)
+
+
+@router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404))
+def experiment(store: StoreOf, experiment_id: ExperimentId) -> Experiment:
+    """Parameters, provenance, outcome and why, results."""
+    return represent(store.experiment(experiment_id))
+
+
+@router.get(
+    "/experiments/{experiment_id}/recording-set",
+    summary="All its trials as a recording set (zip)",
+    response_class=FileResponse,
+    responses={
+        200: {
+            "description": "rig.toml, trials.csv and one CSV per trial; importing it gives the same numbers.",
+            "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+        },
+        **problems(404, 409),
+    },
+)
+def recording_set(store: StoreOf, experiment_id: ExperimentId) -> FileResponse:
+    """Written to a temporary file first, so that an error is an answer and not half a file."""
+    folder = tempfile.TemporaryDirectory(prefix="friction-bench-")
+    path = FilePath(folder.name) / f"experiment-{experiment_id}.zip"
+    try:
+        export_experiment(store, experiment_id, path)
+    except BaseException:
+        folder.cleanup()
+        raise
+    return FileResponse(
+        path, media_type="application/zip", filename=path.name, background=BackgroundTask(folder.cleanup)
+    )

@@ -1,0 +1,135 @@
+"""Errors as problem+json (RFC 9457): what went wrong, where, what is allowed, and what to do next."""
+
+from collections.abc import Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.encoders import jsonable_encoder
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.exceptions import HTTPException
+from starlette.responses import JSONResponse
+
+from bench.errors import BenchError
+from drivers.errors import DriveError
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class FieldProblem(BaseModel):
+    """One field that was not as wanted."""
+
+    field: str = Field(description="path of the field, parts joined with '.'", examples=["parameters.load_kg"])
+    message: str = Field(description="what is wanted", examples=["Input should be less than or equal to 0.1"])
+    found: Any = Field(default=None, description="what was sent")
+    allowed: dict[str, Any] = Field(default={}, description="the bounds that apply", examples=[{"le": 0.1}])
+    unit: str = Field(default="", description="SI unit of the field", examples=["kg"])
+
+
+class Problem(BaseModel):
+    """Problem details (RFC 9457). `detail` is one sentence for a person, `errors` the same field by field."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "type": "about:blank",
+                    "title": "Unprocessable Content",
+                    "status": 422,
+                    "detail": "parameters.load_kg is 5; Input should be less than or equal to 0.1 kg",
+                    "kind": "ParameterError",
+                    "errors": [],
+                }
+            ]
+        }
+    )
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    kind: str = Field(default="", description="name of the error's class in this software, for programs")
+    errors: list[FieldProblem] = []
+
+
+MEANINGS = {
+    401: "the token is missing or wrong",
+    403: "the request comes from another web page",
+    404: "there is no such thing",
+    409: "it does not fit the present state (an experiment is running)",
+    413: "the upload is too large",
+    415: "the body is not of the wanted type",
+    422: "a value is missing, of the wrong type or outside its range; nothing has moved",
+    502: "the drive does not answer or reports a fault",
+}
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The `responses` of a route: which problems it may answer with."""
+    return {status: {"model": Problem, "description": MEANINGS[status]} for status in statuses}
+
+
+def problem_response(
+    status: int,
+    detail: str,
+    kind: str = "",
+    errors: Sequence[FieldProblem] = (),
+    headers: dict[str, str] | None = None,
+) -> JSONResponse:
+    """The one way in which this service says no."""
+    title = HTTPStatus(status).phrase
+    body = Problem(title=title, status=status, detail=detail, kind=kind, errors=list(errors))
+    return JSONResponse(jsonable_encoder(body), status_code=status, media_type=MEDIA_TYPE, headers=headers)
+
+
+def status_of(error: Exception) -> int:
+    """HTTP status of an error of ours, from its class."""
+    if isinstance(error, LookupError):
+        return 404
+    if isinstance(error, ValueError):
+        return 422
+    if isinstance(error, DriveError):
+        return 502
+    # what the machine lacks: a lock that is not released, a full disk
+    return 503 if isinstance(error, OSError) else 409
+
+
+def field_problems(errors: Sequence[Any], skip: int = 0) -> list[FieldProblem]:
+    """pydantic's error list as ours; the first `skip` parts of each location are left out ("body")."""
+    return [_field_problem(error, skip) for error in errors]
+
+
+def _field_problem(error: Any, skip: int) -> FieldProblem:
+    name = ".".join(str(part) for part in error["loc"][skip:])
+    allowed = {key: value for key, value in error.get("ctx", {}).items() if isinstance(value, int | float | str)}
+    found = error.get("input")
+    if not isinstance(found, int | float | str | bool | None):
+        found = type(found).__name__
+    return FieldProblem(field=name, message=error["msg"], found=found, allowed=allowed)
+
+
+def install(app: FastAPI) -> None:
+    """Make every error of the application a problem."""
+
+    @app.exception_handler(BenchError)
+    @app.exception_handler(DriveError)
+    async def ours(_request: Request, error: Exception) -> JSONResponse:
+        return problem_response(status_of(error), str(error), kind=type(error).__name__)
+
+    @app.exception_handler(RequestValidationError)
+    async def invalid_request(_request: Request, error: RequestValidationError) -> JSONResponse:
+        return _invalid(field_problems(error.errors(), skip=1))
+
+    @app.exception_handler(ValidationError)
+    async def invalid_value(_request: Request, error: ValidationError) -> JSONResponse:
+        return _invalid(field_problems(error.errors(include_url=False)))
+
+    @app.exception_handler(HTTPException)
+    async def http(_request: Request, error: HTTPException) -> JSONResponse:
+        headers = dict(error.headers) if error.headers else None
+        return problem_response(error.status_code, str(error.detail), headers=headers)
+
+
+def _invalid(errors: list[FieldProblem]) -> JSONResponse:
+    sentences = [f"{error.field or 'body'} is {error.found!r}: {error.message}" for error in errors]
+    return problem_response(422, "; ".join(sentences), kind="ValidationError", errors=errors)

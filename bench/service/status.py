@@ -1,0 +1,70 @@
+"""What the bench is doing, as /bench and /live answer it."""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, Field
+
+from bench.loop import Reading
+from bench.runner import RunnerStatus
+from bench.service.json_numbers import plain
+
+
+class Run(BaseModel):
+    """The experiment that runs, or the last one."""
+
+    experiment_id: int | None
+    kind: str
+    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
+    reason: str = Field(description="why it ended")
+    trial_index: int = Field(description="trial that runs, from 0")
+    trial_count: int
+    progress: float = Field(ge=0, le=1, description="share of the experiment that is done, 0..1")
+
+
+class ReadingNow(BaseModel):
+    """The last sample, SI; null where the drive does not measure it."""
+
+    time_s: float | None
+    position_rad: float | None
+    velocity_rad_s: float | None
+    current_a: float | None
+    duty: float | None
+    supply_v: float | None
+    temperature_c: float | None
+    power: str = Field(description="state of the power stage: disabled, enabled, quick_stop or fault")
+
+
+class Status(BaseModel):
+    """State of the bench."""
+
+    state: Literal["idle", "running"]
+    simulated: bool = Field(description="True where no hardware moves")
+    run: Run | None = Field(description="null before the first experiment")
+    reading: ReadingNow | None
+
+
+def status_of(found: RunnerStatus, simulated: bool) -> dict[str, Any]:
+    """The fields of `Status`."""
+    running = found.outcome == "running"
+    run = None
+    if found.kind:
+        names = ("experiment_id", "kind", "outcome", "reason", "trial_index", "trial_count", "progress")
+        run = {name: getattr(found, name) for name in names}
+    reading = None if found.reading is None else _reading(found.reading)
+    return {"state": "running" if running else "idle", "simulated": simulated, "run": run, "reading": reading}
+
+
+def _reading(reading: Reading) -> dict[str, Any]:
+    sample = reading.sample
+    values = {
+        "time_s": reading.time_s,
+        "position_rad": sample.position_rad,
+        "velocity_rad_s": reading.velocity_rad_s,
+        "current_a": reading.current_a,
+        "duty": sample.duty,
+        "supply_v": sample.supply_v,
+        "temperature_c": sample.temperature_c,
+        "power": sample.status.name.lower(),
+    }
+    answer: dict[str, Any] = plain(values)
+    return answer

@@ -1,0 +1,153 @@
+"""/studies: compare measured with predicted, name the missing effect, add it, watch the error fall."""
+
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from bench.service.access import allow_read, require_token
+from bench.service.compute import in_worker
+from bench.service.json_numbers import plain
+from bench.service.problems import problems
+from bench.service.services import StoreOf
+from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Studies, Study, StudyName
+from bench.store import Store
+from bench.store.errors import NotFoundError
+
+router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+StudyId = Annotated[int, Path(ge=1, description="number of the study")]
+ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
+
+
+class NewStudy(BaseModel):
+    """Which trials, and which of them judge the model instead of being fitted."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"name": "arm, winter", "experiment_ids": [3, 4], "hold_out": ["load_kg=0.1"]}]
+        },
+    )
+    name: str = Field(min_length=1, max_length=200)
+    experiment_ids: list[int] = Field(min_length=1, max_length=1000, description="experiments whose trials are used")
+    hold_out: list[str] = Field(
+        default=[],
+        max_length=1000,
+        description="conditions that are held out, as key=value; the key is a condition, `trial` or `kind`. "
+        "Without any, each trial is left out in turn",
+        examples=[["load_kg=0.1", "trial=pulses"]],
+    )
+    base: list[str] | None = Field(default=None, description="effects of the first model; null: the default base model")
+
+
+class Change(BaseModel):
+    """One effect more, or one less."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"examples": [{"effect": "viscous_asymmetric", "model_id": 7}]}
+    )
+    effect: str = Field(min_length=1, max_length=100, description="name from GET /effects")
+    model_id: int | None = Field(default=None, ge=1, description="the parent; null: the newest model of the study")
+    action: Literal["add", "drop"] = "add"
+
+
+async def _lab(request: Request, name: str, store: Store, *args: Any, **kwargs: Any) -> Any:
+    def call() -> Any:
+        from bench import study  # the lab is imported when it is first needed: `serve` starts at once
+
+        function: Callable[..., Any] = getattr(study, name)
+        return plain(function(store, *args, **kwargs))
+
+    return await in_worker(request, call)
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Create a study",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def create(request: Request, response: Response, store: StoreOf, body: NewStudy) -> Study:
+    """Fixes the trials and fits the base model."""
+    found = await _lab(
+        request,
+        "create_study",
+        store,
+        body.name,
+        experiment_ids=body.experiment_ids,
+        hold_out=body.hold_out,
+        base=body.base,
+    )
+    response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
+    return Study.model_validate(found)
+
+
+@router.get("", summary="All studies")
+def studies(store: StoreOf) -> Studies:
+    """Newest first."""
+    rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
+    return Studies(items=[StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in rows])
+
+
+@router.get("/{study_id}", summary="One study", responses=problems(404))
+async def study(request: Request, store: StoreOf, study_id: StudyId) -> Study:
+    """Its trials, their roles, and the newest model."""
+    return Study.model_validate(await _lab(request, "describe", store, study_id))
+
+
+@router.get("/{study_id}/compare", summary="Measured against predicted", responses=problems(404, 422))
+async def compare(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Comparison:
+    """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
+    return Comparison.model_validate(await _lab(request, "compare", store, study_id, model_id=model_id))
+
+
+@router.get("/{study_id}/diagnose", summary="Which effect is missing", responses=problems(404, 422))
+async def diagnose(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
+    """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
+    return Diagnosis.model_validate(await _lab(request, "diagnose", store, study_id, model_id=model_id))
+
+
+@router.get("/{study_id}/ladder", summary="The error from model to model", responses=problems(404, 422))
+async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
+    """Training and held-out error of every model of the study."""
+    return Ladder.model_validate(await _lab(request, "ladder", store, study_id))
+
+
+@router.post(
+    "/{study_id}/models",
+    status_code=201,
+    summary="Add an effect to a model, or drop one",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def change(request: Request, store: StoreOf, study_id: StudyId, body: Change) -> Changed:
+    """Refits and keeps the child model; answers with the error before and after."""
+    name = "add_effect" if body.action == "add" else "drop_effect"
+    return Changed.model_validate(await _lab(request, name, store, study_id, body.effect, model_id=body.model_id))
+
+
+@router.delete(
+    "/{study_id}/models/{model_id}",
+    status_code=204,
+    summary="Remove a model",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 409),
+)
+def remove(store: StoreOf, study_id: StudyId, model_id: Annotated[int, Path(ge=1)]) -> None:
+    """Only a model that no other was made from."""
+    model_of_study(store, study_id, model_id)
+    store.remove_model(model_id)
+
+
+def model_of_study(store: Store, study_id: int, model_id: int) -> None:
+    """Check that the model belongs to the study.
+
+    Raises:
+        NotFoundError: it does not, or there is no such study.
+    """
+    store.study(study_id)
+    found = [model.id for model in store.models(study_id)]
+    if model_id not in found:
+        raise NotFoundError(f"study {study_id} has no model {model_id}; it has {', '.join(map(str, found)) or 'none'}")

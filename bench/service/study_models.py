@@ -1,0 +1,241 @@
+"""What the routes of /studies answer with. Errors are shares (0..1) where the name says `relative`; all else is SI."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, Field
+
+Numbers = list[float | None]
+Condition = float | str | bool
+Role = Literal["training", "held_out"]
+
+
+class EffortName(BaseModel):
+    """The quantity that the models explain."""
+
+    name: str = Field(examples=["torque"])
+    unit: str = Field(examples=["N m"])
+
+
+class StudyTrial(BaseModel):
+    """One trial of a study and what it is used for."""
+
+    trial_id: int
+    name: str
+    role: Role
+    conditions: dict[str, Condition]
+
+
+class Study(BaseModel):
+    """A study: its trials, and the model that it stands at."""
+
+    study_id: int
+    name: str
+    trials: list[StudyTrial]
+    effort: EffortName
+    model_id: int = Field(description="the base model at creation, the newest model later")
+
+
+class StudyName(BaseModel):
+    """One line of the list of studies."""
+
+    study_id: int
+    name: str
+    created_utc: datetime
+
+
+class Studies(BaseModel):
+    """All studies, newest first."""
+
+    items: list[StudyName]
+
+
+class Error(BaseModel):
+    """Error of a model."""
+
+    rms: float | None = Field(description="root mean square, in the unit of the effort")
+    relative: float | None = Field(description="rms over the rms of the measured effort, 0..1")
+    kind: str | None = Field(default=None, description="how it was held out", examples=["leave-one-trial-out"])
+
+
+class Errors(BaseModel):
+    """Error on the trials of the fit, on the others, and the floor that repeats set."""
+
+    training: Error
+    held_out: Error | None
+    floor: Error | None = Field(description="what repeated trials differ by; null without repeats")
+
+
+class FittedParameter(BaseModel):
+    """One parameter of the fit with its 95 % interval."""
+
+    effect: str
+    name: str
+    value: float | None
+    unit: str
+    low: float | None
+    high: float | None
+    note: str = Field(description="what is wrong with it, if anything: on a bound, not determined")
+
+
+class TrialError(StudyTrial):
+    """Error on one trial."""
+
+    rms: float | None
+    relative: float | None
+
+
+class RegimeError(BaseModel):
+    """Error in one regime of motion."""
+
+    name: str
+    rows: int
+    rms: float | None
+    relative: float | None
+
+
+class Series(BaseModel):
+    """Measured and predicted effort of one trial over time; all lists have the same length."""
+
+    trial_id: int
+    name: str
+    time_s: Numbers
+    measured: Numbers
+    predicted: Numbers
+    residual: Numbers
+
+
+class DriverGroup(BaseModel):
+    """Residual in bins of a driving variable, for one direction of motion."""
+
+    direction: Literal["forward", "backward", "both"]
+    x: Numbers
+    mean: Numbers
+    low: Numbers
+    high: Numbers
+    count: list[int]
+
+
+class ResidualAgainst(BaseModel):
+    """Residual against one driving variable."""
+
+    driver: str
+    unit: str
+    groups: list[DriverGroup]
+
+
+class Comparison(BaseModel):
+    """Measured against predicted, and where they differ."""
+
+    study_id: int
+    model_id: int
+    effects: list[str]
+    parameters: list[FittedParameter]
+    effort: EffortName
+    error: Errors
+    trials: list[TrialError]
+    regimes: list[RegimeError]
+    series: list[Series]
+    residual_against: list[ResidualAgainst]
+    notes: list[str]
+
+
+class EffectClass(BaseModel):
+    """Effects that these data cannot tell apart."""
+
+    effects: list[str]
+    sentence: str
+    separating_trial: str | None = Field(description="the trial that would tell them apart")
+
+
+class Picture(BaseModel):
+    """Why: the residual against the effect's driving variable, and the effect's curve over it."""
+
+    driver: str
+    unit: str
+    x: Numbers
+    residual: Numbers
+    low: Numbers
+    high: Numbers
+    curve_x: Numbers
+    curve: Numbers
+
+
+class Ranked(BaseModel):
+    """One effect of the ranking. Held-out errors are relative (0..1); gain = 1 - after / before."""
+
+    effect: str
+    title: str
+    score: float | None
+    p_value: float | None
+    held_out_before: float | None
+    held_out_after: float | None
+    gain: float | None
+    gain_low: float | None
+    gain_high: float | None
+    in_class: bool = Field(description="one of the effects that the data name")
+    confused_with: list[str]
+    d_prime: float | None = Field(
+        description="how well it stands apart from its best rival; from 6 on the name is sure"
+    )
+    physical: bool = Field(description="False where the fitted sign or size is physically impossible")
+    sentence: str
+    picture: Picture | None
+
+
+class Diagnosis(BaseModel):
+    """Is anything missing, what is it called, and does it help?"""
+
+    study_id: int
+    model_id: int
+    verdict: Literal["missing", "nothing", "unknown-effect", "data-problem"]
+    sentence: str
+    p_value: float | None
+    notes: list[str]
+    data_problems: list[str]
+    classes: list[EffectClass]
+    ranking: list[Ranked]
+
+
+class BeforeAfter(BaseModel):
+    """Relative errors (0..1) of one model."""
+
+    training: float | None
+    held_out: float | None
+
+
+class Changed(BaseModel):
+    """The child model and what the change did to the error."""
+
+    model_id: int
+    parent_id: int
+    effects: list[str]
+    before: BeforeAfter
+    after: BeforeAfter
+    gain: float | None
+    gain_low: float | None
+    gain_high: float | None
+    sentence: str
+
+
+class Rung(BaseModel):
+    """One model of the ladder; errors are relative (0..1)."""
+
+    model_id: int
+    parent_id: int | None
+    effects: list[str]
+    added: str | list[str] | None
+    removed: str | list[str] | None
+    training: float | None
+    held_out: float | None
+    held_out_low: float | None
+    held_out_high: float | None
+
+
+class Ladder(BaseModel):
+    """The error from model to model, down towards the floor."""
+
+    study_id: int
+    effort: EffortName
+    floor: float | Error | None
+    rungs: list[Rung]

@@ -1,0 +1,148 @@
+"""/trials: what was recorded, down-sampled for a plot or whole as CSV."""
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Path, Query
+from fastapi.responses import StreamingResponse
+from pydantic import BaseModel, Field
+
+from bench.recording_set import csv_chunks
+from bench.service.access import allow_read
+from bench.service.json_numbers import column, plain
+from bench.service.problems import problems
+from bench.service.services import StoreOf
+from bench.store import Store
+from bench.store.records import Trial as StoredTrial
+from compensator.lab.recording import Recording
+
+router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
+LEAST_PER_CHANNEL = 10
+TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
+
+
+class Trial(BaseModel):
+    """One recording under constant conditions."""
+
+    trial_id: int
+    experiment_id: int
+    name: str
+    kind: str
+    conditions: dict[str, float | str | bool] = Field(examples=[{"load_kg": 0.1, "balanced": False, "repeat": 3}])
+    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
+    reason: str = Field(description="why it ended")
+    results: dict[str, Any] = Field(description="what the procedure found, units in the names")
+    channels: list[str] = Field(description="names of the recorded channels, SI with the unit in the name")
+    rows: int
+    started_utc: datetime
+    finished_utc: datetime | None
+
+
+class Event(BaseModel):
+    """Something that happened during a trial."""
+
+    time_s: float
+    name: str
+    detail: str
+
+
+class TrialWithEvents(Trial):
+    """A trial and its events."""
+
+    events: list[Event]
+
+
+class Trials(BaseModel):
+    """One page of trials, in the order in which they were made."""
+
+    items: list[Trial]
+    limit: int
+    offset: int
+    next_offset: int | None = Field(description="offset of the next page; null on the last")
+
+
+class Samples(BaseModel):
+    """Channels of one trial; all lists have the same length, a quantity that was not measured is null."""
+
+    trial_id: int
+    rows_recorded: int
+    rows_returned: int
+    channels: dict[str, list[float | None]]
+
+
+def represent(trial: StoredTrial) -> dict[str, Any]:
+    """A stored trial as the fields of `Trial`."""
+    names = ("experiment_id", "name", "kind", "outcome", "reason", "rows", "started_utc", "finished_utc")
+    fields = {name: getattr(trial, name) for name in names}
+    changed = {"conditions": plain(trial.conditions), "results": plain(trial.results), "channels": list(trial.channels)}
+    return {"trial_id": trial.id, **fields, **changed}
+
+
+def recording_of(store: Store, trial: StoredTrial) -> Recording:
+    """A stored trial as the recording that a recording set would hold."""
+    return Recording(trial.name, trial.kind, trial.conditions, store.samples(trial.id), store.events(trial.id))
+
+
+@router.get("", summary="Trials, filtered", responses=problems(422))
+def trials(
+    store: StoreOf,
+    experiment_id: Annotated[int | None, Query(ge=1)] = None,
+    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
+    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
+    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+) -> Trials:
+    """In the order in which they were made. Without filters: all trials."""
+    found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
+    items = [Trial.model_validate(represent(trial)) for trial in found[:limit]]
+    return Trials(items=items, limit=limit, offset=offset, next_offset=offset + limit if len(found) > limit else None)
+
+
+@router.get("/{trial_id}", summary="One trial with its events", responses=problems(404))
+def trial(store: StoreOf, trial_id: TrialId) -> TrialWithEvents:
+    """Conditions, outcome and why, results, channels, events."""
+    events = [{"time_s": event.time_s, "name": event.name, "detail": event.detail} for event in store.events(trial_id)]
+    return TrialWithEvents.model_validate({**represent(store.trial(trial_id)), "events": events})
+
+
+@router.get("/{trial_id}/samples", summary="Samples, down-sampled on request", responses=problems(404, 422))
+def samples(
+    store: StoreOf,
+    trial_id: TrialId,
+    channels: Annotated[
+        str,
+        Query(max_length=2000, description="names, comma-separated; without: all", examples=["time_s,position_rad"]),
+    ] = "",
+    points: Annotated[
+        int, Query(ge=10, le=200_000, description="about how many rows at most; the extremes of every channel are kept")
+    ] = 4000,
+) -> Samples:
+    """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
+    found = store.trial(trial_id)
+    names = [name for name in channels.split(",") if name] or list(found.channels)
+    # the store keeps rows for each channel; together they are to stay near `points`
+    share = max(LEAST_PER_CHANNEL, points // len(names))
+    reduced = store.samples_reduced(trial_id, names, share)
+    listed = {name: column(values) for name, values in reduced.items()}
+    return Samples(trial_id=trial_id, rows_recorded=found.rows, rows_returned=len(listed["time_s"]), channels=listed)
+
+
+@router.get(
+    "/{trial_id}/csv",
+    summary="The whole trial as CSV",
+    response_class=StreamingResponse,
+    responses={
+        200: {
+            "description": "One line per row; SI, the unit in the column's name, empty where not measured.",
+            "content": {"text/csv": {"example": "time_s,position_rad,current_a\n0.0,0.0,0.012\n"}},
+        },
+        **problems(404),
+    },
+)
+def csv(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
+    """The same file that a recording set holds for the trial: numbers are exact."""
+    found = store.trial(trial_id)
+    headers = {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
+    return StreamingResponse(
+        csv_chunks(recording_of(store, found)), media_type="text/csv; charset=utf-8", headers=headers
+    )

@@ -1,0 +1,75 @@
+"""A service as its users have it: uvicorn on a real port, a store in a file, the simulated bench."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from bench.configuration import default_configuration
+from bench.runner import Runner
+from bench.service.access import LOOPBACK_NAMES, Access
+from bench.service.app import create_app
+from bench.service.server import Address, BenchServer, listen
+from bench.store import Store
+
+TOKEN = "test-token-0123456789"
+
+
+@dataclass
+class RunningService:
+    """What tests talk to."""
+
+    url: str
+    store: Store
+    runner: Runner
+    client: httpx.Client  # sends the token
+    stranger: httpx.Client  # does not
+
+    def start(self, kind: str, pace: str = "fast", **parameters: Any) -> int:
+        body = {"kind": kind, "parameters": parameters, "pace": pace}
+        answer = self.client.post("/experiments", json=body)
+        assert answer.status_code == 201, answer.text
+        return int(answer.json()["experiment_id"])
+
+    def run(self, kind: str, **parameters: Any) -> dict[str, Any]:
+        experiment_id = self.start(kind, **parameters)
+        assert self.runner.wait(60.0)
+        found: dict[str, Any] = self.client.get(f"/experiments/{experiment_id}").json()
+        return found
+
+
+@contextmanager
+def running_service(folder: Path, reads_open: bool = True) -> Iterator[RunningService]:
+    configuration = default_configuration()
+    with Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store, listen(Address("127.0.0.1", 0)) as listener:
+        runner = Runner(configuration, store)
+        app = create_app(store, runner, Access(TOKEN, reads_open, LOOPBACK_NAMES))
+        server = BenchServer(app, runner)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        url = f"http://127.0.0.1:{listener.getsockname()[1]}"
+        headers = {"Authorization": f"Bearer {TOKEN}"}
+        try:
+            _wait_until_started(server)
+            base = f"{url}/api/v1"
+            with (
+                httpx.Client(base_url=base, headers=headers, timeout=30) as client,
+                httpx.Client(base_url=base) as stranger,
+            ):
+                yield RunningService(url, store, runner, client, stranger)
+        finally:
+            server.end_streams()
+            server.should_exit = True
+            thread.join()
+
+
+def _wait_until_started(server: BenchServer) -> None:
+    deadline_s = time.monotonic() + 10
+    while not server.started:
+        assert time.monotonic() < deadline_s, "the service did not start within 10 s"
+        time.sleep(0.01)

@@ -1,0 +1,140 @@
+"""Who may do what."""
+
+import os
+import stat
+
+import httpx
+import pytest
+
+from bench.errors import ConfigurationError
+from bench.service.access import check_bind
+from bench.service.tokens import find_or_make_token, find_token, token_file
+from tests.service.running_service import TOKEN, running_service
+
+CHANGES = [
+    ("POST", "/experiments"),
+    ("POST", "/stop"),
+    ("POST", "/recording-sets?name=x"),
+    ("POST", "/studies"),
+    ("POST", "/studies/1/models"),
+    ("DELETE", "/studies/1/models/1"),
+]
+
+
+@pytest.mark.parametrize(("method", "path"), CHANGES)
+def test_a_change_without_token_is_refused(service, method, path):
+    answer = service.stranger.request(method, path, json={"kind": "steps"})
+    assert answer.status_code == 401
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.headers["www-authenticate"] == "Bearer"
+    assert "friction-bench serve" in answer.json()["detail"]
+
+
+def test_every_route_that_changes_state_is_in_the_list_above(service):
+    paths = service.client.get("/openapi.json").json()["paths"]
+    found = {(method.upper(), path) for path, item in paths.items() for method in item if method not in {"get"}}
+    listed = {(method, path.partition("?")[0]) for method, path in CHANGES}
+    templates = {
+        (method, path.replace("/api/v1", "").replace("{study_id}", "1").replace("{model_id}", "1"))
+        for method, path in found
+    }
+    assert templates == listed
+
+
+@pytest.mark.parametrize("wrong", ["x", TOKEN[:-1], TOKEN + "x", "ü" * 20])
+def test_a_wrong_token_is_refused(service, wrong):
+    header = b"Bearer " + wrong.encode()
+    assert service.stranger.post("/stop", headers={"Authorization": header}).status_code == 401
+
+
+def test_the_token_is_not_taken_from_the_address(service):
+    assert service.stranger.post(f"/stop?token={TOKEN}&access_token={TOKEN}").status_code == 401
+
+
+def test_reading_is_open_on_loopback(service):
+    assert service.stranger.get("/bench").status_code == 200
+
+
+def test_reading_beyond_loopback_needs_the_token(tmp_path):
+    with running_service(tmp_path, reads_open=False) as closed:
+        for path in ("/bench", "/trials", "/experiments", "/live/now", "/effects", "/studies", "/experiment-kinds"):
+            assert closed.stranger.get(path).status_code == 401, path
+        assert closed.client.get("/bench").status_code == 200
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:8000", "127.0.0.1.evil.example", ""])
+def test_a_foreign_host_name_is_refused(service, host):
+    answer = service.client.get("/bench", headers={"Host": host})
+    assert answer.status_code == 421
+    assert "--allow-host" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "https://evil.example"},
+        {"Origin": "null"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "same-site"},
+    ],
+)
+def test_a_foreign_page_cannot_move_the_machine(service, headers):
+    assert service.client.post("/experiments", json={"kind": "steps"}, headers=headers).status_code == 403
+    assert service.client.post("/stop", headers=headers).status_code == 403
+
+
+def test_our_own_page_can(service):
+    assert (
+        service.client.post("/stop", headers={"Origin": service.url, "Sec-Fetch-Site": "same-origin"}).status_code
+        == 200
+    )
+
+
+def test_nothing_foreign_runs_in_the_page(service):
+    for path in ("/", "/static/modules/main.js", "/static/plotly.min.js", "/api/v1/bench"):
+        policy = httpx.get(service.url + path).headers["content-security-policy"]
+        assert "script-src 'self';" in policy
+        assert "unsafe-inline" not in policy
+        assert "unsafe-eval" not in policy
+
+
+def test_a_foreign_host_does_not_even_get_the_page(service):
+    assert httpx.get(service.url, headers={"Host": "evil.example"}).status_code == 421
+
+
+def test_listening_beyond_loopback_takes_a_token():
+    for host in ("127.0.0.1", "::1", "localhost", "127.0.0.2"):
+        check_bind(host, token_configured=False)
+    check_bind("0.0.0.0", token_configured=True)
+    for host in ("0.0.0.0", "::", "192.168.1.5", "bench.lab"):
+        with pytest.raises(ConfigurationError, match="FRICTION_BENCH_TOKEN"):
+            check_bind(host, token_configured=False)
+
+
+def test_the_token_is_made_once_and_only_its_owner_can_read_it(tmp_path, monkeypatch):
+    monkeypatch.delenv("FRICTION_BENCH_TOKEN", raising=False)
+    path = token_file(f"sqlite:///{tmp_path}/bench.sqlite")
+    assert path == tmp_path / "bench.token"
+    assert find_token(path) is None
+    token = find_or_make_token(path)
+    assert find_or_make_token(path) == token
+    assert len(token) >= 32
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+def test_a_token_file_that_others_can_read_is_refused(tmp_path, monkeypatch):
+    monkeypatch.delenv("FRICTION_BENCH_TOKEN", raising=False)
+    path = tmp_path / "bench.token"
+    find_or_make_token(path)
+    os.chmod(path, 0o644)
+    with pytest.raises(ConfigurationError, match="chmod 600"):
+        find_or_make_token(path)
+
+
+def test_the_environment_gives_the_token(tmp_path, monkeypatch):
+    monkeypatch.setenv("FRICTION_BENCH_TOKEN", "a-token-of-the-lab-2026")
+    assert find_or_make_token(tmp_path / "bench.token") == "a-token-of-the-lab-2026"
+    assert not (tmp_path / "bench.token").exists()
+    monkeypatch.setenv("FRICTION_BENCH_TOKEN", "short")
+    with pytest.raises(ConfigurationError, match="has 5 characters"):
+        find_or_make_token(tmp_path / "bench.token")

@@ -1,0 +1,95 @@
+// The REST interface: one function per verb. Problems of the service become `Problem` errors in its own words.
+
+const BASE = "/api/v1";
+const KEY = "friction-bench-token";
+
+export class Problem extends Error {
+  constructor(status, body) {
+    super(body.detail || body.title || `the service answered ${status}`);
+    this.status = status;
+    this.errors = body.errors ?? [];
+  }
+}
+
+export const token = {
+  get: () => sessionStorage.getItem(KEY),
+  set: (value) => sessionStorage.setItem(KEY, value),
+  forget: () => sessionStorage.removeItem(KEY),
+};
+
+function headers(extra = {}) {
+  return token.get() ? { Authorization: `Bearer ${token.get()}`, ...extra } : extra;
+}
+
+async function request(path, options = {}) {
+  let response;
+  try {
+    response = await fetch(BASE + path, options);
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new Problem(0, { detail: "the service does not answer; is 'friction-bench serve' still running?" });
+  }
+  if (!response.ok) {
+    const body = await response.json().catch(() => ({}));
+    if (response.status === 401) document.dispatchEvent(new CustomEvent("token-needed"));
+    throw new Problem(response.status, body);
+  }
+  return response;
+}
+
+export async function get(path, query = {}) {
+  const pairs = Object.entries(query).filter(([, value]) => value !== "" && value !== null && value !== undefined);
+  const search = pairs.length ? `?${new URLSearchParams(pairs)}` : "";
+  return (await request(path + search, { headers: headers() })).json();
+}
+
+export async function post(path, body = {}, timeout_ms = 0) {
+  const signal = timeout_ms ? AbortSignal.timeout(timeout_ms) : undefined;
+  const options = { method: "POST", headers: headers({ "Content-Type": "application/json" }), body: JSON.stringify(body), signal };
+  return (await request(path, options)).json();
+}
+
+export async function upload(path, file, query = {}) {
+  const options = { method: "POST", headers: headers({ "Content-Type": "application/zip" }), body: file };
+  return (await request(`${path}?${new URLSearchParams(query)}`, options)).json();
+}
+
+export async function remove(path) {
+  const response = await request(path, { method: "DELETE", headers: headers() });
+  return response.status === 204 ? null : response.json();
+}
+
+// the file is fetched with the token and handed over as a blob: the token never stands in an address
+export async function download(path, name) {
+  const response = await request(path, { headers: headers() });
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await response.blob());
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+// server-sent events over fetch (EventSource cannot send the token); yields {event, data}
+export async function* events(path, signal) {
+  const response = await request(path, { headers: headers({ Accept: "text/event-stream" }), signal });
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  for (;;) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    text += value;
+    const blocks = text.split(/\r?\n\r?\n/);
+    text = blocks.pop();
+    yield* blocks.map(parse).filter(Boolean);
+  }
+}
+
+function parse(block) {
+  let event = "message";
+  const data = [];
+  for (const line of block.split(/\r?\n/)) {
+    if (line.startsWith("event:")) event = line.slice(6).trim();
+    if (line.startsWith("data:")) data.push(line.slice(5));
+  }
+  return data.length ? { event, data: JSON.parse(data.join("\n")) } : null;
+}

@@ -1,0 +1,51 @@
+// Numbers, units and names as people read them.
+
+const UNITS = [
+  ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
+  ["_s", "s"], ["_a", "A"], ["_v", "V"], ["_c", "°C"], ["_m", "m"], ["_n", "N"], ["_g", "g"],
+];
+
+export function unitOf(name) {
+  const found = UNITS.find(([suffix]) => name.endsWith(suffix));
+  return found ? found[1] : "";
+}
+
+export function nameOf(name) {
+  const found = UNITS.find(([suffix]) => name.endsWith(suffix));
+  const bare = found ? name.slice(0, -found[0].length) : name;
+  return bare.replaceAll("_", " ");
+}
+
+export function withUnit(name) {
+  const unit = unitOf(name);
+  return unit ? `${nameOf(name)} [${unit}]` : nameOf(name);
+}
+
+export function number(value, digits = 4) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (typeof value !== "number") return String(value);
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+  return String(Number(value.toPrecision(digits)));
+}
+
+export function percent(share, digits = 2) {
+  return share === null || share === undefined ? "–" : `${(100 * share).toFixed(digits)} %`;
+}
+
+export function interval(value, low, high, show = percent) {
+  return low === null || low === undefined ? show(value) : `${show(value)} (${show(low)} to ${show(high)})`;
+}
+
+export function conditions(values) {
+  return Object.entries(values ?? {}).map(([name, value]) => {
+    if (value === true) return nameOf(name);
+    if (value === false) return `not ${nameOf(name)}`;
+    return `${nameOf(name)} ${number(value)}${unitOf(name) ? " " + unitOf(name) : ""}`;
+  }).join(", ");
+}
+
+export function when(iso) {
+  if (!iso) return "–";
+  const date = new Date(iso);
+  return Number.isNaN(date.getTime()) ? String(iso) : date.toLocaleString([], { dateStyle: "short", timeStyle: "medium" });
+}

@@ -1,0 +1,35 @@
+// The page: which view is shown, and what is there in every view (status, STOP, token).
+
+import { replace } from "./dom.js";
+import { benchView } from "./bench.js";
+import { effectsView } from "./effects.js";
+import { Live } from "./live.js";
+import { statusBar } from "./status.js";
+import { stopButton } from "./stop.js";
+import { studiesView } from "./studies.js";
+import { tokenForm } from "./token.js";
+import { trialsView } from "./trials.js";
+
+const VIEWS = { bench: benchView, trials: trialsView, study: studiesView, effects: effectsView };
+const live = new Live();
+let leave = () => {};
+
+function show() {
+  const [name, ...rest] = location.hash.slice(1).split("/");
+  const view = VIEWS[name] ?? benchView;
+  for (const link of document.querySelectorAll(".tabs a")) {
+    const current = (VIEWS[link.hash.slice(1)] ?? null) === view;
+    if (current) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+  leave();
+  const place = replace(document.getElementById("view"));
+  leave = view(place, { live, rest }) ?? (() => {});
+}
+
+stopButton(document.getElementById("stop"), document.getElementById("stop-answer"));
+statusBar(document.getElementById("status"), live);
+tokenForm(document.getElementById("token"));
+addEventListener("hashchange", show);
+show();
+live.run();

@@ -1,0 +1,53 @@
+// Plots: plotly with the colours of the page. Okabe-Ito, told apart with any colour vision.
+
+const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"] };
+
+export function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+export const SERIES = ["blue", "red", "green", "orange", "purple", "sky"];
+
+export function faded(name, alpha = 0.2) {
+  const hex = colour(name).slice(1);
+  const [r, g, b] = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
+  return `rgba(${r},${g},${b},${alpha})`;
+}
+
+function axis(extra) {
+  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, ...extra };
+}
+
+export function layout(extra = {}) {
+  const narrow = matchMedia("(max-width: 760px)").matches;
+  const base = {
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colour("text"), family: "system-ui, sans-serif", size: narrow ? 11 : 12 },
+    margin: { l: 60, r: 12, t: 12, b: 44 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 }, hovermode: "closest",
+    uirevision: "keep",
+  };
+  const axes = {};
+  for (const [name, value] of Object.entries({ xaxis: {}, yaxis: {}, ...extra })) if (/^[xy]axis\d*$/.test(name)) axes[name] = axis(value);
+  return { ...base, ...extra, ...axes };
+}
+
+export function draw(place, traces, extra = {}) {
+  place.classList.add("plot");
+  return window.Plotly.react(place, traces, layout(extra), CONFIG);
+}
+
+export function forget(place) {
+  if (place && window.Plotly) window.Plotly.purge(place);
+}
+
+// a line with its band; two traces, one legend entry
+export function band(x, low, high, name, colourName, extra = {}) {
+  return {
+    x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], fill: "toself", fillcolor: faded(colourName), line: { width: 0 },
+    mode: "lines", hoverinfo: "skip", showlegend: false, name, ...extra,
+  };
+}
+
+// plots follow the page when it changes between light and dark
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  for (const place of document.querySelectorAll(".plot.js-plotly-plot")) window.Plotly.react(place, place.data, layout(place.layout), CONFIG);
+});

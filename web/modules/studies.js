@@ -1,0 +1,29 @@
+// Studies: the list, a new one, or the one that is open.
+
+import { get } from "./api.js";
+import { h, panel, replace, table } from "./dom.js";
+import { when } from "./format.js";
+import { newStudy } from "./newstudy.js";
+import { attempt } from "./problem.js";
+import { studyView } from "./study.js";
+
+export function studiesView(place, { rest }) {
+  if (rest[0]) return studyView(place, rest[0]);
+  const list = h("div");
+  const create = h("div");
+  replace(place, panel("Studies", h("p", { class: "soft" },
+    "A study compares measured trials with a model, names the physical effect that is missing, and shows the error fall when it is added."), list),
+  panel("New study", create));
+  attempt(list, async () => replace(list, studyTable((await get("/studies")).items)));
+  newStudy(create);
+  return () => {};
+}
+
+function studyTable(items) {
+  if (!items.length) return h("p", { class: "soft" }, "No studies yet. Choose trials below.");
+  return table("Studies", [
+    { title: "Study", number: true, cell: (study) => study.study_id },
+    { title: "Name", cell: (study) => h("a", { href: `#study/${study.study_id}` }, study.name) },
+    { title: "Created", cell: (study) => when(study.created_utc) },
+  ], items);
+}

@@ -1,0 +1,106 @@
+// One open study: ladder, comparison, diagnosis; adding and dropping effects moves from model to model.
+
+import { get, post, remove } from "./api.js";
+import { comparison } from "./comparison.js";
+import { diagnosis } from "./diagnosis.js";
+import { h, panel, replace } from "./dom.js";
+import { ladderPlot } from "./ladder.js";
+import { attempt } from "./problem.js";
+
+export function studyView(place, id) {
+  const parts = Object.fromEntries(["head", "model", "change", "ladder", "compared", "diagnosed"].map((name) => [name, h("div")]));
+  replace(place, parts.head, panel("Model", parts.model, parts.change), panel("Ladder: the error from model to model", parts.ladder),
+    panel("What is missing?", parts.diagnosed), parts.compared);
+  new Study(id, parts).open();
+  return () => {};
+}
+
+class Study {
+  constructor(id, parts) {
+    this.path = `/studies/${encodeURIComponent(id)}`;
+    this.parts = parts;
+    this.model = null;
+  }
+
+  async open() {
+    const study = await attempt(this.parts.head, () => get(this.path));
+    if (!study) return;
+    replace(this.parts.head, heading(study));
+    await this.select(study.model_id);
+  }
+
+  async select(model_id) {
+    this.model = model_id;
+    this.askDiagnosis();
+    await Promise.all([this.showLadder(), this.showComparison()]);
+  }
+
+  async showLadder() {
+    const ladder = await attempt(this.parts.ladder, () => get(`${this.path}/ladder`));
+    if (!ladder) return;
+    const rung = ladder.rungs.find((one) => one.model_id === this.model);
+    replace(this.parts.model, this.chips(rung), this.modelChoice(ladder));
+    await ladderPlot(this.parts.ladder, ladder, this.model);
+  }
+
+  async showComparison() {
+    replace(this.parts.compared, h("p", { class: "busy" }, "Fitting …"));
+    await attempt(this.parts.compared, async () => comparison(this.parts.compared, await get(`${this.path}/compare`, { model_id: this.model })));
+  }
+
+  askDiagnosis() {
+    const answer = h("div");
+    const button = h("button", { class: "primary", type: "button" }, "Diagnose");
+    button.addEventListener("click", async () => {
+      replace(answer, h("p", { class: "busy" }, "Testing every effect of the catalogue …"));
+      const found = await attempt(answer, () => get(`${this.path}/diagnose`, { model_id: this.model }), button);
+      if (found) await diagnosis(answer, found, (effect, place) => this.add(effect, place));
+    });
+    replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), button, answer);
+  }
+
+  add(effect, place) {
+    return attempt(place, async () => this.changed(await post(`${this.path}/models`, { effect, model_id: this.model })));
+  }
+
+  drop(effect) {
+    return attempt(this.parts.change, async () => this.changed(await post(`${this.path}/models`, { effect, model_id: this.model, action: "drop" })));
+  }
+
+  async changed(result) {
+    replace(this.parts.change, h("div", { class: "good", role: "status" }, result.sentence));
+    this.parts.change.scrollIntoView({ behavior: "smooth", block: "center" });
+    await this.select(result.model_id);
+  }
+
+  chips(rung) {
+    const chip = (name) => h("span", { class: "chip" }, name.replaceAll("_", " "),
+      h("button", { type: "button", title: `Drop ${name}`, "aria-label": `Drop ${name}`, onclick: () => this.drop(name) }, "×"));
+    return h("div", { "aria-label": "Effects of this model" }, (rung?.effects ?? []).map(chip));
+  }
+
+  modelChoice(ladder) {
+    const options = ladder.rungs.map((rung) => h("option", { value: String(rung.model_id), selected: rung.model_id === this.model }, rungName(rung)));
+    const choice = h("select", { id: "model", onchange: (event) => this.select(Number(event.target.value)) }, options);
+    const removable = ladder.rungs.length > 1 && !ladder.rungs.some((rung) => rung.parent_id === this.model) && ladder.rungs[0].model_id !== this.model;
+    const take = () => attempt(this.parts.change, async () => {
+      await remove(`${this.path}/models/${this.model}`);
+      replace(this.parts.change);
+      await this.select(ladder.rungs.find((rung) => rung.model_id === this.model)?.parent_id ?? ladder.rungs[0].model_id);
+    });
+    return h("div", { class: "row" }, h("label", { for: "model" }, "Shown model", choice),
+      removable && h("button", { type: "button", onclick: take }, "Remove this model"));
+  }
+}
+
+export function rungName(rung) {
+  const change = [...[rung.added ?? []].flat().map((name) => `+ ${name}`), ...[rung.removed ?? []].flat().map((name) => `− ${name}`)];
+  return `${rung.model_id}: ${change.join(", ").replaceAll("_", " ") || "base"}`;
+}
+
+function heading(study) {
+  const count = (role) => study.trials.filter((trial) => trial.role === role).length;
+  return h("div", { class: "panel" }, h("h2", {}, `Study ${study.study_id}: ${study.name}`),
+    h("p", { class: "soft" }, `${count("training")} training trials, ${count("held_out")} held out. Effort: ${study.effort.name} [${study.effort.unit}]. `,
+      h("a", { href: "#study" }, "All studies")));
+}
