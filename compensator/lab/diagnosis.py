@@ -1,0 +1,83 @@
+"""What a diagnosis says. Plain data; how it is found is in `diagnose`."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.gain import Gain
+from compensator.lab.picture import BinnedMean
+
+Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Why: the model's residual against the effect's driving variable, and the effect's own curve over it.
+
+    Attributes:
+        driver: key of `DRIVERS`.
+        against_motion: values are counted positive against the motion, as friction is.
+        residual: of the model without the effect.
+        curve: contribution of the fitted effect in the same bins.
+    """
+
+    driver: str
+    against_motion: bool
+    residual: BinnedMean
+    curve: BinnedMean
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect that may be missing.
+
+    Attributes:
+        effect: which; shape: its best nonlinear shape.
+        score: evidence for naming, in units of 2 ln L after the price of parameters and shapes.
+        p_value: of this effect alone, robust against autocorrelation.
+        detectability: d', how far the data can tell it from its nearest rival.
+        rivals: effects whose evidence mostly vanishes once this one is in the model.
+        before, after: relative held-out error without and with it.
+        gain: relative fall of that error.
+        physical: all its coefficients lie within their physical bounds when fitted freely.
+        picture: why.
+    """
+
+    effect: Effect
+    shape: Shape
+    score: float
+    p_value: float
+    detectability: float
+    rivals: tuple[str, ...]
+    before: float
+    after: float
+    gain: Gain
+    physical: bool
+    picture: Picture | None
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer.
+
+    Attributes:
+        verdict: what kind of answer it is.
+        sentence: the answer in words.
+        p_value: chance of evidence as strong as the best one's if nothing were missing.
+        classes: effects that these trials cannot tell apart, best first; the first is the answer.
+        candidates: ranked.
+        driver: for "unknown-effect", what the residual varies with.
+        data_problems: sentences.
+        notes: sentences.
+        left_out: effect -> why it could not be judged.
+    """
+
+    verdict: Verdict
+    sentence: str
+    p_value: float
+    classes: list[tuple[str, ...]]
+    candidates: list[Candidate]
+    driver: str | None = None
+    data_problems: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)

@@ -1,0 +1,1 @@
+"""The physical effects, one file each."""

@@ -1,0 +1,23 @@
+"""Coulomb friction."""
+
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recording import FloatArray
+
+
+def columns(motion: Motion, _: Shape) -> FloatArray:
+    """The direction of motion."""
+    return motion.direction[None]
+
+
+EFFECT = Effect(
+    name="coulomb",
+    title="Coulomb friction",
+    physics=("Friction of sliding contact: constant, against the motion."),
+    equation=r"F_c\,\mathrm{sgn}(\dot q)",
+    columns=columns,
+    parameters=(Parameter("Coulomb friction", "{effort}", 0.0),),
+    driver="velocity",
+    excited_by="motion in both directions at several speeds",
+    source="Saini et al. 2013, eq. (2)",
+    confused_with=("coulomb_asymmetry", "weight_friction"),
+)

@@ -1,0 +1,28 @@
+"""Direction-asymmetric Coulomb friction."""
+
+import numpy as np
+
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recording import FloatArray
+
+
+def columns(motion: Motion, _: Shape) -> FloatArray:
+    """1 while moving."""
+    return np.abs(motion.direction)[None]
+
+
+EFFECT = Effect(
+    name="coulomb_asymmetry",
+    title="Direction-asymmetric Coulomb friction",
+    physics=(
+        "Coulomb friction that differs by direction. While the joint moves, it is the same as an offset of "
+        "the effort; only a reading at rest tells them apart."
+    ),
+    equation=r"\Delta F_c\,|\mathrm{sgn}(\dot q)|",
+    columns=columns,
+    parameters=(Parameter("half difference of Coulomb friction", "{effort}"),),
+    driver="direction",
+    excited_by="motion in both directions, breakaway on both sides at rest",
+    source="Saini et al. 2013, section 2.4 (assumed away there)",
+    confused_with=("offset",),
+)

@@ -1,0 +1,141 @@
+"""What an effect is: a named physical mechanism that adds columns to the regression of the effort."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from compensator.lab.facts import STANDARD_GRAVITY_M_S2, Facts
+from compensator.lab.recording import Condition, FloatArray
+
+Shape = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """One trial at its full, uniform rate: what columns are computed from. Arrays have shape (n,).
+
+    Attributes:
+        facts: of the joint.
+        conditions: of the trial.
+        time_s: since the start of the trial.
+        position, velocity, acceleration, jerk: rad or m, and per s, s^2, s^3; zero-phase filtered.
+        direction: smooth sign of the velocity, -1 .. 1.
+        load_effort: predicted effort without friction, in the effort's unit (never the measured one).
+        effort_rate: d/dt of the predicted effort.
+        temperature_c, supply_v: NaN where not measured.
+        position_span: range of position over all trials of the study.
+        slow: speed below which direction is uncertain.
+        fast: 95 % quantile of speed over all trials.
+    """
+
+    facts: Facts
+    conditions: Mapping[str, Condition]
+    time_s: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+    direction: FloatArray
+    load_effort: FloatArray
+    effort_rate: FloatArray
+    temperature_c: FloatArray
+    supply_v: FloatArray
+    position_span: float
+    slow: float
+    fast: float
+
+    def condition(self, name: str, default: float) -> float:
+        """A numeric condition of the trial, or the default where it is not given."""
+        value = self.conditions.get(name, default)
+        return float(value) if isinstance(value, int | float) else default
+
+    @property
+    def load_kg(self) -> float:
+        """Load at the tip [kg]; 0 where not told."""
+        return self.condition("load_kg", 0.0)
+
+    @property
+    def arm_m(self) -> float:
+        """Axis to the tip load [m]; 0 where not told."""
+        return self.condition("arm_m", self.facts.arm_m or 0.0)
+
+    @property
+    def load_moment_n_m(self) -> float:
+        """Gravity moment of the tip load at 90 degrees [N m]; 0 for a balanced arm."""
+        if self.conditions.get("balanced"):
+            return 0.0
+        return self.load_kg * STANDARD_GRAVITY_M_S2 * self.arm_m
+
+    @property
+    def load_inertia_kg_m2(self) -> float:
+        """Inertia of the tip load about the axis [kg m^2], as a point mass."""
+        return self.load_kg * self.arm_m**2
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One coefficient of an effect.
+
+    Attributes:
+        name: as shown.
+        unit: a template; `{effort}` and `{position}` are replaced by the study's units.
+        low, high: what is physically possible, in `unit`.
+    """
+
+    name: str
+    unit: str
+    low: float = -np.inf
+    high: float = np.inf
+
+    def unit_in(self, effort_unit: str, position_unit: str) -> str:
+        """The unit, with the study's own effort and position units."""
+        return self.unit.format(effort=effort_unit, position=position_unit)
+
+
+def _no_shapes(_: Motion) -> list[Shape]:
+    return [()]
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """A named physical mechanism.
+
+    Attributes:
+        name: identifier, as in commands.
+        title: in words.
+        physics: one paragraph.
+        equation: TeX.
+        columns: (motion, shape) -> array (k, n), one row per parameter. Full rate; filtered afterwards.
+        parameters: one per column.
+        driver: the variable to plot residuals against; a key of `compensator.lab.drivers.DRIVERS`.
+        excited_by: what a trial must do so that the effect shows.
+        source: paper or book.
+        shapes: nonlinear shape values to scan, given any trial's motion; `shape_names` names them.
+        smooth_shape: the shape is continuous, so a scan is refined between its values.
+        channels: channels that the recordings must have.
+        confused_with: effects that trials often cannot tell apart from it.
+        carried: part of the load that the gear transmits (see `prediction`).
+        uses_prediction: columns use `load_effort` or `effort_rate`: a model must be fitted first.
+        standing_in: pipeline nuisance columns that would absorb this effect (see `nuisance`).
+        varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
+    """
+
+    name: str
+    title: str
+    physics: str
+    equation: str
+    columns: Callable[[Motion, Shape], FloatArray]
+    parameters: tuple[Parameter, ...]
+    driver: str
+    excited_by: str
+    source: str
+    shapes: Callable[[Motion], list[Shape]] = _no_shapes
+    shape_names: tuple[str, ...] = ()
+    smooth_shape: bool = False
+    channels: tuple[str, ...] = ()
+    confused_with: tuple[str, ...] = ()
+    carried: bool = False
+    uses_prediction: bool = False
+    standing_in: frozenset[str] = field(default_factory=frozenset)
+    varies_with: str | None = None

@@ -1,0 +1,31 @@
+"""Inertia."""
+
+import numpy as np
+
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recording import FloatArray
+
+
+def columns(motion: Motion, _: Shape) -> FloatArray:
+    """Acceleration, and acceleration times the load's inertia."""
+    return np.array([motion.acceleration, motion.load_inertia_kg_m2 * motion.acceleration])
+
+
+EFFECT = Effect(
+    name="inertia",
+    title="Inertia",
+    physics=(
+        "Effort that accelerates the rotor (through the gear, ratio squared), the arm, and the load at its "
+        "tip as a point mass."
+    ),
+    equation=r"J\,\ddot q + s\,m l^2 \ddot q",
+    columns=columns,
+    parameters=(
+        Parameter("inertia", "{effort} s2/{position}", 0.0),
+        Parameter("load inertia scale", "{effort} s2/({position} kg m2)", 0.0),
+    ),
+    driver="acceleration",
+    excited_by="accelerations that differ at the same speed and position: sines of several frequencies, steps",
+    source="Newton",
+    confused_with=("measurement_delay",),
+)

@@ -1,0 +1,26 @@
+"""Load-dependent friction, quadratic."""
+
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recording import FloatArray
+
+
+def columns(motion: Motion, _: Shape) -> FloatArray:
+    """Square of the transmitted load against the motion."""
+    return (motion.load_effort**2 * motion.direction)[None]
+
+
+EFFECT = Effect(
+    name="load_friction_quadratic",
+    title="Load-dependent friction, quadratic",
+    physics=(
+        "Gear friction that grows faster than the transmitted torque: teeth and bearings deflect and more surface rubs."
+    ),
+    equation=r"\mu_2\,\hat\tau_{load}^2\,\mathrm{sgn}(\dot q)",
+    columns=columns,
+    parameters=(Parameter("quadratic load loss", "1/{effort}", 0.0),),
+    driver="load",
+    excited_by="at least three loads spread over a factor of six",
+    source="Rhoban/bam, model M6",
+    confused_with=("load_friction",),
+    uses_prediction=True,
+)

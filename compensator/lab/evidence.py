@@ -1,0 +1,154 @@
+"""Evidence for each candidate effect, from one fit of the base model.
+
+Three numbers per candidate, never mixed up: a likelihood score for naming, a p-value that stays honest under
+autocorrelation for detection, and (elsewhere) the held-out gain. See docs/diagnosis.md.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from compensator.lab.dataset import IntArray
+from compensator.lab.linear import independent, orthonormal
+from compensator.lab.recording import FloatArray
+
+SIGN_FLIPS = 999
+
+
+@dataclass(frozen=True)
+class Block:
+    """Candidate columns and what they stand for.
+
+    Attributes:
+        name: of the effect.
+        columns: over the rows tested, shape (n, k).
+        base: index of the base it is judged against (see `Base`).
+        scanned: how many shapes of the effect are scanned.
+        key: the shape, or whatever tells blocks of one name apart.
+    """
+
+    name: str
+    columns: FloatArray
+    base: int
+    scanned: int
+    key: object = None
+
+
+@dataclass(frozen=True)
+class Base:
+    """What every candidate is judged on top of: an orthonormal basis (n, b) and the weighted residual (n,)."""
+
+    basis: FloatArray
+    residual: FloatArray
+
+    @classmethod
+    def of(cls, columns: FloatArray, effort: FloatArray) -> "Base":
+        """Project effort (n,) out of columns (n, k)."""
+        basis = orthonormal(columns)
+        return cls(basis, effort - basis @ (basis.T @ effort))
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the rows say for one block.
+
+    Attributes:
+        block: the candidate.
+        score: log-likelihood gain in units of 2 ln L, less the price of its parameters and shapes; > 0 speaks for it.
+        noncentrality: the gain itself, over the noise's power and its autocorrelation.
+        p_value: of this block alone.
+        direction: the block's own contribution after projection, unit norm, shape (n,).
+    """
+
+    block: Block
+    score: float
+    noncentrality: float
+    p_value: float
+    direction: FloatArray
+
+
+@dataclass(frozen=True)
+class Screening:
+    """Evidence for all blocks, best score first, and the chance that the best p-value is luck over all of them."""
+
+    evidence: list[Evidence]
+    p_value: float
+
+
+def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0) -> Screening:
+    """Judge every block.
+
+    The joint null is had by flipping the signs of whole stretches of the score (wild bootstrap): shape scanning and
+    the number of candidates are inside the maximum, so that no further correction is due.
+
+    Args:
+        bases: what blocks are judged on top of.
+        blocks: candidates.
+        stretch: independent stretch of each row, shape (n,).
+        seed: of the flips.
+    """
+    _, labels = np.unique(stretch, return_inverse=True)
+    flips = _sign_flips(int(labels.max()) + 1, seed)
+    evidence, lowest = [], np.ones(len(flips))
+    inflation = max(_inflation(base.residual) for base in bases)
+    for block in blocks:
+        judged = _judge(bases[block.base], block, labels, flips, inflation)
+        if judged is not None:
+            evidence.append(judged[0])
+            lowest = np.minimum(lowest, judged[1])
+    if not evidence:
+        return Screening([], 1.0)
+    observed = min(item.p_value for item in evidence)
+    p_value = (1.0 + float(np.sum(lowest <= observed * (1.0 + 1e-9)))) / (1.0 + len(flips))
+    return Screening(sorted(evidence, key=lambda item: -item.score), p_value)
+
+
+def _judge(
+    base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float
+) -> tuple[Evidence, FloatArray] | None:
+    columns = block.columns - base.basis @ (base.basis.T @ block.columns)
+    before = np.linalg.norm(block.columns, axis=0)
+    new = np.linalg.norm(columns, axis=0) > 1e-3 * np.where(before > 0, before, np.inf)
+    columns = columns[:, new]
+    kept = independent(columns)
+    if not kept.any():
+        return None
+    directions = np.linalg.qr(columns[:, kept])[0]
+    count, rank = directions.shape
+    share = directions.T @ base.residual
+    gain = float(share @ share)
+    power = float(base.residual @ base.residual)
+    price = rank * np.log(count / inflation) + 2.0 * np.log(block.scanned)
+    likelihood = -count * np.log1p(-min(gain / power, 1.0 - 1e-12)) / inflation
+    by_stretch = np.zeros((int(labels.max()) + 1, rank))
+    np.add.at(by_stretch, labels, directions * base.residual[:, None])
+    p_values = _robust_p(by_stretch, np.vstack([np.ones(len(by_stretch)), flips]))
+    own = directions @ share
+    norm = float(np.linalg.norm(own))
+    found = Evidence(block, float(likelihood - price), float(likelihood), float(p_values[0]), own / (norm or 1.0))
+    return found, p_values[1:]
+
+
+def _robust_p(by_stretch: FloatArray, signs: FloatArray) -> FloatArray:
+    """P-value of the score for each row of signs, its covariance taken from the stretches themselves."""
+    covariance = by_stretch.T @ by_stretch
+    sums = signs @ by_stretch
+    statistic = np.einsum("fi,fi->f", sums, np.linalg.lstsq(covariance, sums.T, rcond=1e-10)[0].T)
+    p_values: FloatArray = chi2.sf(statistic, by_stretch.shape[1])
+    return p_values
+
+
+def _inflation(residual: FloatArray) -> float:
+    """Rows per independent row, from the residual's lag-one correlation (AR(1): (1 + r) / (1 - r))."""
+    power = float(residual @ residual)
+    if power == 0.0:
+        return 1.0
+    lag_one = min(max(float(residual[:-1] @ residual[1:]) / power, 0.0), 0.95)
+    return (1.0 + lag_one) / (1.0 - lag_one)
+
+
+def _sign_flips(stretches: int, seed: int) -> FloatArray:
+    generator = np.random.default_rng(seed)
+    return generator.choice(np.array([-1.0, 1.0]), size=(SIGN_FLIPS, stretches))

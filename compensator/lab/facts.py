@@ -1,0 +1,34 @@
+"""What the lab is told about the joint. Everything is optional; what is missing limits what can be named."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+EffortQuantity = Literal["torque", "force", "current", "current_estimate", "terminal_voltage"]
+
+STANDARD_GRAVITY_M_S2 = 9.80665
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """The joint as its owner knows it.
+
+    Attributes:
+        joint: "rotary" (rad, N m) or "linear" (m, N).
+        horizontal: gravity does no work on the joint.
+        torque_per_current_n_m_a: joint torque per motor ampere, torque constant x gear ratio [N m/A].
+        gear_ratio: motor turns per joint turn.
+        arm_m: axis to the tip load [m], where the trial's conditions do not tell.
+        effort: the quantity that the models predict; None takes the best that every trial has.
+    """
+
+    joint: Literal["rotary", "linear"] = "rotary"
+    horizontal: bool = False
+    torque_per_current_n_m_a: float | None = None
+    gear_ratio: float | None = None
+    arm_m: float | None = None
+    effort: EffortQuantity | None = None
+
+    @property
+    def position_unit(self) -> str:
+        """Unit of position: rad or m."""
+        return "rad" if self.joint == "rotary" else "m"

@@ -1,0 +1,148 @@
+"""Fit a model (a list of effects) to the rows of a study: bounded least squares, shapes by variable projection."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from compensator.lab.catalogue import effect_named
+from compensator.lab.dataset import Dataset
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.linear import Bounds, solve
+from compensator.lab.prediction import with_own_prediction
+from compensator.lab.recording import FloatArray
+from compensator.lab.regimes import BoolArray
+from compensator.lab.shape_search import find_shapes, first_shapes
+
+PREDICTION_PASSES = 2  # the predicted load converges geometrically; a third pass changes the fourth digit
+
+
+@dataclass(frozen=True)
+class Term:
+    """One fitted effect.
+
+    Attributes:
+        effect: which.
+        shape: its nonlinear shape values.
+        coefficients: one per parameter of the effect, shape (k,).
+        kept: which of them the data determine.
+        at_bound: which of them a physical bound holds.
+    """
+
+    effect: Effect
+    shape: Shape
+    coefficients: FloatArray
+    kept: BoolArray
+    at_bound: BoolArray
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model fitted to counted training rows.
+
+    Attributes:
+        dataset: with the model's own prediction in its motions.
+        training: rows used, shape (N,).
+        terms: the fitted effects, in the model's order.
+        columns: of all terms, shape (N, K).
+    """
+
+    dataset: Dataset
+    training: BoolArray
+    terms: tuple[Term, ...]
+    columns: FloatArray
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of all terms, shape (K,)."""
+        return np.concatenate([term.coefficients for term in self.terms])
+
+    @property
+    def bounds(self) -> Bounds:
+        """Physical bounds of all coefficients."""
+        return bounds_of([term.effect for term in self.terms])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(term.effect.name for term in self.terms)
+
+    @property
+    def shapes(self) -> dict[str, Shape]:
+        """Shape of each effect by name."""
+        return {term.effect.name: term.shape for term in self.terms}
+
+    @property
+    def predicted(self) -> FloatArray:
+        """Predicted effort of every row, shape (N,)."""
+        return self.columns @ self.coefficients
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus predicted effort of every row, shape (N,)."""
+        return self.dataset.effort - self.predicted
+
+
+def fit_model(
+    dataset: Dataset,
+    effects: Sequence[str],
+    training: BoolArray | None = None,
+    shapes: Mapping[str, Shape] | None = None,
+) -> Fit:
+    """Fit the named effects, every coefficient within its physical bounds.
+
+    Args:
+        dataset: rows of all trials.
+        effects: names, in order; of columns that the data cannot tell apart, the later is dropped.
+        training: rows to fit to, shape (N,); all counted rows if None.
+        shapes: nonlinear shapes to keep as they are; those not given are searched.
+
+    Raises:
+        UnusableDataError: no effects, or fewer rows than columns.
+        UnknownEffectError, NotApplicableError: see `catalogue` and `Dataset.columns`.
+    """
+    if not effects:
+        raise UnusableDataError("the model has no effects; add at least one, for instance 'coulomb'")
+    rows = dataset.counted if training is None else training
+    chosen = [effect_named(name) for name in effects]
+    plain = [effect for effect in chosen if not effect.uses_prediction]
+    kept = dict(shapes or {})
+    fit = fit_linear(dataset, plain or chosen, rows, find_shapes(dataset, plain or chosen, rows, kept))
+    if len(plain) == len(chosen):
+        return fit
+    for _ in range(PREDICTION_PASSES):
+        predicted = with_own_prediction(fit)
+        fit = fit_linear(predicted, chosen, rows, {**first_shapes(predicted, chosen), **fit.shapes})
+    predicted = with_own_prediction(fit)
+    return fit_linear(predicted, chosen, rows, find_shapes(predicted, chosen, rows, kept))
+
+
+def fit_linear(dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape]) -> Fit:
+    """Fit the coefficients of effects of given shapes to the given rows."""
+    blocks = [dataset.columns(effect, shapes.get(effect.name, ())) for effect in effects]
+    columns = np.concatenate(blocks, axis=1)
+    if int(rows.sum()) < 2 * columns.shape[1]:
+        raise UnusableDataError(
+            f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
+        )
+    solution = solve(columns[rows], dataset.effort[rows], bounds_of(effects))
+    ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
+    terms = tuple(
+        Term(
+            effect,
+            shapes.get(effect.name, ()),
+            solution.coefficients[a:b],
+            solution.kept[a:b],
+            solution.at_bound[a:b],
+        )
+        for effect, (a, b) in zip(effects, pairwise(ends), strict=True)
+    )
+    return Fit(dataset, rows, terms, columns)
+
+
+def bounds_of(effects: Sequence[Effect]) -> Bounds:
+    """Physical bounds of all parameters of the effects, in order."""
+    parameters = [parameter for effect in effects for parameter in effect.parameters]
+    return Bounds(np.array([p.low for p in parameters]), np.array([p.high for p in parameters]))

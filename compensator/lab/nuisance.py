@@ -1,0 +1,32 @@
+"""Columns that the measuring pipeline itself can produce, so that none of them is mistaken for physics.
+
+They stand in every diagnosis. A small delay looks like jerk; a sign smoothed by filtering or backlash looks like a
+difference of steep sigmoids. An effect that means one of these (see `Effect.standing_in`) is judged without it.
+"""
+
+import numpy as np
+
+from compensator.lab.dataset import Dataset
+from compensator.lab.effects.effect import Motion
+from compensator.lab.recording import FloatArray
+
+NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
+
+
+def nuisance_columns(dataset: Dataset) -> dict[str, FloatArray]:
+    """Each nuisance column by name, shape (N,)."""
+    stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
+    return dict(zip(NAMES, stack.T, strict=True))
+
+
+def _columns(motion: Motion, rate_hz: float) -> FloatArray:
+    slow = motion.velocity / motion.slow
+    sigmoids = [np.tanh(slow / width) for width in (1.0, 3.0, 10.0)]
+    return np.array(
+        [
+            motion.jerk,
+            sigmoids[0] - sigmoids[1],
+            sigmoids[1] - sigmoids[2],
+            np.gradient(sigmoids[1], 1.0 / rate_hz),
+        ]
+    )

@@ -1,0 +1,36 @@
+"""The picture that shows why an effect is ranked: residual against its driving variable, its curve laid over."""
+
+import numpy as np
+
+from compensator.lab.candidates import Candidates
+from compensator.lab.catalogue import effect_named
+from compensator.lab.diagnosis import Picture
+from compensator.lab.drivers import DRIVERS
+from compensator.lab.evidence import Evidence
+from compensator.lab.picture import binned_mean
+from compensator.lab.recording import FloatArray
+
+
+def picture_of(gathered: Candidates, item: Evidence) -> Picture | None:
+    """Residual and curve over the effect's driver, on the tested rows; None where the driver is not measured."""
+    dataset, rows = gathered.fit.dataset, gathered.rows
+    driver = DRIVERS[effect_named(item.block.name).driver]
+    values = dataset.rows_of([driver.of(trial) for trial in dataset.trials])[rows]
+    if not np.isfinite(values).all():
+        return None
+    base = gathered.bases[item.block.base]
+    residual = base.residual / gathered.weights
+    curve = item.direction * float(item.direction @ base.residual) / gathered.weights
+    motion = np.sign(dataset.rows_of([trial.motion.direction for trial in dataset.trials])[rows])
+    against = driver.name != "velocity" and _spread(values, curve * motion) > _spread(values, curve)
+    sign = motion if against else np.ones(len(values))
+    stretch = dataset.block_index[rows]
+    return Picture(
+        driver.name, against, binned_mean(values, residual * sign, stretch), binned_mean(values, curve * sign, stretch)
+    )
+
+
+def _spread(driver: FloatArray, values: FloatArray) -> float:
+    """Power of the binned means: how much of the values the driver explains."""
+    means = binned_mean(driver, values, np.arange(len(values)))
+    return float(np.sum(means.count * means.mean**2))

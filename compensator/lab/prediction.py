@@ -1,0 +1,60 @@
+"""What a fitted model says of the load and of the effort's rate of change: input of load-dependent and delay terms.
+
+The load that the gear transmits is gravity, springs, and the inertia of what hangs beyond the gear; the rotor's own
+inertia is accelerated before the teeth. It is always the model's prediction, never the measured effort: built from the
+measurement, a load-dependent term would explain the effort with itself.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compensator.lab.effects.effect import Motion
+from compensator.lab.recording import FloatArray
+
+if TYPE_CHECKING:
+    from compensator.lab.dataset import Dataset
+    from compensator.lab.fit import Fit
+
+
+def with_own_prediction(fit: "Fit") -> "Dataset":
+    """The fit's rows, with its own predicted load and rate of change of effort in every motion."""
+    per_torque = effort_per_torque(fit)
+    loads, rates = [], []
+    for trial in fit.dataset.trials:
+        load = np.zeros(len(trial.motion.time_s))
+        total = np.zeros(len(trial.motion.time_s))
+        for term in fit.terms:
+            if term.effect.name == "measurement_delay":
+                continue  # its column is the derivative of the rest
+            part = term.coefficients @ term.effect.columns(trial.motion, term.shape)
+            total += part
+            if term.effect.carried:
+                load += part
+        loads.append(load + _load_inertia_effort(fit, trial.motion, per_torque))
+        rates.append(np.gradient(total, 1.0 / trial.signals.rate_hz))
+    return fit.dataset.with_prediction(loads, rates)
+
+
+def effort_per_torque(fit: "Fit") -> float | None:
+    """Effort per N m of load: 1 where the effort is a torque, else by the load's known weight, if any."""
+    if fit.dataset.effort_definition.unit in ("N m", "N"):
+        return 1.0
+    gravity = next((term for term in fit.terms if term.effect.name == "gravity"), None)
+    if gravity is None:
+        return None
+    arm, scale = gravity.coefficients
+    if scale > 0.0:
+        return float(scale)
+    moments = [trial.motion.load_moment_n_m for trial in fit.dataset.trials]
+    return float(arm / max(moments)) if max(moments) > 0.0 and arm > 0.0 else None
+
+
+def _load_inertia_effort(fit: "Fit", motion: Motion, per_torque: float | None) -> FloatArray:
+    """Effort that accelerates what hangs beyond the gear; all of the inertia where the load's is not known."""
+    if motion.load_inertia_kg_m2 > 0.0 and per_torque is not None:
+        return per_torque * motion.load_inertia_kg_m2 * motion.acceleration
+    if motion.facts.joint == "rotary":
+        return np.zeros(len(motion.time_s))
+    inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)
+    return np.zeros(len(motion.time_s)) if inertia is None else inertia.coefficients[0] * motion.acceleration

@@ -1,0 +1,155 @@
+"""From a recording to uniform, filtered signals: the same zero-phase filters on both sides of the equation.
+
+Position is filtered with a cut-off well above the one finally applied to every column and to the effort, so
+that differentiation does not shape the columns; nonlinear columns are computed at the full rate, then filtered,
+then thinned to the Nyquist rate (Janot, Gautier, Brunot 2019; "parallel decimation").
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+
+from compensator.lab.effort import Effort
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.facts import Facts
+from compensator.lab.recording import FloatArray, Recording
+from compensator.lab.regimes import BoolArray
+
+FILTER_ORDER = 4
+DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
+LONGEST_GAP_PERIODS = 5.0
+REGULAR_SHARE = 0.05  # of the period: jitter that counts as regular sampling
+SATURATED_DUTY = 0.98
+EDGE_PERIODS = 3.0  # of the final cut-off, dropped at both ends of a trial, where the filter starts from nothing
+MASK_PERIODS = 1.0  # of the final cut-off, dropped on both sides of an unusable sample, which the filter spreads
+
+
+@dataclass(frozen=True, slots=True)
+class Signals:
+    """One recording on a uniform time grid; arrays have shape (n,).
+
+    Attributes:
+        recording: where they come from.
+        time_s: uniform.
+        rate_hz: of the grid.
+        position, velocity, acceleration, jerk: differentiated after the wide filter.
+        effort: raw, on the grid.
+        temperature_c, supply_v: NaN where not measured.
+        usable: False in gaps, with the power stage off, in saturation, and at the ends.
+    """
+
+    recording: Recording
+    time_s: FloatArray
+    rate_hz: float
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+    effort: FloatArray
+    temperature_c: FloatArray
+    supply_v: FloatArray
+    usable: BoolArray
+
+
+def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray:
+    """Zero-phase Butterworth low-pass along the last axis; unchanged where the cut-off is beyond Nyquist."""
+    if cutoff_hz >= 0.49 * rate_hz:
+        return values
+    sections = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
+    filtered: FloatArray = sosfiltfilt(sections, values, axis=-1)
+    return filtered
+
+
+def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: float) -> Signals:
+    """Resample, filter and differentiate one recording.
+
+    Raises:
+        UnusableDataError: no position, or too short for the filter.
+    """
+    raw_time = recording.channels["time_s"]
+    position_name = f"position_{facts.position_unit}"
+    if position_name not in recording.channels:
+        raise UnusableDataError(
+            f"recording '{recording.name}': channel {position_name} is missing, found "
+            f"{', '.join(sorted(recording.channels))}; a {facts.joint} joint needs its position"
+        )
+    period = float(np.median(np.diff(raw_time))) if len(raw_time) > 1 else np.inf
+    rate = 1.0 / period
+    time = _uniform(raw_time, period)
+    shortest = int(np.ceil(2 * EDGE_PERIODS * rate / cutoff_hz)) + 6 * FILTER_ORDER
+    if len(time) < shortest:
+        raise UnusableDataError(
+            f"recording '{recording.name}' has {len(time)} samples; at least {shortest} are needed "
+            f"to filter at {cutoff_hz:g} Hz; record longer"
+        )
+    raw_position = recording.channels[position_name]
+    position = low_pass(_resample(time, raw_time, raw_position), DIFFERENTIATION_FACTOR * cutoff_hz, rate)
+    velocity = np.gradient(position, period)
+    acceleration = np.gradient(velocity, period)
+    raw_effort = effort.of(recording)
+    return Signals(
+        recording=recording,
+        time_s=time,
+        rate_hz=rate,
+        position=position,
+        velocity=velocity,
+        acceleration=acceleration,
+        jerk=np.gradient(acceleration, period),
+        effort=_resample(time, raw_time, raw_effort),
+        temperature_c=_optional(recording, "temperature_c", time),
+        supply_v=_optional(recording, "supply_v", time),
+        usable=_usable(recording, raw_time, raw_position, raw_effort, time, cutoff_hz),
+    )
+
+
+def _uniform(raw_time: FloatArray, period: float) -> FloatArray:
+    """The recording's own time stamps where they are regular: interpolation between them would smooth unevenly."""
+    if len(raw_time) > 1 and np.abs(np.diff(raw_time) - period).max() <= REGULAR_SHARE * period:
+        return raw_time
+    return np.arange(raw_time[0], raw_time[-1], period)
+
+
+def _resample(time: FloatArray, raw_time: FloatArray, raw: FloatArray) -> FloatArray:
+    finite = np.isfinite(raw)
+    if not finite.any():
+        return np.full(len(time), np.nan)
+    return np.interp(time, raw_time[finite], raw[finite])
+
+
+def _optional(recording: Recording, name: str, time: FloatArray) -> FloatArray:
+    if name not in recording.channels:
+        return np.full(len(time), np.nan)
+    return _resample(time, recording.channels["time_s"], recording.channels[name])
+
+
+def _usable(
+    recording: Recording,
+    raw_time: FloatArray,
+    position: FloatArray,
+    effort: FloatArray,
+    time: FloatArray,
+    cutoff_hz: float,
+) -> BoolArray:
+    """Rows whose position and effort were measured in closed loop, away from gaps, saturation and ends."""
+    good: BoolArray = np.isfinite(position) & np.isfinite(effort)
+    if "enabled" in recording.channels:
+        good &= recording.channels["enabled"] > 0.5
+    if "duty" in recording.channels:
+        good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
+    steps = np.diff(raw_time)
+    gap = np.append(steps > LONGEST_GAP_PERIODS * float(np.median(steps)), False)
+    edge_s = EDGE_PERIODS / cutoff_hz
+    usable: BoolArray = (time >= time[0] + edge_s) & (time <= time[-1] - edge_s)
+    return usable & (distance_to_nearest(time, raw_time[~good | gap]) > MASK_PERIODS / cutoff_hz)
+
+
+def distance_to_nearest(values: FloatArray, marks: FloatArray) -> FloatArray:
+    """Distance of each value to the nearest of the sorted marks; inf where there are none."""
+    if len(marks) == 0:
+        return np.full(len(values), np.inf)
+    right = np.searchsorted(marks, values)
+    after = np.where(right < len(marks), marks[np.minimum(right, len(marks) - 1)], np.inf)
+    before = np.where(right > 0, marks[np.maximum(right - 1, 0)], -np.inf)
+    nearest: FloatArray = np.minimum(after - values, values - before)
+    return nearest

@@ -1,0 +1,58 @@
+"""Which rows of a trial are sliding, in transition, or stuck.
+
+A stuck joint constrains the effort only to an interval, so its rows are no equations. Near a reversal, pre-sliding,
+backlash and lag dominate. Only steady sliding rows rank effects (Armstrong, Dupont, Canudas de Wit 1994).
+"""
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+from compensator.lab.recording import FloatArray
+
+BoolArray = NDArray[np.bool_]
+
+SLIDE_MARGIN_S = 0.04
+STUCK_AFTER_S = 0.1
+TRANSIENT_S = 0.15
+
+
+class Regime(IntEnum):
+    """What the joint does in a row."""
+
+    SLIDING = 0
+    TRANSIENT = 1
+    STUCK = 2
+
+
+def classify(velocity: FloatArray, slow: float, rate_hz: float) -> NDArray[np.uint8]:
+    """Regime of each row, shape (n,).
+
+    Args:
+        velocity: filtered velocity, shape (n,).
+        slow: speed below which the direction of motion is uncertain.
+        rate_hz: of the rows.
+    """
+    speed = np.abs(velocity)
+    regime = np.full(len(velocity), Regime.TRANSIENT, dtype=np.uint8)
+    around_s = 2 * round(SLIDE_MARGIN_S * rate_hz) + 1
+    sliding = minimum_filter1d(speed, around_s) > slow
+    regime[sliding & ~_near_reversal(velocity, slow, rate_hz)] = Regime.SLIDING
+    window = 2 * round(0.5 * STUCK_AFTER_S * rate_hz) + 1
+    stuck = minimum_filter1d((speed < slow).astype(np.uint8), window) > 0
+    regime[maximum_filter1d(stuck.astype(np.uint8), window) > 0] = Regime.STUCK
+    return regime
+
+
+def _near_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolArray:
+    """True within TRANSIENT_S after the direction of motion changed."""
+    direction = np.where(velocity > slow, 1, np.where(velocity < -slow, -1, 0))
+    moving = np.flatnonzero(direction)
+    near = np.zeros(len(velocity), dtype=bool)
+    changes = moving[1:][np.diff(direction[moving]) != 0]
+    after = round(TRANSIENT_S * rate_hz)
+    for change in changes:
+        near[change : change + after] = True
+    return near

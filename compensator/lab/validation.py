@@ -1,0 +1,97 @@
+"""How wrong a model is on trials that it was not fitted to.
+
+Held-out trials where the study names some; else each training trial is left out in turn. Normal equations are kept
+per trial, so leaving one out costs one small solve. Nonlinear shapes stay those of the whole training set.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from compensator.lab.dataset import IntArray
+from compensator.lab.fit import Fit
+from compensator.lab.linear import solve_normal
+from compensator.lab.recording import FloatArray
+from compensator.lab.regimes import BoolArray
+
+FEWEST_TRIALS = 4  # fewer cannot be resampled or left out one by one
+
+HeldOutKind = Literal["hold-out", "leave-one-trial-out", "leave-one-block-out"]
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Residuals on rows that the coefficients have not seen.
+
+    Attributes:
+        kind: how rows were held out.
+        rows: which rows, shape (N,).
+        residual: of those rows, shape (rows.sum(),).
+        unit: which independent unit (trial or block) each of these rows belongs to.
+        relative: root of residual power over effort power.
+        rms: root mean square residual, in the effort's unit.
+    """
+
+    kind: HeldOutKind
+    rows: BoolArray
+    residual: FloatArray
+    unit: IntArray
+    relative: float
+    rms: float
+
+    def power_by_unit(self) -> FloatArray:
+        """Sum of squared residuals of each independent unit, in order of its label."""
+        _, dense = np.unique(self.unit, return_inverse=True)
+        return np.bincount(dense, weights=self.residual**2).astype(float)
+
+
+def relative_error(residual: FloatArray, effort: FloatArray) -> float:
+    """||residual|| / ||effort||."""
+    power = float(effort @ effort)
+    return float(np.sqrt((residual @ residual) / power)) if power > 0 else float("nan")
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")
+
+
+def held_out(fit: Fit) -> HeldOut:
+    """The held-out error of a fit: on the trials it was not trained on, or by leaving one out in turn.
+
+    With fewer than four training trials and none held out, stretches of BLOCK_S are left out instead: an optimistic
+    stand-in, since a trial's stretches share its conditions; `kind` says so.
+    """
+    outside = fit.dataset.counted & ~fit.training
+    if outside.any():
+        return _result(fit, "hold-out", outside, fit.residual[outside], independent_units(fit, outside))
+    trials = fit.dataset.trial_index
+    if len(np.unique(trials[fit.training])) >= FEWEST_TRIALS:
+        return _leave_out(fit, "leave-one-trial-out", trials)
+    return _leave_out(fit, "leave-one-block-out", fit.dataset.block_index)
+
+
+def independent_units(fit: Fit, rows: BoolArray) -> IntArray:
+    """Labels of what is resampled: trials, or stretches of BLOCK_S where there are too few trials."""
+    trials = fit.dataset.trial_index[rows]
+    return trials if len(np.unique(trials)) >= FEWEST_TRIALS else fit.dataset.block_index[rows]
+
+
+def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray) -> HeldOut:
+    rows = fit.training
+    kept = np.concatenate([term.kept for term in fit.terms])
+    columns, effort, unit = fit.columns[rows][:, kept], fit.dataset.effort[rows], units[rows]
+    bounds = fit.bounds.of(kept)
+    gram, moment = columns.T @ columns, columns.T @ effort
+    residual = np.empty(len(effort))
+    for label in np.unique(unit):
+        own = unit == label
+        inside = columns[own]
+        rest = solve_normal(gram - inside.T @ inside, moment - inside.T @ effort[own], bounds)
+        residual[own] = effort[own] - inside @ rest
+    return _result(fit, kind, rows, residual, unit)
+
+
+def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:
+    return HeldOut(kind, rows, residual, unit, relative_error(residual, fit.dataset.effort[rows]), rms(residual))
