@@ -45,9 +45,9 @@ def plan(table: Table, mapping: Mapping) -> tuple[list[Use], int | None]:
             uses.append(Use(channel, index, column.source, column.scale, column.offset))
     channels = {use.channel for use in uses}
     if "time_s" not in channels:
-        raise table.error(f"has no column time_s, and none is mapped to it; it has {', '.join(table.header)}")
+        raise table.error(f"has no column time_s, and none is mapped to it; it has {', '.join(table.header)}", 1)
     if channels == {"time_s"}:
-        raise table.error("has no channel but time_s; wanted a position and what drives it as well")
+        raise table.error("has no channel but time_s; wanted a position and what drives it as well", 1)
     return uses, events
 
 
@@ -63,8 +63,7 @@ def _check_known(table: Table, mapping: Mapping) -> None:
     if len(table.header) == 1 and any(sign in first for sign in ";\t|"):
         parts.append('Is the delimiter another sign? Then say so in a mapping: delimiter = ";"')
     parts.append(f"Known: {', '.join([*CHANNELS, EVENT_COLUMN])}. Map or ignore the column in a mapping file")
-    error = table.error(". ".join(parts), column=first)
-    raise type(error)(table.place, ". ".join(parts), 1, first)
+    raise table.error(". ".join(parts), 1, first)
 
 
 def _check_clash(table: Table, mapped: dict[str, Column], mapping: Mapping) -> None:
@@ -72,7 +71,8 @@ def _check_clash(table: Table, mapped: dict[str, Column], mapping: Mapping) -> N
         if channel in table.header and column.source != channel and channel not in mapping.ignore:
             raise table.error(
                 f"is a column, and is mapped from '{column.source}' too; ignore the column, or leave the mapping out",
-                column=channel,
+                1,
+                channel,
             )
 
 

@@ -1,19 +1,17 @@
 """One trial from its CSV, read in chunks: memory holds the numbers, and the text of one chunk."""
 
+from array import array
 from collections.abc import Iterator, Sequence
-from itertools import islice
-from operator import itemgetter
 
 import numpy as np
 
 from bench.recording_set import events as event_cells
+from bench.recording_set import numbers
 from bench.recording_set.columns import Use, plan
 from bench.recording_set.mapping import Mapping
-from bench.recording_set.numbers import NoNumber, numbers
-from bench.recording_set.table import Row, Table, is_blank
+from bench.recording_set.table import Chunk, Row, Table
 from compensator.lab.recording import Event, FloatArray
 
-CHUNK_ROWS = 8192
 MOST_ROWS = 50_000_000
 FEWEST_ROWS = 2
 
@@ -26,66 +24,63 @@ def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatA
             a time that is not finite, stands still or runs backwards.
     """
     uses, event_index = plan(table, mapping)
-    parts: dict[str, list[FloatArray]] = {use.channel: [] for use in uses}
-    found: list[Event] = []
-    rows = 0
-    for chunk in _chunks(table):
-        for use in uses:
-            parts[use.channel].append(_column(table, chunk, use, rows, mapping.decimal))
+    grown = {use.channel: array("d") for use in uses}  # grows in place, where a list of parts would double the memory
+    events: list[Event] = []
+    time = next(use for use in uses if use.channel == "time_s")
+    last_s = -np.inf
+    for chunk in table.chunks():
+        columns, rows = _read(chunk, len(table.header), uses, event_index, mapping)
+        time_s = columns["time_s"]
+        _check_time(chunk, last_s, time_s, time.source)
+        last_s = time_s[-1] if len(time_s) else last_s
         if event_index is not None:
-            found += _events(chunk, event_index, parts["time_s"][-1])
-        rows += len(chunk)
-    if rows < FEWEST_ROWS:
-        raise table.error(f"has {rows} row{'' if rows == 1 else 's'} below the header; wanted at least {FEWEST_ROWS}")
-    channels = {channel: np.concatenate(parts.pop(channel)) for channel in list(parts)}
-    _check_time(table, channels["time_s"], next(use.source for use in uses if use.channel == "time_s"))
-    return channels, found
+            events += _events(rows, event_index, time_s)
+        for channel, values in columns.items():
+            grown[channel].frombytes(values.tobytes())
+        if len(grown["time_s"]) > MOST_ROWS:
+            raise table.error(f"has more than {MOST_ROWS} rows; split the trial into several files")
+    count = len(grown["time_s"])
+    if count < FEWEST_ROWS:
+        found = "1 row" if count == 1 else f"{count} rows"
+        raise table.error(f"has {found} below the header; wanted at least {FEWEST_ROWS}")
+    return {channel: np.frombuffer(values) for channel, values in grown.items()}, events
 
 
-def _chunks(table: Table) -> Iterator[list[Row]]:
-    width = len(table.header)
-    total = 0
-    with table.rows() as reader:
-        while chunk := list(islice(reader, CHUNK_ROWS)):
-            if any(len(cells) != width for cells in chunk):
-                chunk = [cells for cells in chunk if not is_blank(cells)]
-                _check_width(table, chunk, width, total)
-            total += len(chunk)
-            if total > MOST_ROWS:
-                raise table.error(f"has more than {MOST_ROWS} rows; split the trial into several files")
-            yield chunk
+def _read(
+    chunk: Chunk, width: int, uses: Sequence[Use], event_index: int | None, mapping: Mapping
+) -> tuple[dict[str, FloatArray], list[Row]]:
+    """The channels of a chunk, and its rows as text where they hold events."""
+    if event_index is None or (event_index == width - 1 and chunk.last_is_empty()):
+        matrix = numbers.matrix(chunk.text, width, mapping.delimiter, mapping.decimal)
+        if matrix is not None:
+            return {use.channel: use.convert(matrix[:, use.index]) for use in uses}, []
+    rows = [cells for _, cells in chunk.records(width)]
+    return {use.channel: _column(chunk, rows, use, mapping.decimal) for use in uses}, rows
 
 
-def _check_width(table: Table, chunk: Sequence[Row], width: int, first_row: int) -> None:
-    for index, cells in enumerate(chunk):
-        if len(cells) != width:
-            message = f"found {len(cells)} cells; wanted {width}, one per column of the header"
-            raise table.error(message, first_row + index)
-
-
-def _column(table: Table, chunk: Sequence[Row], use: Use, first_row: int, decimal: str) -> FloatArray:
+def _column(chunk: Chunk, rows: Sequence[Row], use: Use, decimal: str) -> FloatArray:
     try:
-        return use.convert(numbers(list(map(itemgetter(use.index), chunk)), decimal))
-    except NoNumber as error:
+        return use.convert(numbers.column([cells[use.index] for cells in rows], decimal))
+    except numbers.NoNumber as error:
         wanted = "a number in the unit of the column's name, or nothing where it is not known"
-        raise table.error(f"found '{error.text[:40]}'; wanted {wanted}", first_row + error.index, use.source) from None
+        raise chunk.error(f"found '{error.text[:40]}'; wanted {wanted}", error.index, use.source) from None
 
 
-def _events(chunk: Sequence[Row], index: int, time_s: FloatArray) -> Iterator[Event]:
-    for cells, time in zip(chunk, time_s, strict=True):
+def _events(rows: Sequence[Row], index: int, time_s: FloatArray) -> Iterator[Event]:
+    for row, cells in enumerate(rows):
         if cells[index]:
-            yield from event_cells.decode(cells[index], float(time))
+            yield from event_cells.decode(cells[index], float(time_s[row]))
 
 
-def _check_time(table: Table, time_s: FloatArray, column: str) -> None:
+def _check_time(chunk: Chunk, last_s: float, time_s: FloatArray, column: str) -> None:
     unknown = np.flatnonzero(~np.isfinite(time_s))
     if len(unknown):
         row = int(unknown[0])
-        raise table.error(f"found {time_s[row]}; wanted a finite time in every row", row, column)
-    wrong = np.flatnonzero(np.diff(time_s) <= 0)
+        raise chunk.error(f"found {time_s[row]}; wanted a finite time in every row", row, column)
+    wrong = np.flatnonzero(np.diff(time_s, prepend=last_s) <= 0)
     if len(wrong):
-        row = int(wrong[0]) + 1
-        before, now = float(time_s[row - 1]), float(time_s[row])
+        row = int(wrong[0])
+        before, now = float(time_s[row - 1] if row else last_s), float(time_s[row])
         how = "stands still" if now == before else "runs backwards"
         message = f"time {how}: found {now!r} s after {before!r} s; wanted a time that rises from row to row"
-        raise table.error(message, row, column)
+        raise chunk.error(message, row, column)

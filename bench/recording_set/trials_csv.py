@@ -9,7 +9,7 @@ from bench.recording_set import values
 from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Column, Mapping
-from bench.recording_set.table import Row, Table, is_blank
+from bench.recording_set.table import Row, Table
 from compensator.lab.recording import Condition
 
 TRIALS_FILE = "trials.csv"
@@ -47,14 +47,9 @@ def read_trials_csv(table: Table, mapping: Mapping) -> list[TrialEntry]:
     """
     places = _places(table, mapping)
     entries: list[TrialEntry] = []
-    with table.rows() as reader:
-        for cells in reader:
-            if is_blank(cells):
-                continue
-            if len(cells) != len(table.header):
-                message = f"found {len(cells)} cells; wanted {len(table.header)}, one per column of the header"
-                raise RecordingSetError(table.place, message, reader.line_num)
-            entries.append(_entry(table, reader.line_num, cells, places, mapping))
+    for chunk in table.chunks():
+        for line, cells in chunk.records(len(table.header)):
+            entries.append(_entry(table, line, cells, places, mapping))
     if not entries:
         raise table.error("names no trial; wanted one row per trial below the header")
     _check_once(table, entries)

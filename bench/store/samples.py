@@ -1,6 +1,6 @@
 """Samples of a trial: blocks in, arrays out. Each function works inside the caller's transaction."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from sqlalchemy import Connection, bindparam, insert, select, update
@@ -53,9 +53,12 @@ def check_shape(rows: FloatArray, channels: int) -> None:
         raise StoreValueError(f"rows have the shape {rows.shape}; wanted (any number, {channels}): one per channel")
 
 
-def stack(channels: dict[str, FloatArray], names: Iterable[str]) -> FloatArray:
-    """Rows of shape (n, channels) from the channels."""
-    return np.column_stack([channels[name] for name in names])
+def add_channels(connection: Connection, trial_id: int, channels: Mapping[str, FloatArray]) -> None:
+    """Insert all rows of a trial that has none, from its channels in their order, each of shape (n,)."""
+    columns = list(channels.values())
+    for start in range(0, len(columns[0]), BLOCK_ROWS):
+        part = slice(start, start + BLOCK_ROWS)
+        add(connection, trial_id, start, np.column_stack([column[part] for column in columns]))
 
 
 def _column(trial: Trial, channel: str) -> int:

@@ -145,10 +145,9 @@ class Store:
             experiment_id = experiments.add(connection, None, **values, source="imported", operator="", note="")
             for recording, outcome, reason in recordings:
                 names = tuple(recording.channels)
-                trial_id = trials.add(
-                    connection, experiment_id, recording.name, recording.kind, recording.conditions, names
-                )
-                samples.add(connection, trial_id, 0, samples.stack(recording.channels, names))
+                what = (recording.name, recording.kind, recording.conditions, names)
+                trial_id = trials.add(connection, experiment_id, *what)
+                samples.add_channels(connection, trial_id, recording.channels)
                 trials.add_events(connection, trial_id, recording.events)
                 trials.finish(connection, trial_id, outcome, reason, {})
             experiments.finish(connection, experiment_id, "completed", "", {})
