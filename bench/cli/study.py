@@ -35,6 +35,14 @@ def new(
     base: Annotated[
         list[str] | None, typer.Option(help="Effect of the first model; repeatable. Without it, the default.")
     ] = None,
+    where: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=VALUE", help="Use only trials that meet this; repeatable."),
+    ] = None,
+    cutoff_hz: Annotated[
+        float | None, typer.Option(help="Cut-off of the final low-pass [Hz]; without it, the data choose.")
+    ] = None,
+    rows: Annotated[str, typer.Option(help="Which rows count: sliding, moving or all.")] = "sliding",
     as_json: Json = False,
 ) -> None:
     """Create a study: which trials are fitted, and which judge the fit."""
@@ -47,6 +55,9 @@ def new(
         experiment_ids=experiment,
         hold_out=hold_out or [],
         base=base,
+        where=where or [],
+        cutoff_hz=cutoff_hz,
+        rows=rows,
     )
 
 

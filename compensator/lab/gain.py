@@ -1,4 +1,4 @@
-"""How much a model gains on held-out rows over another, with an interval from whole trials drawn again."""
+"""Held-out errors and gains with intervals, from whole trials drawn again."""
 
 from dataclasses import dataclass
 
@@ -36,8 +36,17 @@ def chance_not_worse(one: HeldOut, other: HeldOut, seed: int = 0) -> float:
     return float(np.mean(powers[0, 1:] <= powers[1, 1:]))
 
 
+def error_interval(error: HeldOut, seed: int = 0) -> tuple[float, float]:
+    """90 % interval of a relative held-out error, from independent units drawn again."""
+    powers = np.vstack([error.power_by_unit(), error.effort_power_by_unit()])
+    totals = _drawn(powers, seed)[:, 1:]
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low, high = np.quantile(np.sqrt(totals[0] / np.maximum(totals[1], np.finfo(float).tiny)), [tail, 1.0 - tail])
+    return float(low), float(high)
+
+
 def _drawn(powers: FloatArray, seed: int) -> FloatArray:
-    """Total powers (2, 1 + RESAMPLES): first as measured, then with units drawn with replacement."""
+    """Totals (2, 1 + RESAMPLES) of powers (2, units): first as measured, then with units drawn with replacement."""
     generator = np.random.default_rng(seed)
     units = powers.shape[1]
     counts = generator.multinomial(units, np.full(units, 1.0 / units), size=RESAMPLES)

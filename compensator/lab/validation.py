@@ -28,6 +28,7 @@ class HeldOut:
         kind: how rows were held out.
         rows: which rows, shape (N,).
         residual: of those rows, shape (rows.sum(),).
+        effort: measured, of those rows.
         unit: which independent unit (trial or block) each of these rows belongs to.
         relative: root of residual power over effort power.
         rms: root mean square residual, in the effort's unit.
@@ -36,14 +37,22 @@ class HeldOut:
     kind: HeldOutKind
     rows: BoolArray
     residual: FloatArray
+    effort: FloatArray
     unit: IntArray
     relative: float
     rms: float
 
     def power_by_unit(self) -> FloatArray:
         """Sum of squared residuals of each independent unit, in order of its label."""
+        return self._by_unit(self.residual)
+
+    def effort_power_by_unit(self) -> FloatArray:
+        """Sum of squared efforts of each independent unit, in order of its label."""
+        return self._by_unit(self.effort)
+
+    def _by_unit(self, values: FloatArray) -> FloatArray:
         _, dense = np.unique(self.unit, return_inverse=True)
-        return np.bincount(dense, weights=self.residual**2).astype(float)
+        return np.bincount(dense, weights=values**2).astype(float)
 
 
 def relative_error(residual: FloatArray, effort: FloatArray) -> float:
@@ -94,4 +103,5 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray) -> HeldOut:
 
 
 def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:
-    return HeldOut(kind, rows, residual, unit, relative_error(residual, fit.dataset.effort[rows]), rms(residual))
+    effort = fit.dataset.effort[rows]
+    return HeldOut(kind, rows, residual, effort, unit, relative_error(residual, effort), rms(residual))

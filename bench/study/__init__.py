@@ -1,0 +1,23 @@
+"""Studies: compare a model with the measurement, diagnose what is missing, add it, watch the error fall.
+
+Every function takes the store first and returns JSON-able dicts; errors are `bench.errors.BenchError`.
+"""
+
+from bench.study.changes import add_effect, drop_effect
+from bench.study.compare import compare
+from bench.study.create import create_study, describe, list_studies
+from bench.study.diagnose import diagnose
+from bench.study.effects import effects_catalogue
+from bench.study.ladder import ladder
+
+__all__ = [
+    "add_effect",
+    "compare",
+    "create_study",
+    "describe",
+    "diagnose",
+    "drop_effect",
+    "effects_catalogue",
+    "ladder",
+    "list_studies",
+]

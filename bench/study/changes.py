@@ -1,0 +1,74 @@
+"""Add an effect to a model or drop one: refit, keep the child, and say what became of the error."""
+
+from typing import Any
+
+from bench.store import Store
+from bench.store.records import ModelRow
+from bench.study.errors import StudyError, lab_errors
+from bench.study.material import Material, load, model_of
+from bench.study.models import result_of
+from compensator.lab.catalogue import effect_named
+from compensator.lab.gain import Gain, held_out_gain
+from compensator.lab.validation import held_out
+
+
+def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
+    """Refit with one more effect and keep the child model.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        effect: its name.
+        model_id: the parent; None takes the newest model.
+
+    Raises:
+        StudyError: unknown effect, already in the model, or these trials cannot show it.
+    """
+    parent = model_of(store, study_id, model_id)
+    with lab_errors():
+        effect_named(effect)
+    if effect in parent.effects:
+        raise StudyError(f"model {parent.id} has {effect} already; its effects are: {', '.join(parent.effects)}")
+    return _change(store, load(store, study_id), parent, [*parent.effects, effect], f"Adding {effect}")
+
+
+def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
+    """Refit with one effect less and keep the child model. Arguments and errors as `add_effect`."""
+    parent = model_of(store, study_id, model_id)
+    if effect not in parent.effects:
+        raise StudyError(f"model {parent.id} has no {effect}; its effects are: {', '.join(parent.effects)}")
+    effects = [name for name in parent.effects if name != effect]
+    return _change(store, load(store, study_id), parent, effects, f"Dropping {effect}")
+
+
+def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], what: str) -> dict[str, Any]:
+    before = held_out(material.fit_of(parent))
+    fit = material.fit(effects)
+    after = held_out(fit)
+    gain = held_out_gain(before, after)
+    result = result_of(fit, after)
+    model_id = store.add_model(material.study_id, parent.id, effects, result)
+    return {
+        "model_id": model_id,
+        "parent_id": parent.id,
+        "effects": effects,
+        "before": {"training": parent.result["training"], "held_out": before.relative},
+        "after": {"training": result["training"], "held_out": after.relative},
+        "gain": gain.value,
+        "gain_low": gain.low,
+        "gain_high": gain.high,
+        "sentence": _sentence(what, before.relative, after.relative, gain),
+    }
+
+
+def _sentence(what: str, before: float, after: float, gain: Gain) -> str:
+    if gain.low > 0.0:
+        advice = "It helps: keep it."
+    elif gain.high < 0.0:
+        advice = "It harms: drop it."
+    else:
+        advice = "The interval includes no change: these trials do not show that it is needed."
+    return (
+        f"{what} changes the held-out error from {before:.2%} to {after:.2%} "
+        f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%}). {advice}"
+    )

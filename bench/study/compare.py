@@ -1,0 +1,144 @@
+"""Measured against predicted, as JSON for the page, the command line and reports."""
+
+from typing import Any
+
+import numpy as np
+
+from bench.store import Store
+from bench.study.material import Material, load, model_of
+from compensator.lab import comparison
+from compensator.lab.drivers import DRIVERS
+from compensator.lab.fit import Fit
+from compensator.lab.intervals import estimates
+from compensator.lab.recording import FloatArray
+
+SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
+
+
+def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:
+    """Hold a model of a study against its trials.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        model_id: which model; None takes the newest.
+
+    Raises:
+        StudyError: no such model, or the trials cannot be used.
+    """
+    material = load(store, study_id)
+    model = model_of(store, study_id, model_id)
+    fit = material.fit_of(model)
+    found = comparison.compare(fit)
+    return {
+        "study_id": study_id,
+        "model_id": model.id,
+        "effects": model.effects,
+        "parameters": _parameters(fit),
+        "effort": material.effort,
+        "error": {
+            "training": _error(found.training),
+            "held_out": {
+                "rms": found.held_out.rms,
+                "relative": found.held_out.relative,
+                "kind": found.held_out.kind,
+            },
+            "floor": _error(found.floor) if found.floor else None,
+        },
+        "trials": _trials(material, found),
+        "regimes": [{"name": regime.name, "rows": regime.rows, **_error(regime)} for regime in found.regimes],
+        "series": _series(material, fit),
+        "residual_against": _against(material, found),
+        "notes": _notes(material, found),
+    }
+
+
+def _error(error: comparison.ErrorOf) -> dict[str, float]:
+    return {"rms": error.rms, "relative": error.relative}
+
+
+def _parameters(fit: Fit) -> list[dict[str, Any]]:
+    return [
+        {
+            "effect": one.effect,
+            "name": one.parameter,
+            "value": one.value,
+            "unit": one.unit,
+            "low": one.low,
+            "high": one.high,
+            "note": one.note,
+        }
+        for one in estimates(fit)
+    ]
+
+
+def _trials(material: Material, found: comparison.Comparison) -> list[dict[str, Any]]:
+    return [
+        {
+            "trial_id": trial.id,
+            "name": trial.name,
+            "role": "held_out" if held else "training",
+            "conditions": trial.conditions,
+            **_error(error),
+        }
+        for trial, held, error in zip(material.trials, material.definition.held_out, found.trials, strict=True)
+    ]
+
+
+def _series(material: Material, fit: Fit) -> list[dict[str, Any]]:
+    dataset, series = fit.dataset, []
+    for index, (trial, prepared) in enumerate(zip(material.trials, dataset.trials, strict=True)):
+        rows = np.flatnonzero(dataset.trial_index == index)
+        chosen = rows[:: max(1, len(rows) // SERIES_POINTS)]
+        time = dataset.time_of(prepared)[chosen - rows[0]] if len(rows) else np.empty(0)
+        series.append(
+            {
+                "trial_id": trial.id,
+                "name": trial.name,
+                "time_s": _list(time),
+                "measured": _list(dataset.effort[chosen]),
+                "predicted": _list(fit.predicted[chosen]),
+                "residual": _list(fit.residual[chosen]),
+            }
+        )
+    return series
+
+
+def _against(material: Material, found: comparison.Comparison) -> list[dict[str, Any]]:
+    by_driver: dict[str, list[dict[str, Any]]] = {}
+    for one in found.against:
+        bins = one.bins
+        by_driver.setdefault(one.driver, []).append(
+            {
+                "direction": one.direction,
+                "x": _list(bins.x),
+                "mean": _list(bins.mean),
+                "low": _list(bins.low),
+                "high": _list(bins.high),
+                "count": bins.count.tolist(),
+            }
+        )
+    unit = material.dataset.effort_definition.unit
+    facts = material.definition.facts
+    return [
+        {"driver": driver, "unit": DRIVERS[driver].unit_in(unit, facts), "groups": groups}
+        for driver, groups in by_driver.items()
+    ]
+
+
+def _notes(material: Material, found: comparison.Comparison) -> list[str]:
+    rows = {"sliding": "where the joint slides", "moving": "where the joint moves", "all": "everywhere"}
+    notes = [
+        f"Errors count {int(material.dataset.counted.sum())} rows {rows[material.definition.rows]}, effort and motion "
+        f"filtered alike at {material.definition.cutoff_hz:.3g} Hz."
+    ]
+    if found.held_out.kind == "leave-one-block-out":
+        notes.append("Too few trials to hold one out: stretches of 2 s are left out instead, which flatters the model.")
+    if found.floor is None:
+        notes.append("No trial repeats another: how well any model could do is unknown. Repeat at least one trial.")
+    return notes
+
+
+def _list(values: FloatArray) -> list[float]:
+    listed: list[float] = values.tolist()
+    return listed

@@ -1,0 +1,129 @@
+"""Create a study, describe it, list studies."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from bench.rig import Rig
+from bench.store import Store
+from bench.store.records import Trial
+from bench.study.errors import StudyError, lab_errors
+from bench.study.material import Definition, Material, facts_of, load, read_recordings
+from bench.study.models import keep_model
+from bench.study.selection import keep, split
+from compensator.lab.bandwidth import choose_cutoff_hz
+from compensator.lab.catalogue import default_effects, effect_named
+from compensator.lab.dataset import RowChoice
+from compensator.lab.effort import choose_effort
+from compensator.lab.facts import Facts
+
+
+def create_study(
+    store: Store,
+    name: str,
+    experiment_ids: Sequence[int],
+    hold_out: Sequence[str] = (),
+    base: Sequence[str] | None = None,
+    where: Sequence[str] = (),
+    cutoff_hz: float | None = None,
+    rows: RowChoice = "sliding",
+) -> dict[str, Any]:
+    """Fix the trials of a study and fit its base model.
+
+    Args:
+        store: with the experiments.
+        name: of the study.
+        experiment_ids: whose trials are used.
+        hold_out: criteria `key=value`; trials that meet one judge the model instead of being fitted.
+        base: effects of the first model; None takes the rigid joint with General Kinetic Friction.
+        where: criteria that every trial used must meet.
+        cutoff_hz: of the final low-pass [Hz]; None lets the data choose.
+        rows: "sliding", "moving" or "all".
+
+    Raises:
+        StudyError: no usable trials, a criterion that fits none, different rigs, an unknown effect.
+    """
+    if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
+        raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
+    trials = keep(_trials(store, experiment_ids), where)
+    held = split(trials, hold_out)
+    facts = _facts(store, experiment_ids)
+    with lab_errors():
+        effects = tuple(effect_named(effect).name for effect in base) if base else default_effects(facts)
+        recordings = read_recordings(store, tuple(trials))
+        cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
+    definition = Definition(
+        trial_ids=tuple(trial.id for trial in trials),
+        held_out=tuple(held),
+        base=effects,
+        cutoff_hz=cutoff,
+        rows=rows,
+        facts=facts,
+        experiment_ids=tuple(experiment_ids),
+        hold_out=tuple(hold_out),
+        where=tuple(where),
+    )
+    return _create(store, name, definition)
+
+
+def describe(store: Store, study_id: int) -> dict[str, Any]:
+    """A study: its trials with their roles, its effort, its models."""
+    return _describe(store, load(store, study_id))
+
+
+def list_studies(store: Store) -> list[dict[str, Any]]:
+    """All studies, newest first."""
+    rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
+    return [{"study_id": row.id, "name": row.name, "created_utc": row.created_utc.isoformat()} for row in rows]
+
+
+def _create(store: Store, name: str, definition: Definition) -> dict[str, Any]:
+    study_id = store.create_study(name, definition.to_json())
+    material = load(store, study_id)
+    keep_model(store, material, None, material.fit(list(definition.base)))
+    return _describe(store, material)
+
+
+def _describe(store: Store, material: Material) -> dict[str, Any]:
+    models = store.models(material.study_id)
+    return {
+        "study_id": material.study_id,
+        "name": material.name,
+        "effort": material.effort,
+        "cutoff_hz": material.definition.cutoff_hz,
+        "rows": material.definition.rows,
+        "trials": [
+            {
+                "trial_id": trial.id,
+                "name": trial.name,
+                "role": "held_out" if held else "training",
+                "conditions": trial.conditions,
+            }
+            for trial, held in zip(material.trials, material.definition.held_out, strict=True)
+        ],
+        "models": [{"model_id": m.id, "parent_id": m.parent_id, "effects": m.effects} for m in models],
+        "model_id": models[-1].id,
+    }
+
+
+def _trials(store: Store, experiment_ids: Sequence[int]) -> list[Trial]:
+    if not experiment_ids:
+        raise StudyError("no experiment named; a study needs the trials of at least one")
+    found = []
+    for experiment_id in dict.fromkeys(experiment_ids):
+        store.experiment(experiment_id)  # says which are there if this one is not
+        found += [trial for trial in store.trials(experiment_id) if trial.outcome == "completed" and trial.rows]
+    if not found:
+        raise StudyError(
+            "these experiments have no completed trial with samples; run them to the end, or choose others"
+        )
+    return sorted(found, key=lambda trial: trial.id)
+
+
+def _facts(store: Store, experiment_ids: Sequence[int]) -> Facts:
+    found = {number: facts_of(Rig.model_validate(store.experiment(number).rig)) for number in experiment_ids}
+    if len(set(found.values())) > 1:
+        raise StudyError(
+            f"experiments {', '.join(map(str, found))} are of different rigs; a study is about one: "
+            "make one study for each"
+        )
+    return next(iter(found.values()))

@@ -1,0 +1,107 @@
+"""What is missing from a model, as JSON for the page, the command line and reports."""
+
+from typing import Any
+
+from bench.store import Store
+from bench.study.errors import lab_errors
+from bench.study.material import Material, load, model_of
+from compensator.lab import diagnosis
+from compensator.lab.catalogue import effect_named
+from compensator.lab.diagnose import diagnose as diagnose_fit
+from compensator.lab.drivers import DRIVERS
+
+
+def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:
+    """Rank the effects that a model may be missing.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        model_id: which model; None takes the newest.
+
+    Raises:
+        StudyError: no such model, or no effect can be judged on these trials.
+    """
+    material = load(store, study_id)
+    model = model_of(store, study_id, model_id)
+    fit = material.fit_of(model)
+    with lab_errors():
+        found = diagnose_fit(fit)
+    named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
+    left_out = [f"Not judged: {reason}." for reason in found.left_out.values()]
+    return {
+        "study_id": study_id,
+        "model_id": model.id,
+        "verdict": found.verdict,
+        "sentence": found.sentence,
+        "p_value": found.p_value,
+        "notes": [*found.notes, *left_out],
+        "data_problems": found.data_problems,
+        "classes": [_class(members) for members in found.classes[:1]] if named else [],
+        "ranking": [_ranked(material, candidate, named) for candidate in found.candidates],
+    }
+
+
+def _class(members: tuple[str, ...]) -> dict[str, Any]:
+    titles = [effect_named(name).title for name in members]
+    if len(members) == 1:
+        return {"effects": list(members), "sentence": f"{titles[0]} stands alone.", "separating_trial": None}
+    return {
+        "effects": list(members),
+        "sentence": f"These trials cannot tell apart: {'; '.join(titles)}.",
+        "separating_trial": "; ".join(dict.fromkeys(effect_named(name).excited_by for name in members)),
+    }
+
+
+def _ranked(material: Material, candidate: diagnosis.Candidate, named: set[str]) -> dict[str, Any]:
+    effect = candidate.effect
+    return {
+        "effect": effect.name,
+        "title": effect.title,
+        "score": candidate.score,
+        "p_value": candidate.p_value,
+        "held_out_before": candidate.before,
+        "held_out_after": candidate.after,
+        "gain": candidate.gain.value,
+        "gain_low": candidate.gain.low,
+        "gain_high": candidate.gain.high,
+        "in_class": effect.name in named,
+        "confused_with": list(candidate.rivals),
+        "d_prime": candidate.detectability,
+        "physical": candidate.physical,
+        "sentence": _sentence(candidate),
+        "picture": _picture(material, candidate.picture),
+    }
+
+
+def _sentence(candidate: diagnosis.Candidate) -> str:
+    gain = candidate.gain
+    parts = [
+        f"held-out error {candidate.before:.2%} to {candidate.after:.2%} "
+        f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%})"
+    ]
+    if candidate.score <= 0.0:
+        parts.append("its evidence does not pay for its parameters")
+    if not candidate.physical:
+        parts.append("the sign or size found is not physical for this effect")
+    if candidate.rivals:
+        parts.append(f"not told apart from {', '.join(candidate.rivals)}")
+    return "; ".join(parts) + "."
+
+
+def _picture(material: Material, picture: diagnosis.Picture | None) -> dict[str, Any] | None:
+    if picture is None:
+        return None
+    driver = DRIVERS[picture.driver]
+    unit = driver.unit_in(material.dataset.effort_definition.unit, material.definition.facts)
+    return {
+        "driver": driver.title,
+        "unit": unit,
+        "against_motion": picture.against_motion,
+        "x": picture.residual.x.tolist(),
+        "residual": picture.residual.mean.tolist(),
+        "low": picture.residual.low.tolist(),
+        "high": picture.residual.high.tolist(),
+        "curve_x": picture.curve.x.tolist(),
+        "curve": picture.curve.mean.tolist(),
+    }

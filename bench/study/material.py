@@ -1,0 +1,160 @@
+"""A study's material: its definition, its trials as the lab wants them, and its models fitted."""
+
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from bench.rig import Rig
+from bench.store import Store
+from bench.store.records import ModelRow, Trial
+from bench.study.errors import StudyError, lab_errors
+from compensator.lab.dataset import Dataset, Processing, RowChoice, make_dataset
+from compensator.lab.facts import Facts
+from compensator.lab.fit import Fit, fit_model
+from compensator.lab.recording import Event, Recording
+from compensator.lab.regimes import BoolArray
+
+
+@dataclass(frozen=True)
+class Definition:
+    """What a study fixes once and for all.
+
+    Attributes:
+        trial_ids: used, in order; held_out: the same, True where the trial judges the model.
+        base: effects of the first model.
+        cutoff_hz: of the final low-pass, as chosen at creation.
+        rows: which rows count.
+        facts: of the joint, from the rig.
+        experiment_ids, hold_out, where: as the user wrote them.
+    """
+
+    trial_ids: tuple[int, ...]
+    held_out: tuple[bool, ...]
+    base: tuple[str, ...]
+    cutoff_hz: float
+    rows: RowChoice
+    facts: Facts
+    experiment_ids: tuple[int, ...] = ()
+    hold_out: tuple[str, ...] = ()
+    where: tuple[str, ...] = field(default=())
+
+    def to_json(self) -> dict[str, Any]:
+        """For the store."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, stored: dict[str, Any]) -> "Definition":
+        """From the store."""
+        lists = {key: tuple(value) for key, value in stored.items() if isinstance(value, list)}
+        return cls(**{**stored, **lists, "facts": Facts(**stored["facts"])})
+
+
+@dataclass(frozen=True)
+class Material:
+    """A study with its trials, ready to be fitted."""
+
+    study_id: int
+    name: str
+    definition: Definition
+    trials: tuple[Trial, ...]
+    dataset: Dataset
+
+    @property
+    def training(self) -> BoolArray:
+        """Rows that models are fitted to, shape (N,)."""
+        held = np.array(self.definition.held_out)[self.dataset.trial_index]
+        chosen: BoolArray = self.dataset.counted & ~held
+        return chosen
+
+    @property
+    def effort(self) -> dict[str, str]:
+        """Name and unit of the effort."""
+        return {"name": self.dataset.effort_definition.title, "unit": self.dataset.effort_definition.unit}
+
+    def fit(self, effects: list[str], shapes: dict[str, tuple[float, ...]] | None = None) -> Fit:
+        """Fit a model to the training rows; errors of the lab become `StudyError`."""
+        with lab_errors():
+            return fit_model(self.dataset, effects, self.training, shapes)
+
+    def fit_of(self, model: ModelRow) -> Fit:
+        """The stored model again, at the very shapes that were found when it was made."""
+        return self.fit(model.effects, {name: tuple(shape) for name, shape in model.result["shapes"].items()})
+
+
+def facts_of(rig: Rig) -> Facts:
+    """What the lab is told of a rig."""
+    motor, ratio = rig.motor, rig.gear.ratio
+    known = motor.torque_constant_n_m_a is not None and ratio is not None
+    return Facts(
+        joint=rig.joint,
+        horizontal=rig.horizontal,
+        torque_per_current_n_m_a=(motor.torque_constant_n_m_a or 0.0) * (ratio or 0.0) if known else None,
+        gear_ratio=ratio,
+        arm_m=rig.arm.length_m,
+        effort=rig.effort.quantity if rig.effort else None,
+    )
+
+
+def load(store: Store, study_id: int) -> Material:
+    """A study's material.
+
+    Raises:
+        NotFoundError: no such study, or one of its trials is gone.
+        StudyError: the trials cannot be used.
+    """
+    row = store.study(study_id)
+    definition = Definition.from_json(row.definition)
+    trials = tuple(store.trial(trial_id) for trial_id in definition.trial_ids)
+    dataset = _dataset(_Source(store, definition.trial_ids), definition)
+    return Material(study_id, row.name, definition, trials, dataset)
+
+
+def read_recordings(store: Store, trials: tuple[Trial, ...]) -> list[Recording]:
+    """Trials of the store as the lab's recordings."""
+    return [
+        Recording(
+            trial.name,
+            trial.kind,
+            dict(trial.conditions),
+            store.samples(trial.id),
+            [Event(event.time_s, event.name, event.detail) for event in store.events(trial.id)],
+        )
+        for trial in trials
+    ]
+
+
+def model_of(store: Store, study_id: int, model_id: int | None) -> ModelRow:
+    """A model of the study; the newest one if None.
+
+    Raises:
+        StudyError: the study has no such model.
+    """
+    models = store.models(study_id)
+    chosen = models[-1:] if model_id is None else [model for model in models if model.id == model_id]
+    if not chosen:
+        known = ", ".join(str(model.id) for model in models) or "none"
+        raise StudyError(f"study {study_id} has no model {model_id or ''}; its models are: {known}")
+    return chosen[0]
+
+
+class _Source:
+    """Where a dataset comes from; equal when store and trials are, so that a dataset is made once."""
+
+    def __init__(self, store: Store, trial_ids: tuple[int, ...]) -> None:
+        self.store, self.trial_ids = store, trial_ids
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Source) and (self.store, self.trial_ids) == (other.store, other.trial_ids)
+
+    def __hash__(self) -> int:
+        return hash((id(self.store), self.trial_ids))
+
+
+@lru_cache(maxsize=4)  # finished trials never change; a study asks for the same rows at every step
+def _dataset(source: _Source, definition: Definition) -> Dataset:
+    trials = tuple(source.store.trial(trial_id) for trial_id in source.trial_ids)
+    with lab_errors():
+        recordings = read_recordings(source.store, trials)
+        return make_dataset(recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows))

@@ -1,0 +1,31 @@
+"""Keep a fitted model in the store, with the errors it had and the shapes it was fitted at."""
+
+from typing import Any
+
+from bench.store import Store
+from bench.study.material import Material
+from compensator.lab.comparison import repeatability_floor
+from compensator.lab.fit import Fit
+from compensator.lab.gain import error_interval
+from compensator.lab.validation import HeldOut, held_out, relative_error
+
+
+def keep_model(store: Store, material: Material, parent_id: int | None, fit: Fit) -> int:
+    """Add a fitted model to its study. Returns its id."""
+    return store.add_model(material.study_id, parent_id, list(fit.names), result_of(fit, held_out(fit)))
+
+
+def result_of(fit: Fit, outside: HeldOut) -> dict[str, Any]:
+    """What is kept of a fit: relative errors (0..1), the shapes, and the coefficients in their units."""
+    low, high = error_interval(outside)
+    floor = repeatability_floor(fit)
+    return {
+        "training": relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training]),
+        "held_out": outside.relative,
+        "held_out_low": low,
+        "held_out_high": high,
+        "held_out_kind": outside.kind,
+        "floor": None if floor is None else floor.relative,
+        "shapes": {name: list(shape) for name, shape in fit.shapes.items()},
+        "coefficients": {term.effect.name: term.coefficients.tolist() for term in fit.terms},
+    }

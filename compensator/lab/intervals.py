@@ -1,0 +1,89 @@
+"""Intervals of a fitted model's parameters, by leaving out whole trials (delete-one jackknife)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student_t
+
+from compensator.lab.fit import Fit
+from compensator.lab.linear import solve_normal
+from compensator.lab.recording import FloatArray
+from compensator.lab.validation import independent_units
+
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterEstimate:
+    """One coefficient with its 95 % interval.
+
+    Attributes:
+        effect: name; parameter: name.
+        value, low, high: in `unit`; NaN where the data do not determine it.
+        note: "" or why the value is to be read with care.
+    """
+
+    effect: str
+    parameter: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    note: str
+
+
+def estimates(fit: Fit) -> list[ParameterEstimate]:
+    """Every coefficient and every shape value of the model, in order."""
+    half = _half_widths(fit)
+    excited = np.any(fit.columns != 0.0, axis=0)
+    unit = fit.dataset.effort_definition.unit
+    found, index = [], 0
+    for term in fit.terms:
+        for position, parameter in enumerate(term.effect.parameters):
+            if not excited[index]:
+                index += 1
+                continue  # a term for loads, say, where none is hung
+            value = float(term.coefficients[position])
+            kept, bound = bool(term.kept[position]), bool(term.at_bound[position])
+            width = half[index]
+            found.append(
+                ParameterEstimate(
+                    effect=term.effect.name,
+                    parameter=parameter.name,
+                    unit=parameter.unit_in(unit, fit.dataset.facts.position_unit),
+                    value=value if kept else float("nan"),
+                    low=max(value - width, parameter.low) if kept else float("nan"),
+                    high=min(value + width, parameter.high) if kept else float("nan"),
+                    note=_note(kept, bound),
+                )
+            )
+            index += 1
+        for name, number in zip(term.effect.shape_names, term.shape, strict=True):
+            found.append(ParameterEstimate(term.effect.name, name, "shape", number, float("nan"), float("nan"), ""))
+    return found
+
+
+def _note(kept: bool, bound: bool) -> str:
+    if not kept:
+        return "these trials cannot tell it apart from the parameters before it"
+    return "held by its physical bound" if bound else ""
+
+
+def _half_widths(fit: Fit) -> FloatArray:
+    """Half widths of the intervals of all coefficients, shape (K,); NaN where there are too few units."""
+    kept = np.concatenate([term.kept for term in fit.terms])
+    rows = fit.training
+    columns, effort, unit = fit.columns[rows][:, kept], fit.dataset.effort[rows], independent_units(fit, rows)
+    bounds = fit.bounds.of(kept)
+    gram, moment = columns.T @ columns, columns.T @ effort
+    without = []
+    for label in np.unique(unit):
+        inside, own = columns[unit == label], effort[unit == label]
+        without.append(solve_normal(gram - inside.T @ inside, moment - inside.T @ own, bounds))
+    half = np.full(len(kept), np.nan)
+    count = len(without)
+    if count > 2:
+        spread = np.array(without) - np.mean(without, axis=0)
+        error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
+        half[kept] = error * student_t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1)
+    return half
