@@ -104,8 +104,13 @@ class Plant:
         """Hang a load on the arm and put the arm at rest at angle 0, in the middle of the free play."""
         self.parameters = replace(self.parameters, load=load)
         self._packed = pack(self.parameters)
-        for name in ("rotor_rad", "rotor_rad_s", "arm_rad", "arm_rad_s", "current_a", "contact_n_m"):
-            self._state[name] = 0.0
+        self.place(0.0, 0.0)
+
+    def place(self, rotor_rad: float, arm_rad: float, rotor_rad_s: float = 0.0, arm_rad_s: float = 0.0) -> None:
+        """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
+        placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "arm_rad": arm_rad, "arm_rad_s": arm_rad_s}
+        for name, value in (placed | {"current_a": 0.0, "contact_n_m": 0.0}).items():
+            self._state[name] = value
         self._forget()
 
     def truth(self) -> Truth:

@@ -28,20 +28,31 @@ class Scatter(Component):
 
 
 @jitted
-def uniform(state: State) -> float:
-    """Return a number in (0, 1] from the state's own stream (splitmix64: Steele, Lea, Flood 2014)."""
-    state.random = state.random + _INCREMENT
-    z = state.random
-    z = (z ^ (z >> np.uint64(30))) * _MIX_A
+def uniform(key: np.uint64) -> float:
+    """Return the number in (0, 1] that belongs to a key (splitmix64: Steele, Lea, Flood 2014)."""
+    z = (key ^ (key >> np.uint64(30))) * _MIX_A
     z = (z ^ (z >> np.uint64(27))) * _MIX_B
     z = z ^ (z >> np.uint64(31))
     return (float(z >> np.uint64(11)) + 1.0) * (1.0 / 9007199254740992.0)
 
 
 @jitted
-def normal(state: State) -> float:
-    """Return a standard normal number (Box and Muller)."""
-    return sqrt(-2.0 * log(uniform(state))) * cos(2.0 * pi * uniform(state))
+def normal(key: np.uint64) -> float:
+    """Return the standard normal number of a key (Box and Muller); the next key of the stream is two on."""
+    return sqrt(-2.0 * log(uniform(key))) * cos(2.0 * pi * uniform(key + _INCREMENT))
+
+
+@jitted
+def draw(state: State) -> float:
+    """Return the next standard normal number of the plant's stream."""
+    state.random = state.random + _INCREMENT + _INCREMENT
+    return normal(state.random)
+
+
+@jitted
+def sensor_noise(state: State) -> float:
+    """Return this moment's standard normal number; measuring more often does not change the plant."""
+    return normal(state.sensor_seed + np.uint64(2 * state.steps) * _INCREMENT)
 
 
 @jitted
@@ -49,7 +60,7 @@ def draw_static_factor(state: State, scatter: Scatter) -> float:
     """Return this stop's static friction over the nominal one, within three standard deviations."""
     if scatter.static_fraction == 0.0:
         return 1.0
-    return 1.0 + scatter.static_fraction * min(max(normal(state), -3.0), 3.0)
+    return 1.0 + scatter.static_fraction * min(max(draw(state), -3.0), 3.0)
 
 
 @jitted
@@ -61,6 +72,6 @@ def wander(state: State, scatter: Scatter, distance_rad: float) -> None:
     if state.wandered_rad < scatter.coulomb_length_rad / 16.0:
         return
     kept = exp(-state.wandered_rad / scatter.coulomb_length_rad)
-    fresh = scatter.coulomb_fraction * sqrt(1.0 - kept * kept) * normal(state)
+    fresh = scatter.coulomb_fraction * sqrt(1.0 - kept * kept) * draw(state)
     state.coulomb_factor = max(1.0 + kept * (state.coulomb_factor - 1.0) + fresh, 0.2)
     state.wandered_rad = 0.0

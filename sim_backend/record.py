@@ -19,7 +19,7 @@ def pack(component: Any) -> Records:
 
     Leaves keep their type where it is int64 or uint64; every other number or flag becomes a float64.
     """
-    packed: Records = np.zeros(1, dtype=_layout(type(component)))
+    packed: Records = np.zeros(1, dtype=_layout(type(component)))  # type: ignore[arg-type]  # a type is hashable
     packed[0] = _values(component)
     return packed
 
@@ -32,7 +32,7 @@ def _layout(kind: Any) -> np.dtype[np.void]:
 
 def _leaf(kind: Any) -> Any:
     if is_dataclass(kind):
-        return _layout(kind)
+        return _layout(kind)  # type: ignore[arg-type]
     return kind if issubclass(kind, np.integer) else np.float64
 
 

@@ -5,7 +5,7 @@ from math import floor, nan, pi
 
 from sim_backend.component import Component, quantity
 from sim_backend.jit import jitted
-from sim_backend.randomness import normal
+from sim_backend.randomness import sensor_noise
 from sim_backend.state import State
 
 
@@ -51,5 +51,5 @@ def measured_current(state: State, sensor: CurrentSensor, current_a: float) -> f
     """Return the current as the drive measures it [A]; NaN without a sensor."""
     if not sensor.present:
         return nan
-    noise_a = sensor.noise_a * normal(state) if sensor.noise_a > 0.0 else 0.0
+    noise_a = sensor.noise_a * sensor_noise(state) if sensor.noise_a > 0.0 else 0.0
     return sensor.gain * current_a + sensor.offset_a + noise_a

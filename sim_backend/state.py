@@ -10,6 +10,7 @@ class State:
     """All that the kernel remembers from step to step. Angles and speeds are the joint's: motor's / ratio."""
 
     random: np.uint64  # the plant's own stream, see randomness.py
+    sensor_seed: np.uint64  # of the measurement noise, which takes nothing from that stream
     steps: np.int64  # taken since the plant was made
     rotor_rad: float = 0.0
     rotor_rad_s: float = 0.0
@@ -32,5 +33,5 @@ class State:
 
 def at_rest(seed: int, temperature_c: float) -> State:
     """Return the state at rest at angle 0."""
-    random = np.random.SeedSequence(seed).generate_state(1, np.uint64)[0]
-    return State(random, np.int64(0), winding_c=temperature_c, housing_c=temperature_c)
+    random, sensor_seed = np.random.SeedSequence(seed).generate_state(2, np.uint64)
+    return State(random, sensor_seed, np.int64(0), winding_c=temperature_c, housing_c=temperature_c)
