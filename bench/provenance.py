@@ -1,5 +1,6 @@
 """Where a result comes from: software, versions, configuration, drive, seed. Nothing about the machine's user."""
 
+import copy
 import dataclasses
 import functools
 import platform
@@ -37,20 +38,19 @@ def provenance(
 
 
 @functools.cache
-def _software() -> tuple[tuple[str, Any], ...]:
-    libraries = {name: found for name in LIBRARIES if (found := _version(name)) is not None}
-    return (
-        ("version", _version(DISTRIBUTION)),
-        *_commit(),
-        ("python", platform.python_version()),
-        ("libraries", libraries),
-        ("host_os", _operating_system()),
-    )
+def _software() -> dict[str, Any]:
+    return {
+        "version": _version(DISTRIBUTION),
+        **_commit(),
+        "python": platform.python_version(),
+        "libraries": {name: found for name in LIBRARIES if (found := _version(name)) is not None},
+        "host_os": _operating_system(),
+    }
 
 
 def software() -> dict[str, Any]:
     """Version, and the commit where it runs from a git checkout; Python, libraries and operating system."""
-    return dict(_software())
+    return copy.deepcopy(_software())
 
 
 def _version(distribution: str) -> str | None:
@@ -60,14 +60,14 @@ def _version(distribution: str) -> str | None:
         return None
 
 
-def _commit() -> tuple[tuple[str, Any], ...]:
+def _commit() -> dict[str, Any]:
     if not (_ROOT / ".git").exists():  # installed: the version says it all
-        return ()
+        return {}
     commit = _git("rev-parse", "HEAD")
     if commit is None:
-        return ()
+        return {}
     changes = _git("status", "--porcelain", "--untracked-files=no")
-    return (("commit", commit), ("uncommitted_changes", None if changes is None else changes != ""))
+    return {"commit": commit, "uncommitted_changes": None if changes is None else changes != ""}
 
 
 def _git(*arguments: str) -> str | None:

@@ -18,9 +18,9 @@ _REDUCE: Any = MinMaxLTTBDownsampler()  # type: ignore[no-untyped-call]
 def rows_to_keep(channels: dict[str, FloatArray], points: int) -> NDArray[np.intp]:
     """Indices of the rows that matter to any of the channels, rising.
 
-    Each channel is reduced to `points` of its own, so up to points x channels rows may be kept. Rows
-    where a channel stops being known (NaN) are kept too, as long as they are not more than `points`,
-    so that a plot shows the gap.
+    Each channel is reduced to `points` of its own, so up to points x channels rows may be kept. The
+    rows on both sides of where a channel begins or ceases to be known (NaN) are kept too, as long as
+    they are not more than `points`, so that a plot shows the gap.
 
     Args:
         channels: channel name -> samples, all of shape (n,). `time_s` asks for no rows of its own.
@@ -38,7 +38,8 @@ def _of_channel(values: FloatArray, points: int) -> NDArray[np.intp]:
     known = np.flatnonzero(~np.isnan(values))
     if len(known) <= points:
         return known
-    gaps = np.flatnonzero(np.diff(np.isnan(values).astype(np.int8)) == 1) + 1
+    before = np.flatnonzero(np.diff(np.isnan(values)))
+    edges = np.concatenate([before, before + 1])
     chosen: NDArray[np.uint64] = _REDUCE.downsample(np.ascontiguousarray(values[known]), n_out=points)
     kept = known[chosen.astype(np.intp)]
-    return np.union1d(kept, gaps) if 0 < len(gaps) <= points else kept
+    return np.union1d(kept, edges) if len(edges) <= points else kept
