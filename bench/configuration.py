@@ -37,7 +37,7 @@ class MotionSettings(Section):
     """How the joint is moved between set points."""
 
     speed_rad_s: float = quantity(3.0, "rad/s", "Top speed of a move", gt=0, allow_inf_nan=False)
-    acceleration_rad_s2: float = quantity(30.0, "rad/s2", "Acceleration of a move", gt=0, allow_inf_nan=False)
+    acceleration_rad_s2: float = quantity(60.0, "rad/s2", "Acceleration of a move", gt=0, allow_inf_nan=False)
     settled_cycles: int = quantity(20, "cycles", "Cycles without motion after which the joint is settled", ge=1)
     settle_timeout_s: float = quantity(10.0, "s", "Longest wait for the joint to settle", gt=0, allow_inf_nan=False)
 

@@ -14,7 +14,7 @@ class Technician(Protocol):
 
 
 class SimulatedTechnician:
-    """Hangs the load on a simulated joint.
+    """Hangs the load on a simulated joint, and only when something has to change, as a person would.
 
     Args:
         joint: what has `hang_load`; the simulated drive.
@@ -22,10 +22,14 @@ class SimulatedTechnician:
 
     def __init__(self, joint: Technician) -> None:
         self._joint = joint
+        self._hung: tuple[float, bool] | None = None
 
     def hang_load(self, load_kg: float, balanced: bool) -> None:
         """Hang a load at once."""
+        if self._hung == (load_kg, balanced):
+            return
         self._joint.hang_load(load_kg, balanced)
+        self._hung = (load_kg, balanced)
 
 
 class PersonTechnician:

@@ -43,7 +43,7 @@ class Reason(Enum):
     EXCURSION = "the joint went too far from the set point"
     CEILING = "the current reached its ceiling and the joint did not move"
     NOT_SETTLED = "the joint did not settle in the dead-band in time"
-    MOVED_EARLY = "the joint moved before the current was changed"
+    MOVED_EARLY = "the joint kept moving before the current was changed"
     WRONG_WAY = "the joint moved against the change of current"
     TIME_OUT = "the joint kept creeping and neither stopped nor broke away in time"
     LOST_SAMPLE = "the position or the current was not measured"
@@ -66,6 +66,7 @@ class SearchSettings:
         settled_cycles: the joint is settled when still in the dead-band for more than this.
         settle_timeout_cycles: for each of the three waits.
         creep_timeout_cycles: for a departure that neither stops nor gets clear.
+        retries: times that a joint which moves before its ramp is let settle again.
     """
 
     dead_band_rad: float
@@ -79,6 +80,7 @@ class SearchSettings:
     settled_cycles: int = 20
     settle_timeout_cycles: int = 2000
     creep_timeout_cycles: int = 400
+    retries: int = 5
 
     def __post_init__(self) -> None:
         if not 0.0 < self.still_rad < self.onset_rad:
@@ -122,6 +124,7 @@ class SearchState(NamedTuple):
     departure_a: float = nan  # NaN while the joint stands
     max_current_a: float = nan
     min_current_a: float = nan
+    unsettled: int = 0  # times that the joint moved before its ramp
     reason: Reason | None = None
 
     @property
@@ -143,6 +146,7 @@ class SearchState(NamedTuple):
 
 Step = tuple[SearchState, float | None]
 _RAMP_SIGN = {Phase.RAISING: 1.0, Phase.LOWERING: -1.0}
+_BEFORE = {Phase.RAISING: Phase.SETTLE_BEFORE_RAISING, Phase.LOWERING: Phase.SETTLE_BEFORE_LOWERING}
 _AFTER = {
     Phase.SETTLE_BEFORE_RAISING: Phase.RAISING,
     Phase.RAISING: Phase.SETTLE_BEFORE_LOWERING,
@@ -228,7 +232,7 @@ def _hold_step(settings: SearchSettings, state: SearchState, reading: SearchRead
     total_a = state.step_sum_a + reading.current_a
     if abs(reading.position_rad - state.anchor_rad) > settings.onset_rad:
         if isnan(state.held_a):
-            return _fail(state, Reason.MOVED_EARLY)
+            return _settle_again(settings, state)
         # the step after the one that held: by the command's change, since eq. (3) is for steady speed
         step_a = _RAMP_SIGN[state.phase] * settings.current_step_a
         return state._replace(departure_a=state.held_a + step_a / 2, phase_cycles=0), state.command_a
@@ -240,6 +244,14 @@ def _hold_step(settings: SearchSettings, state: SearchState, reading: SearchRead
     stands = abs(reading.position_rad - state.anchor_rad) <= settings.still_rad
     held_a = total_a / cycles if stands else state.held_a
     return state._replace(command_a=command_a, step_cycles=0, step_sum_a=0.0, held_a=held_a), command_a
+
+
+def _settle_again(settings: SearchSettings, state: SearchState) -> Step:
+    """The joint crept away under the servo's own current, too slowly to be seen: it had not settled."""
+    if state.unsettled >= settings.retries:
+        return _fail(state, Reason.MOVED_EARLY)
+    before = _BEFORE[state.phase]
+    return state._replace(phase=before, phase_cycles=0, still_cycles=0, unsettled=state.unsettled + 1), None
 
 
 def _watch_departure(settings: SearchSettings, state: SearchState, reading: SearchReading) -> Step:

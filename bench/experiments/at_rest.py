@@ -13,8 +13,15 @@ SECONDS = 12.0  # of a move, a search and the way back, roughly
 RIGHT_ANGLE_RAD = pi / 2
 
 
-def measure_at_rest(configuration: BenchConfiguration, angle_rad: float) -> Procedure:
+def measure_at_rest(
+    configuration: BenchConfiguration, angle_rad: float, approach_rad_s: float | None = None
+) -> Procedure:
     """The procedure. It starts and ends at angle 0, where the joint may be left without power.
+
+    Args:
+        configuration: of the bench.
+        angle_rad: where to measure.
+        approach_rad_s: speed of the way there; that of the configuration where None.
 
     Results:
         steady_current_a: uncompensated, as the position servo happened to leave it (Fig. 4).
@@ -27,7 +34,7 @@ def measure_at_rest(configuration: BenchConfiguration, angle_rad: float) -> Proc
     yield from joint.wake()
     yield from joint.move(0.0)
     yield from joint.settle(0.0)
-    yield from joint.move(angle_rad)
+    yield from joint.move(angle_rad, approach_rad_s)
     steady = yield from joint.settle(angle_rad)
     began = yield from joint.search(angle_rad)
     results = _results(configuration, angle_rad, steady, began)

@@ -64,11 +64,11 @@ class Joint:
             readings.append((yield from self._servo_cycle(target_rad, velocity_rad_s)))
         return readings
 
-    def move(self, target_rad: float) -> Part[None]:
-        """Go to an angle with the speed and acceleration of the configuration."""
-        profile = Trapezoid(
-            self._last().sample.position_rad, target_rad, self._motion.speed_rad_s, self._motion.acceleration_rad_s2
-        )
+    def move(self, target_rad: float, speed_rad_s: float | None = None) -> Part[None]:
+        """Go to an angle; with the speed of the configuration where none is given."""
+        speed_rad_s = self._motion.speed_rad_s if speed_rad_s is None else speed_rad_s
+        start_rad = self._last().sample.position_rad
+        profile = Trapezoid(start_rad, target_rad, speed_rad_s, self._motion.acceleration_rad_s2)
         cycles = ceil(profile.duration_s / self._period_s)
         yield from self.follow(profile.at((cycle + 1) * self._period_s) for cycle in range(cycles))
 

@@ -1,7 +1,10 @@
 """Repeated steps from angle 0 to one angle, under one load (Fig. 4 of the paper)."""
 
 from functools import partial
+from math import sqrt
 from typing import Any
+
+from pydantic import model_validator
 
 from bench.configuration import BenchConfiguration
 from bench.experiments.at_rest import RIGHT_ANGLE_RAD, SECONDS, measure_at_rest
@@ -11,13 +14,32 @@ from bench.experiments.reflected_load import reflected_load_kg
 from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
 from bench.quantities import quantity
 
+GOLDEN_SECTION = (sqrt(5.0) - 1.0) / 2.0
+
 
 class StepsParameters(Parameters):
-    """Parameters of repeated steps."""
+    """Parameters of repeated steps.
+
+    No two approaches of an operator are alike, and a real joint never repeats itself. A simulated one would: hence
+    the spread of approach speeds.
+    """
 
     load_kg: float = quantity(0.1, "kg", "Load at the tip of the arm", ge=0)
     angle_rad: float = quantity(RIGHT_ANGLE_RAD, "rad", "Angle that is stepped to; 0 is vertically down")
     repeats: int = quantity(25, "", "Number of steps", ge=1, le=1000)
+    slowest_rad_s: float = quantity(0.5, "rad/s", "Slowest approach", gt=0)
+    fastest_rad_s: float = quantity(4.0, "rad/s", "Fastest approach; as the slowest for steps that are all alike", gt=0)
+
+    @model_validator(mode="after")
+    def _check_order(self) -> "StepsParameters":
+        if self.slowest_rad_s > self.fastest_rad_s:
+            raise ValueError(f"slowest_rad_s must not be above fastest_rad_s, {self.fastest_rad_s:g} rad/s")
+        return self
+
+    def approach_rad_s(self, repeat: int) -> float:
+        """Speed of one approach. Spread evenly between the bounds in no order (golden-section sequence)."""
+        share = repeat * GOLDEN_SECTION % 1.0
+        return self.slowest_rad_s + share * (self.fastest_rad_s - self.slowest_rad_s)
 
 
 def _plan(parameters: StepsParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
@@ -29,9 +51,10 @@ def _plan(parameters: StepsParameters, configuration: BenchConfiguration) -> lis
                 load_kg=parameters.load_kg,
                 balanced=False,
                 angle_rad=parameters.angle_rad,
+                approach_rad_s=parameters.approach_rad_s(repeat),
                 repeat=repeat,
             ),
-            procedure=partial(measure_at_rest, configuration, parameters.angle_rad),
+            procedure=partial(measure_at_rest, configuration, parameters.angle_rad, parameters.approach_rad_s(repeat)),
             load_kg=parameters.load_kg,
         )
         for repeat in range(1, parameters.repeats + 1)
@@ -41,6 +64,7 @@ def _plan(parameters: StepsParameters, configuration: BenchConfiguration) -> lis
 def _refuse(parameters: StepsParameters, configuration: BenchConfiguration) -> None:
     refuse_load("load_kg", parameters.load_kg, configuration)
     refuse_angles("angle_rad", [0.0, parameters.angle_rad], configuration.search.excursion_rad, configuration)
+    refuse_speed("fastest_rad_s", parameters.fastest_rad_s, configuration)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
     refuse_currents(configuration)
     reflected_load_kg(0.0, parameters.angle_rad, configuration.rig)
@@ -79,8 +103,8 @@ def _values(trials: list[FinishedTrial], name: str) -> list[float]:
 KIND = ExperimentKind(
     name="steps",
     title="Repeated steps",
-    summary="Steps the joint to one angle again and again. The steady current differs from step to step, because "
-    "friction holds the joint; the friction-compensated current does not.",
+    summary="Steps the joint to one angle again and again, approaching it at a different speed each time. The steady "
+    "current differs from step to step, because friction holds the joint; the friction-compensated current does not.",
     parameters=StepsParameters,
     plan=_plan,
     refuse=_refuse,
