@@ -7,14 +7,15 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import FileResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.background import BackgroundTask
 
-from bench.experiments.registry import KINDS
+from bench.errors import ParameterError
+from bench.experiments.registry import KINDS, find_kind
 from bench.recording_set import export_experiment
 from bench.service.access import allow_read, require_token
 from bench.service.json_numbers import plain
-from bench.service.problems import problems
+from bench.service.problems import FieldProblem, InvalidFieldsError, field_problems, problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.store.records import Experiment as StoredExperiment
 
@@ -118,9 +119,21 @@ def start(runner: RunnerOf, request: Request, response: Response, body: NewExper
 
     409 while another one runs. Watch it with GET /live, end it with POST /stop.
     """
-    experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+    try:
+        experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+    except ParameterError as error:
+        raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
     response.headers["Location"] = f"{request.url.path}/{experiment_id}"
     return Started(experiment_id=experiment_id, kind=body.kind)
+
+
+def _fields_of(body: NewExperiment) -> list[FieldProblem]:
+    """The fields that the parameters' model refuses."""
+    try:
+        find_kind(body.kind).parameters.model_validate(body.parameters)
+    except ValidationError as error:
+        return field_problems(error, prefix="parameters")
+    return []
 
 
 @router.get("/experiments", summary="What has been run", responses=problems(422))

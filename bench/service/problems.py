@@ -12,6 +12,8 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse
 
 from bench.errors import BenchError
+from bench.quantities import unit_of
+from compensator.errors import CompensatorError
 from drivers.errors import DriveError
 
 MEDIA_TYPE = "application/problem+json"
@@ -94,18 +96,34 @@ def status_of(error: Exception) -> int:
     return 503 if isinstance(error, OSError) else 409
 
 
-def field_problems(errors: Sequence[Any], skip: int = 0) -> list[FieldProblem]:
-    """pydantic's error list as ours; the first `skip` parts of each location are left out ("body")."""
-    return [_field_problem(error, skip) for error in errors]
+def field_problems(error: ValidationError | RequestValidationError, prefix: str = "") -> list[FieldProblem]:
+    """pydantic's list of errors as ours.
+
+    Args:
+        error: as raised; of a request, the first part of each location ("body", "query") is left out.
+        prefix: put before each field's path.
+    """
+    skip = 1 if isinstance(error, RequestValidationError) else 0
+    return [_field_problem(detail, prefix, detail["loc"][skip:]) for detail in error.errors()]
 
 
-def _field_problem(error: Any, skip: int) -> FieldProblem:
-    name = ".".join(str(part) for part in error["loc"][skip:])
+def _field_problem(error: Any, prefix: str, location: tuple[int | str, ...]) -> FieldProblem:
+    name = ".".join(str(part) for part in (*([prefix] if prefix else []), *location))
     allowed = {key: value for key, value in error.get("ctx", {}).items() if isinstance(value, int | float | str)}
     found = error.get("input")
     if not isinstance(found, int | float | str | bool | None):
         found = type(found).__name__
-    return FieldProblem(field=name, message=error["msg"], found=found, allowed=allowed)
+    unit = next((unit_of(part) for part in reversed(location) if isinstance(part, str)), "")
+    return FieldProblem(field=name, message=error["msg"], found=found, allowed=allowed, unit=unit)
+
+
+class InvalidFieldsError(BenchError, ValueError):
+    """Raised by a route when values are refused and it is known which fields they came in."""
+
+    def __init__(self, message: str, kind: str, errors: list[FieldProblem]) -> None:
+        super().__init__(message)
+        self.kind = kind
+        self.errors = errors
 
 
 def install(app: FastAPI) -> None:
@@ -113,16 +131,21 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(BenchError)
     @app.exception_handler(DriveError)
+    @app.exception_handler(CompensatorError)
     async def ours(_request: Request, error: Exception) -> JSONResponse:
         return problem_response(status_of(error), str(error), kind=type(error).__name__)
 
+    @app.exception_handler(InvalidFieldsError)
+    async def invalid_fields(_request: Request, error: InvalidFieldsError) -> JSONResponse:
+        return problem_response(422, str(error), error.kind, error.errors)
+
     @app.exception_handler(RequestValidationError)
     async def invalid_request(_request: Request, error: RequestValidationError) -> JSONResponse:
-        return _invalid(field_problems(error.errors(), skip=1))
+        return _invalid(field_problems(error))
 
     @app.exception_handler(ValidationError)
     async def invalid_value(_request: Request, error: ValidationError) -> JSONResponse:
-        return _invalid(field_problems(error.errors(include_url=False)))
+        return _invalid(field_problems(error))
 
     @app.exception_handler(HTTPException)
     async def http(_request: Request, error: HTTPException) -> JSONResponse:

@@ -11,12 +11,23 @@ export function benchView(place, { live }) {
   const start = h("div");
   const drive = h("div");
   const plot = h("div");
-  replace(place, h("div", { class: "columns" },
-    h("div", {}, panel("Start an experiment", start), panel("Drive and limits", drive)),
-    h("div", {}, panel("Live", plot))));
+  replace(place, h("div", { class: "columns" }, panel("Start an experiment", start), h("div", { class: "wide" }, panel("Live", plot)),
+    panel("Drive and limits", drive)));
   startForm(start, live);
-  attempt(drive, async () => replace(drive, description(await get("/bench"))));
-  return livePlot(plot, live);
+  const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
+  let shown = live.status?.run?.experiment_id;
+  const changed = () => {
+    if (live.status?.run?.experiment_id === shown) return;
+    shown = live.status?.run?.experiment_id;
+    refresh();
+  };
+  live.addEventListener("status", changed);
+  refresh();
+  const leave = livePlot(plot, live);
+  return () => {
+    live.removeEventListener("status", changed);
+    leave();
+  };
 }
 
 function description(bench) {
@@ -24,6 +35,6 @@ function description(bench) {
   const identity = drive
     ? [["drive", [drive.vendor, drive.product].filter(Boolean).join(" ") || drive.device], ["firmware", drive.firmware || "not told"],
       ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s`]]
-    : [["drive", "not connected yet; it is opened when an experiment starts"]];
+    : [["drive", "opens at the first start"]];
   return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, `${number(limit.value)} ${limit.unit}`]), ["software", bench.software_version]]);
 }

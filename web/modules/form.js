@@ -32,7 +32,10 @@ export class Form {
     const id = `${prefix}-${name}`;
     const input = control(kind, id);
     const problem = h("div", { id: `${id}-problem` });
-    const hint = [kind.description, bounds(kind)].filter(Boolean).join(" ");
+    const hint = [kind.description && `${kind.description}.`, bounds(kind)].filter(Boolean).join(" ");
+    const degrees = h("span");
+    if (kind.unit === "rad") input.addEventListener("input", () => { degrees.textContent = inDegrees(input.value); });
+    degrees.textContent = kind.unit === "rad" ? inDegrees(input.value) : "";
     this.#fields.set(name, {
       read: () => read(kind, input),
       show: (error) => {
@@ -43,7 +46,7 @@ export class Form {
     input.setAttribute("aria-describedby", `${id}-hint ${id}-problem`);
     const text = `${nameOf(name)}${kind.unit ? ` [${kind.unit}]` : ""}`;
     const label = kind.type === "boolean" ? h("label", { class: "inline" }, input, text) : h("label", { for: id }, text, input);
-    return h("div", { class: "field" }, label, h("div", { class: "hint", id: `${id}-hint` }, hint), problem);
+    return h("div", { class: "field" }, label, h("div", { class: "hint", id: `${id}-hint` }, hint, degrees), problem);
   }
 }
 
@@ -80,6 +83,11 @@ function read(kind, input) {
 function numberOrText(text) {
   const value = Number(text);
   return Number.isFinite(value) ? value : text;
+}
+
+function inDegrees(text) {
+  const values = text.split(/[,;\s]+/).filter(Boolean).map((one) => (Number(one) * 180) / Math.PI);
+  return values.length && values.every(Number.isFinite) ? ` Now ${values.map((one) => `${number(one, 4)}°`).join(", ")}.` : "";
 }
 
 function bounds(kind) {

@@ -47,5 +47,8 @@ export function conditions(values) {
 export function when(iso) {
   if (!iso) return "–";
   const date = new Date(iso);
-  return Number.isNaN(date.getTime()) ? String(iso) : date.toLocaleString([], { dateStyle: "short", timeStyle: "medium" });
+  if (Number.isNaN(date.getTime())) return String(iso);
+  const two = (value) => String(value).padStart(2, "0");
+  const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join("-");
+  return `${day} ${[date.getHours(), date.getMinutes(), date.getSeconds()].map(two).join(":")}`;
 }

@@ -13,10 +13,10 @@ export async function ladderPlot(place, ladder, current) {
   const names = ladder.rungs.map(rungName);
   const held = ladder.rungs.map((rung) => 100 * rung.held_out);
   const traces = [
-    { x: names, y: held, name: "held-out", mode: "lines+markers", marker: { size: 10, symbol: "circle" }, line: { color: colour("blue"), width: 3, shape: "hv" },
+    { x: names, y: held, name: "held-out", mode: "lines+markers", marker: { size: 10, symbol: "circle" }, line: { color: colour("blue"), width: 3 },
       error_y: spread(ladder.rungs) },
     { x: names, y: ladder.rungs.map((rung) => 100 * rung.training), name: "training", mode: "lines+markers", marker: { size: 8, symbol: "diamond" },
-      line: { color: colour("orange"), width: 2, dash: "dash", shape: "hv" } },
+      line: { color: colour("orange"), width: 2, dash: "dash" } },
   ];
   const shapes = floor === null ? [] : [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 100 * floor, y1: 100 * floor, line: { color: colour("green"), dash: "dot", width: 2 } }];
   const annotations = floor === null ? [] : [{ xref: "paper", x: 1, y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];

@@ -11,7 +11,7 @@ export class Live extends EventTarget {
   channels = [];
   rows = [];
   #after = -1;
-  #heard = 0;
+  #heard = -Infinity;
 
   get stale() {
     return performance.now() - this.#heard > STALE_MS;

@@ -17,9 +17,10 @@ export function livePlot(place, live) {
   const progress = h("progress", { max: "1", value: "0", "aria-label": "Progress of the experiment" });
   const outcome = h("p", { class: "soft", role: "status" });
   const values = h("p", { class: "soft number" });
-  const plot = h("div", { class: "plot live", role: "img", "aria-label": "Position, speed and current over the last rows" });
+  const nothing = h("p", { class: "soft" }, "No rows yet: they appear here while an experiment runs.");
+  const plot = h("div", { class: "plot live", hidden: true, role: "img", "aria-label": "Position, speed and current over the last rows" });
   const freeze = h("input", { type: "checkbox", id: "freeze" });
-  replace(place, progress, outcome, h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), values), plot);
+  replace(place, progress, outcome, h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), values), nothing, plot);
 
   let changed = true;
   const mark = () => { changed = true; };
@@ -32,6 +33,9 @@ export function livePlot(place, live) {
   const timer = setInterval(() => {
     if (!changed || freeze.checked || document.hidden) return;
     changed = false;
+    plot.hidden = !live.rows.length;
+    nothing.hidden = !plot.hidden;
+    if (plot.hidden) return;
     draw(plot, traces(live), axes());
   }, REDRAW_MS);
   live.addEventListener("rows", mark);

@@ -29,9 +29,14 @@ export async function newStudy(place) {
     if (study) location.hash = `#study/${study.study_id}`;
   };
   const choices = usable.map((one, index) => h("label", { class: "inline" }, boxes[index],
-    `${one.experiment_id}: ${one.kind}, ${one.source}, ${one.outcome}, ${when(one.started_utc)}${one.note ? ` (${one.note})` : ""}`));
+    `${one.experiment_id}: ${one.kind}, ${one.source}, ${one.outcome}, ${when(one.started_utc)}${noteOf(one)}`));
   replace(place, h("form", { class: "form", onsubmit: submit }, h("label", { for: "study-name" }, "Name", name),
     h("fieldset", {}, h("legend", {}, "Experiments whose trials are used"), choices), holdOut, h("div", { class: "row" }, button), answer));
+}
+
+function noteOf(experiment) {
+  const note = experiment.note || experiment.parameters.name;
+  return note ? ` (${note})` : "";
 }
 
 async function holdOutFields(experiment_ids) {

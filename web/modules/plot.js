@@ -23,7 +23,7 @@ export function layout(extra = {}) {
   const base = {
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colour("text"), family: "system-ui, sans-serif", size: narrow ? 11 : 12 },
     margin: { l: 60, r: 12, t: 12, b: 44 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 }, hovermode: "closest",
-    uirevision: "keep",
+    uirevision: "keep", modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("accent") },
   };
   const axes = {};
   for (const [name, value] of Object.entries({ xaxis: {}, yaxis: {}, ...extra })) if (/^[xy]axis\d*$/.test(name)) axes[name] = axis(value);

@@ -25,7 +25,7 @@ function known(status) {
   const simulated = status.simulated
     ? h("span", { class: "badge simulated", title: "No hardware moves: the drive is simulated" }, "SIMULATED")
     : h("span", { class: "badge real", title: "A real drive: the joint moves" }, "REAL DRIVE");
-  return [simulated, h("span", { class: `badge ${status.state}` }, status.state), h("span", {}, doing(status.run))];
+  return [simulated, h("span", { class: `badge ${status.state}` }, status.state), h("span", { class: "doing", title: doing(status.run) }, doing(status.run))];
 }
 
 function doing(run) {

@@ -7,7 +7,8 @@ import { SERIES, colour, draw } from "./plot.js";
 import { attempt } from "./problem.js";
 
 const POINTS = 4000;
-const FIRST = ["position_rad", "target_rad", "position_m", "current_a"];
+const FIRST = ["position_rad", "target_rad", "position_m", "target_m"];
+const EFFORTS = ["current_estimate_a", "current_a", "torque_n_m", "force_n", "duty"];
 
 export async function trialPlot(place, { trial_id: id }) {
   const answer = h("div");
@@ -15,7 +16,8 @@ export async function trialPlot(place, { trial_id: id }) {
   const trial = await attempt(answer, () => get(`/trials/${id}`));
   if (!trial) return;
   const names = trial.channels.filter((name) => name !== "time_s");
-  const boxes = names.map((name) => h("input", { type: "checkbox", value: name, checked: FIRST.includes(name) }));
+  const effort = EFFORTS.find((name) => names.includes(name));
+  const boxes = names.map((name) => h("input", { type: "checkbox", value: name, checked: FIRST.includes(name) || name === effort }));
   const against = h("select", {}, trial.channels.map((name) => h("option", { value: name }, withUnit(name))));
   const plot = h("div", { class: "plot", role: "img", "aria-label": `Channels of trial ${id}` });
   const show = () => attempt(answer, async () => {
@@ -42,7 +44,8 @@ function drawChannels(plot, columns, against, chosen, events) {
     { domain: [1 - (index + 1) * share + 0.04 * (index < units.length - 1), 1 - index * share], title: { text: unit.replace("]", "") } }]));
   const traces = chosen.map((name, index) => {
     const row = units.indexOf(withUnit(name).split("[")[1] ?? "");
-    return { x: columns[against], y: columns[name], name: withUnit(name), mode: against === "time_s" ? "lines" : "markers", marker: { size: 3 },
+    const absent = columns[name].every((value) => value === null);
+    return { x: columns[against], y: columns[name], name: absent ? `${withUnit(name)}: not measured` : withUnit(name), showlegend: true, mode: against === "time_s" ? "lines" : "markers", marker: { size: 3 },
       yaxis: `y${row ? row + 1 : ""}`, line: { color: colour(SERIES[index % SERIES.length]), width: 1.5 } };
   });
   const shapes = against !== "time_s" ? [] : events.slice(0, 200).map((event) => (

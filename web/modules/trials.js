@@ -30,7 +30,8 @@ export function trialsView(place) {
   const refresh = () => attempt(experiments, async () => {
     const { items } = await get("/experiments", { limit: 100 });
     replace(experiments, experimentTable(items, choose));
-    await (items.length ? choose(items[0].experiment_id) : show());
+    const latest = items.find((one) => one.outcome !== "refused");
+    await (latest ? choose(latest.experiment_id) : show());
   });
   replace(place, panel("Experiments", experiments, importForm(refresh)), panel("Trials", bar, list), detail);
   refresh();
@@ -45,10 +46,10 @@ function experimentTable(items, choose) {
     { title: "Source", cell: (one) => h("span", { class: `badge ${one.source}` }, one.source) },
     { title: "Started", cell: (one) => when(one.started_utc) },
     { title: "Outcome", cell: (one) => outcome(one) },
-    { title: "Note", cell: (one) => one.note },
-    { title: "", cell: (one) => [
-      h("button", { class: "small", type: "button", "aria-label": `Trials of experiment ${one.experiment_id}`, onclick: () => choose(one.experiment_id) }, "Trials"), " ",
-      fetchButton("Export", `Export experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/recording-set`, `experiment-${one.experiment_id}.zip`)] },
+    { title: "Note", cell: (one) => one.note || one.parameters.name },
+    { title: "", cell: (one) => actions(
+      h("button", { class: "small", type: "button", "aria-label": `Trials of experiment ${one.experiment_id}`, onclick: () => choose(one.experiment_id) }, "Trials"),
+      fetchButton("Export", `Export experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/recording-set`, `experiment-${one.experiment_id}.zip`)) },
   ], items);
 }
 
@@ -73,9 +74,9 @@ function trialTable(page, plot) {
     { title: "Conditions", cell: (trial) => conditions(trial.conditions) },
     { title: "Outcome", cell: (trial) => outcome(trial) },
     { title: "Rows", number: true, cell: (trial) => number(trial.rows) },
-    { title: "", cell: (trial) => [
-      h("button", { class: "small", type: "button", "aria-label": `Plot trial ${trial.trial_id}`, onclick: () => plot(trial) }, "Plot"), " ",
-      fetchButton("CSV", `CSV of trial ${trial.trial_id}`, `/trials/${trial.trial_id}/csv`, `trial-${trial.trial_id}.csv`)] },
+    { title: "", cell: (trial) => actions(
+      h("button", { class: "small", type: "button", "aria-label": `Plot trial ${trial.trial_id}`, onclick: () => plot(trial) }, "Plot"),
+      fetchButton("CSV", `CSV of trial ${trial.trial_id}`, `/trials/${trial.trial_id}/csv`, `trial-${trial.trial_id}.csv`)) },
   ], page.items);
 }
 
@@ -83,10 +84,14 @@ function outcome(one) {
   return [h("span", { class: `badge ${one.outcome}` }, one.outcome), one.reason && h("div", { class: "hint" }, one.reason)].filter(Boolean);
 }
 
+// problems of the buttons appear beneath them
+function actions(...buttons) {
+  return [h("div", { class: "actions" }, ...buttons), h("div")];
+}
+
 function fetchButton(text, label, path, name) {
-  const problem = h("div");
-  const button = h("button", { class: "small", type: "button", "aria-label": label, onclick: () => attempt(problem, () => download(path, name), button) }, text);
-  return [button, problem];
+  const fetchFile = ({ currentTarget: button }) => attempt(button.parentElement.nextElementSibling, () => download(path, name), button);
+  return h("button", { class: "small", type: "button", "aria-label": label, onclick: fetchFile }, text);
 }
 
 function pager(page, filter, show) {

@@ -1,0 +1,173 @@
+"""Starting, watching, stopping."""
+
+import json
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import httpx
+import pytest
+
+
+def test_kinds_have_a_schema_with_units_bounds_and_defaults(service):
+    kinds = {kind["name"]: kind for kind in service.stranger.get("/experiment-kinds").json()["items"]}
+    assert {"steps", "load-sweep", "excitation"} <= set(kinds)
+    repeats = kinds["steps"]["parameters"]["properties"]["repeats"]
+    assert (repeats["minimum"], repeats["maximum"], repeats["default"]) == (1, 1000, 25)
+    for kind in kinds.values():
+        for name, schema in kind["parameters"]["properties"].items():
+            assert schema["description"], (kind["name"], name)
+            assert "unit" in schema, (kind["name"], name)
+
+
+def test_a_run_from_start_to_record(idle):
+    found = idle.run("steps", repeats=1, load_kg=0.05)
+    assert found["outcome"] == "completed"
+    assert found["source"] == "simulated"
+    assert found["parameters"]["load_kg"] == 0.05
+    assert found["provenance"]["software"]["version"]
+    listed = idle.stranger.get("/experiments", params={"limit": 1}).json()
+    assert listed["items"][0]["experiment_id"] == found["experiment_id"]
+    status = idle.stranger.get("/bench").json()
+    assert status["simulated"] is True
+    assert status["state"] == "idle"
+    assert status["run"]["experiment_id"] == found["experiment_id"]
+    assert status["drive"]["watchdog_s"] > 0
+
+
+def test_the_answer_says_where_the_experiment_is(idle):
+    answer = idle.client.post("/experiments", json={"kind": "steps", "parameters": {"repeats": 1}, "pace": "fast"})
+    assert answer.headers["location"] == f"/api/v1/experiments/{answer.json()['experiment_id']}"
+    assert idle.client.get(idle.url + answer.headers["location"]).json()["kind"] == "steps"
+
+
+def test_outside_the_limits_is_refused_before_motion_with_value_limit_and_unit(idle):
+    answer = idle.client.post("/experiments", json={"kind": "steps", "parameters": {"load_kg": 5}})
+    assert answer.status_code == 422
+    problem = answer.json()
+    assert problem["kind"] == "LimitError"
+    assert "load_kg is 5 kg; allowed is at most 0.1 kg" in problem["detail"]
+    latest = idle.client.get("/experiments", params={"limit": 1}).json()["items"][0]
+    assert (latest["outcome"], latest["parameters"]) == ("refused", {"load_kg": 5})
+    assert idle.client.get("/trials", params={"experiment_id": latest["experiment_id"]}).json()["items"] == []
+
+
+def test_wrong_values_are_named_field_by_field(idle):
+    body = {"kind": "steps", "parameters": {"load_kg": -1, "repeats": "many", "colour": "red"}}
+    problem = idle.client.post("/experiments", json=body).json()
+    errors = {error["field"]: error for error in problem["errors"]}
+    assert set(errors) == {"parameters.load_kg", "parameters.repeats", "parameters.colour"}
+    assert errors["parameters.load_kg"]["unit"] == "kg"
+    assert errors["parameters.load_kg"]["allowed"] == {"ge": 0}
+    assert errors["parameters.repeats"]["found"] == "many"
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        ({"kind": "dance"}, 404),
+        ({}, 422),
+        ({"kind": "steps", "surprise": 1}, 422),
+        ({"kind": "steps", "pace": "slow"}, 422),
+        ([], 422),
+        ({"kind": "steps", "parameters": {"angle_rad": 3.0}}, 422),
+    ],
+)
+def test_bad_starts_are_problems(idle, body, status):
+    answer = idle.client.post("/experiments", json=body)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["detail"]
+
+
+def test_a_body_that_is_no_json_is_a_problem(idle):
+    answer = idle.client.post("/experiments", content=b"{", headers={"Content-Type": "application/json"})
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_one_at_a_time_and_stop(idle):
+    first = idle.start("steps", pace="real-time", repeats=5)
+    answer = idle.client.post("/experiments", json={"kind": "steps"})
+    assert answer.status_code == 409
+    assert f"experiment {first}" in answer.json()["detail"]
+    time.sleep(0.5)
+    stopped = idle.client.post("/stop", json={"reason": "cable is caught"}).json()
+    assert stopped["was_running"] is True
+    assert idle.runner.wait(2.0)
+    record = idle.client.get(f"/experiments/{first}").json()
+    assert record["outcome"] == "stopped"
+    assert "cable is caught" in record["reason"]
+    trial = idle.client.get("/trials", params={"experiment_id": first}).json()["items"][0]
+    assert trial["outcome"] == "stopped"
+    assert trial["rows"] > 50
+
+
+def test_stop_without_a_body_and_with_nothing_running(idle):
+    answer = idle.client.post("/stop")
+    assert answer.status_code == 200
+    assert answer.json() == {"detail": "Nothing was running; the joint is off.", "was_running": False}
+
+
+def test_stop_gets_through_while_every_worker_thread_is_busy(idle, monkeypatch):
+    monkeypatch.setattr(type(idle.store), "experiments", lambda *_args, **_kwargs: time.sleep(1.5) or [])
+    idle.start("steps", pace="real-time", repeats=5)
+    limits = httpx.Limits(max_connections=100)
+    readers = httpx.Client(base_url=f"{idle.url}/api/v1", limits=limits, timeout=30)
+    with readers, ThreadPoolExecutor(60) as pool:
+        waiting = [pool.submit(readers.get, "/experiments") for _ in range(60)]
+        time.sleep(0.4)
+        begun_s = time.monotonic()
+        assert idle.client.post("/stop").status_code == 200
+        took_s = time.monotonic() - begun_s
+        assert sum(not one.done() for one in waiting) > 20, "the readers were not busy; the test shows nothing"
+    assert took_s < 0.7
+    assert idle.runner.wait(2.0)
+
+
+def test_nothing_that_is_read_starts_motion(idle):
+    paths = idle.client.get("/openapi.json").json()["paths"]
+    before = idle.store.experiments(limit=1)[0].id
+    for path, item in paths.items():
+        if "get" in item and "{" not in path and not path.endswith("/live"):
+            idle.client.get(idle.url + path)
+    assert idle.runner.status().outcome != "running"
+    assert idle.store.experiments(limit=1)[0].id == before
+
+
+def test_live_rows_by_polling_are_the_recorded_rows(idle):
+    experiment_id = idle.start("steps", pace="real-time", repeats=1)
+    rows, after_row = [], -1
+    for _ in range(8):
+        time.sleep(0.15)
+        answer = idle.stranger.get("/live/now", params={"after_row": after_row}).json()
+        assert answer["status"]["state"] == "running"
+        if answer["rows"]["restarted"]:
+            rows = []
+        rows += answer["rows"]["rows"]
+        after_row = answer["rows"]["last_row"]
+        channels = answer["rows"]["channels"]
+    idle.client.post("/stop")
+    assert idle.runner.wait(5.0)
+    trial = idle.store.trials(experiment_id)[0]
+    time_s = idle.store.samples(trial.id)["time_s"]
+    assert len(rows) > 100
+    assert [row[channels.index("time_s")] for row in rows] == time_s[: len(rows)].tolist()
+
+
+def test_live_stream_sends_status_and_rows(idle):
+    idle.start("steps", pace="real-time", repeats=1)
+    names, rows = set(), 0
+    with httpx.stream("GET", f"{idle.url}/api/v1/live", timeout=10) as stream:
+        assert stream.headers["content-type"].startswith("text/event-stream")
+        event = ""
+        for line in stream.iter_lines():
+            if line.startswith("event: "):
+                event = line.removeprefix("event: ")
+            if line.startswith("data: "):
+                data = json.loads(line.removeprefix("data: "))
+                names.add(event)
+                rows += len(data["rows"]) if event == "rows" else 0
+            if names == {"status", "rows"} and rows > 50:
+                break
+    idle.client.post("/stop")
+    assert idle.runner.wait(5.0)

@@ -1,0 +1,49 @@
+"""The interface's own description: good enough to use it alone."""
+
+import json
+
+import httpx
+import pytest
+
+
+@pytest.fixture(scope="module")
+def document(service):
+    return service.stranger.get("/openapi.json").json()
+
+
+def test_every_route_is_described(document):
+    for path, item in document["paths"].items():
+        for method, route in item.items():
+            assert route["summary"], (method, path)
+            assert route["description"], (method, path)
+            assert route["tags"], (method, path)
+
+
+def test_every_change_asks_for_the_token_and_declares_its_refusal(document):
+    for path, item in document["paths"].items():
+        for method, route in item.items():
+            if method != "get":
+                assert route["security"] == [{"token": []}], (method, path)
+                assert "401" in route["responses"], (method, path)
+
+
+def test_every_property_name_or_text_says_its_unit(document):
+    text = json.dumps(document["components"]["schemas"])
+    for name in ("watchdog_s", "max_rate_hz", "position_rad", "load_kg"):
+        assert name in text
+
+
+def test_the_order_of_use_is_in_the_text(document):
+    for path in ("/api/v1/experiments", "/api/v1/live", "/api/v1/stop", "/api/v1/studies"):
+        assert path in document["info"]["description"]
+
+
+def test_the_page_and_its_files_are_served(service):
+    page = httpx.get(service.url)
+    assert page.headers["content-type"].startswith("text/html")
+    for part in ("/static/style.css", "/static/plots.css", "/static/modules/main.js", "/static/plotly.min.js"):
+        assert part in page.text
+        assert httpx.get(service.url + part).status_code == 200
+    assert httpx.get(service.url + "/static/../../pyproject.toml").status_code == 404
+    assert "<script>" not in page.text
+    assert "style=" not in page.text
