@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from sim_backend.jit import jitted
 
-# Gauss-Seidel contracts by k^2 / (d + k)^2, about 1e-4 for metal teeth at 0.1 ms
-_SWEEPS = 100
+# a sweep of Gauss-Seidel leaves k^2 / ((d_r + k) (d_a + k)) of the error: 1e-4 for metal teeth at 0.1 ms
+_SWEEPS = 4
 
 
 class Body(NamedTuple):
@@ -54,11 +54,6 @@ def _sign(value: float) -> float:
 
 
 @jitted
-def _slip_impulse(direction: float, body: Body) -> float:
-    return body.upper if direction > 0.0 else -body.lower
-
-
-@jitted
 def free_speeds(rotor: Body, arm: Body) -> tuple[float, float]:
     """Return the speeds (rotor, arm) at the end of the step, where the teeth do not touch."""
     return left_by_friction(rotor.impulse, rotor) / rotor.diagonal, left_by_friction(arm.impulse, arm) / arm.diagonal
@@ -79,24 +74,44 @@ def coupled_speeds(rotor: Body, arm: Body, k: float, c: float, v_a: float) -> tu
     p_r, p_a = rotor.impulse - c, arm.impulse + c
     v_r = 0.0
     for _ in range(_SWEEPS):
-        # one sweep shows who sticks and who slips which way
+        # one sweep shows who sticks and who slips which way; with that settled the rest is linear
         v_r = left_by_friction(p_r + k * v_a, rotor) / d_r
         v_a = left_by_friction(p_a + k * v_r, arm) / d_a
         way_r, way_a = _sign(v_r), _sign(v_a)
-        # with that settled the rest is linear
-        free_r = p_r - _slip_impulse(way_r, rotor)
-        free_a = p_a - _slip_impulse(way_a, arm)
-        if way_r != 0.0 and way_a != 0.0:
-            determinant = d_r * d_a - k * k
-            v_r = (free_r * d_a + k * free_a) / determinant
-            v_a = (free_a * d_r + k * free_r) / determinant
-        elif way_r != 0.0:
-            v_r = free_r / d_r
-        elif way_a != 0.0:
-            v_a = free_a / d_a
-        # and it stands if it agrees with what it assumed
-        held_r = way_r != 0.0 or left_by_friction(p_r + k * v_a, rotor) == 0.0
-        held_a = way_a != 0.0 or left_by_friction(p_a + k * v_r, arm) == 0.0
-        if _sign(v_r) == way_r and _sign(v_a) == way_a and held_r and held_a:
-            break
+        exact_r, exact_a = _settled(rotor, arm, p_r, p_a, k, way_r, way_a)
+        if _agrees(rotor, p_r + k * exact_a, exact_r, way_r) and _agrees(arm, p_a + k * exact_r, exact_a, way_a):
+            return exact_r, exact_a
+    # a coupling that dwarfs the inertias leads the sweeps astray: try all ways
+    for way_r in (-1.0, 0.0, 1.0):
+        for way_a in (-1.0, 0.0, 1.0):
+            exact_r, exact_a = _settled(rotor, arm, p_r, p_a, k, way_r, way_a)
+            if _agrees(rotor, p_r + k * exact_a, exact_r, way_r) and _agrees(arm, p_a + k * exact_r, exact_a, way_a):
+                return exact_r, exact_a
+    # one of them fits but for rounding, at the brink of slip, where the sweeps have come close
     return v_r, v_a
+
+
+@jitted
+def _agrees(body: Body, pushed: float, speed: float, way: float) -> bool:
+    """Tell whether a solution does what it assumed: slip that way, or stay within what friction can hold."""
+    if way == 0.0:
+        return left_by_friction(pushed, body) == 0.0
+    return speed * way >= 0.0
+
+
+@jitted
+def _settled(
+    rotor: Body, arm: Body, p_r: float, p_a: float, k: float, way_r: float, way_a: float
+) -> tuple[float, float]:
+    """Return the speeds for given directions of slip; 0 is stick."""
+    d_r, d_a = rotor.diagonal + k, arm.diagonal + k
+    free_r = p_r - (rotor.upper if way_r > 0.0 else -rotor.lower)
+    free_a = p_a - (arm.upper if way_a > 0.0 else -arm.lower)
+    if way_r != 0.0 and way_a != 0.0:
+        determinant = d_r * d_a - k * k
+        return (free_r * d_a + k * free_a) / determinant, (free_a * d_r + k * free_r) / determinant
+    if way_r != 0.0:
+        return free_r / d_r, 0.0
+    if way_a != 0.0:
+        return 0.0, free_a / d_a
+    return 0.0, 0.0

@@ -1,0 +1,1 @@
+"""The plant against theory, and the simulated drive against the contract."""

@@ -1,0 +1,68 @@
+from typing import Any
+
+import pytest
+
+from sim_backend import presets
+from sim_backend.errors import ParameterError
+from sim_backend.parameters import PlantParameters
+from sim_backend.plant import Plant
+from tests.sim_backend.plants import parameters, plant
+
+
+@pytest.mark.parametrize(
+    ("table", "values", "message"),
+    [
+        ("friction", {"static_n_m": 0.001}, r"Friction.static_n_m = 0.001 \[N m\]: .*never below Coulomb.*0.003 N m"),
+        ("gear", {"backlash_rad": -0.01}, r"Gear.backlash_rad = -0.01 \[rad at the joint, total\]: must be at least 0"),
+        ("gear", {"ratio": 0.0}, r"Gear.ratio = 0.0 \[motor turns per joint turn\]: must be greater than 0"),
+        ("motor", {"resistance_ohm": -8}, r"Motor.resistance_ohm = -8 \[ohm\]: must be greater than 0"),
+        ("arm", {"inertia_kg_m2": float("nan")}, r"Arm.inertia_kg_m2 = nan .*: a finite number"),
+        ("load_friction", {"back_driving": 1.2}, r"LoadFriction.back_driving = 1.2 \[1\]: must be at most 1"),
+        ("viscous_asymmetry", {"fraction": -2}, r"ViscousAsymmetry.fraction = -2 \[1\]: must be at least -1"),
+        ("lubricant", {"reference_c": -120.0}, r"Lubricant.reference_c = -120.0 \[degC\]: .*above the divergence"),
+        ("motor", {"resistence_ohm": 8.0}, r"plant.motor: unknown key 'resistence_ohm'; did you mean 'resistance_ohm'"),
+        ("frictoin", {}, r"plant: unknown key 'frictoin'; did you mean 'friction'"),
+        ("motor", {"resistance_ohm": "eight"}, r"Motor.resistance_ohm = 'eight' \[ohm\]: a finite number is wanted"),
+        ("heat", {"present": 1}, r"plant.heat.present = 1: true or false is wanted"),
+        ("motor", {"resistance_ohm": True}, r"plant.motor.resistance_ohm = True: a number is wanted"),
+        ("motor", 8.0, r"plant.motor: a table of parameters is wanted, found 8.0"),
+        ("current_loop", {"present": True}, r"a loop needs CurrentSensor.present"),
+    ],
+)
+def test_impossible_plants_are_refused_with_parameter_value_unit_and_law(table: str, values: Any, message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        PlantParameters.from_dict({table: values}, base=presets.paper())
+
+
+def test_message_says_which_table_of_the_file_is_meant() -> None:
+    with pytest.raises(ParameterError, match=r"^plant\.friction: Friction\.static_n_m"):
+        PlantParameters.from_dict({"friction": {"static_n_m": 0.0}}, base=presets.paper())
+
+
+def test_tables_override_a_preset_and_leave_the_rest() -> None:
+    changed = PlantParameters.from_dict({"spring": {"stiffness_n_m_rad": 0.3}, "gear": {"ratio": 25}}, presets.paper())
+    assert changed.spring.stiffness_n_m_rad == 0.3
+    assert changed.gear.ratio == 25
+    assert changed.gear.backlash_rad == presets.paper().gear.backlash_rad
+    assert changed.friction == presets.paper().friction
+
+
+def test_whole_plant_can_be_written_as_tables() -> None:
+    with pytest.raises(ParameterError, match="the tables motor, supply, gear, arm, encoder are missing"):
+        PlantParameters.from_dict({})
+    with pytest.raises(ParameterError, match=r"plant.supply: missing 1 required .*'voltage_v'"):
+        parameters(supply={}).from_dict({"supply": {}})
+    assert parameters().motor.resistance_ohm == 2.0
+
+
+def test_step_too_coarse_for_the_teeth_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"too coarse for Gear.stiffness_n_m_rad = 1e\+06 .* at most .* s"):
+        plant(gear={"stiffness_n_m_rad": 1e6})
+    with pytest.raises(ParameterError, match=r"step = 0.001 \[s\]: must be above 0 and at most 0.0001"):
+        Plant(parameters(), step_s=1e-3)
+
+
+def test_presets_are_found_by_name() -> None:
+    assert presets.by_name("paper") == presets.paper()
+    with pytest.raises(ParameterError, match="preset 'papers' is unknown; known are paper"):
+        presets.by_name("papers")
