@@ -3,6 +3,7 @@
 import queue
 import threading
 import time
+from contextlib import suppress
 from typing import Protocol
 
 import numpy as np
@@ -35,12 +36,14 @@ class Recorder:
     BLOCK_ROWS = 4000
     BACKLOG = 64  # blocks that may wait for the sink
     PATIENCE_S = 10.0  # how long a full backlog is waited for
+    LAST_PATIENCE_S = 60.0  # how long the end is waited for: the joint is off by then, and the rows are worth it
 
     def __init__(self, sink: Sink) -> None:
         self.error: BaseException | None = None
         self._sink = sink
         self._rows: list[Row] = []
         self._handed_s = time.monotonic()
+        self._ending = False
         self._queue: queue.Queue[list[Row] | Event | None] = queue.Queue(self.BACKLOG)
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
@@ -70,9 +73,16 @@ class Recorder:
         try:
             self._hand_over()
         finally:
-            self._queue.put(None)
-            self._thread.join()
+            self._end()
         self._check()
+
+    def _end(self) -> None:
+        self._ending = True
+        with suppress(queue.Full):  # then the thread sees `_ending` once it has worked through the backlog
+            self._queue.put_nowait(None)
+        self._thread.join(self.LAST_PATIENCE_S)
+        if self._thread.is_alive():
+            raise RecordingError(f"the store has not taken the last rows in {self.LAST_PATIENCE_S:g} s; they are lost")
 
     def _hand_over(self) -> None:
         self._check()
@@ -95,7 +105,10 @@ class Recorder:
             raise RecordingError(f"the store failed: {self.error}") from self.error
 
     def _write(self) -> None:
-        while (item := self._queue.get()) is not None:
+        while not (self._ending and self._queue.empty()):
+            item = self._queue.get()
+            if item is None:
+                return
             if self.error is not None:
                 continue  # drain, so that the loop is never blocked by a sink that is gone
             try:

@@ -9,7 +9,7 @@ from bench.experiments.reflected_load import reflected_load_kg
 from bench.loop import Procedure
 from compensator.zero_speed_search import Phase, SearchState
 
-SECONDS = 12.0  # of a move, a search and the way back, roughly
+SECONDS = 7.0  # of a move, a search and the way back, roughly
 RIGHT_ANGLE_RAD = pi / 2
 
 

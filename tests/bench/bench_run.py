@@ -1,0 +1,44 @@
+"""Runs an experiment through the ordinary loop, into memory."""
+
+import threading
+
+import numpy as np
+
+from bench.clock import VirtualClock
+from bench.drive_factory import make_equipment
+from bench.experiments.registry import FinishedTrial, find_kind, parse_parameters
+from bench.limits import Guard
+from bench.loop import RECORDED, ControlLoop
+from bench.servo import CurrentServo
+from tests.bench.fake_drive import ListSink
+
+
+class Ran:
+    """One experiment that was run: outcomes, rows and summary."""
+
+    def __init__(self, configuration, kind_name, **parameters):
+        kind = find_kind(kind_name)
+        checked = parse_parameters(kind, parameters)
+        kind.refuse(checked, configuration)
+        drive, technician = make_equipment(configuration)
+        period_s = configuration.control.period_s
+        drive.open(period_s)
+        loop = ControlLoop(
+            drive, VirtualClock(), Guard(configuration.limits), period_s, CurrentServo(configuration.rig)
+        )
+        self.plans, self.outcomes, self.rows, self.events = kind.plan(checked, configuration), [], [], []
+        for plan in self.plans:
+            technician.hang_load(plan.load_kg, plan.balanced)
+            sink = ListSink()
+            self.outcomes.append(loop.run(plan.procedure(), sink, threading.Event()))
+            self.rows.append(np.vstack(sink.blocks))
+            self.events.append(sink.events)
+        drive.close()
+        trials = [
+            FinishedTrial(plan.name, plan.conditions, outcome.outcome, outcome.results)
+            for plan, outcome in zip(self.plans, self.outcomes, strict=True)
+        ]
+        self.summary = kind.summarise(checked, trials)
+
+    def channel(self, trial, name):
+        return self.rows[trial][:, RECORDED.index(name)]

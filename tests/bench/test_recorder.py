@@ -1,0 +1,101 @@
+"""Rows reach their sink in order, soon, and a sink that is gone is noticed."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from bench.errors import RecordingError
+from bench.recorder import Recorder
+from tests.bench.fake_drive import ListSink
+
+
+def test_rows_and_events_arrive_in_order():
+    arrived = []
+
+    class Sink:
+        def append(self, rows):
+            arrived.extend(rows[:, 0].tolist())
+
+        def event(self, time_s, name, detail):
+            arrived.append(name)
+
+    recorder = Recorder(Sink())
+    recorder.row((1.0, 2.0))
+    recorder.event(1.0, "a", "")
+    recorder.row((3.0, 4.0))
+    recorder.close()
+    assert arrived == [1.0, "a", 3.0]
+
+
+def test_rows_are_handed_over_while_the_trial_runs():
+    sink = ListSink()
+    recorder = Recorder(sink)
+    deadline_s = time.monotonic() + 10.0
+    while len(sink.blocks) < 2 and time.monotonic() < deadline_s:
+        recorder.row((time.monotonic(),))
+        time.sleep(0.01)
+    assert len(sink.blocks) >= 2
+    # no block spans much more than what may be lost
+    assert np.ptp(sink.blocks[1]) < 3 * Recorder.BLOCK_S
+    recorder.close()
+
+
+def test_many_rows_do_not_wait_for_the_clock():
+    sink = ListSink()
+    recorder = Recorder(sink)
+    for row in range(Recorder.BLOCK_ROWS * 2):
+        recorder.row((float(row),))
+    recorder.close()
+    assert max(len(block) for block in sink.blocks) <= Recorder.BLOCK_ROWS
+    np.testing.assert_array_equal(np.vstack(sink.blocks)[:, 0], np.arange(Recorder.BLOCK_ROWS * 2))
+
+
+def test_a_failure_is_raised_and_the_thread_ends():
+    threads = threading.active_count()
+    recorder = Recorder(ListSink(fail_on_block=0))
+    recorder.row((1.0,))
+    with pytest.raises(RecordingError, match="No space left on device"):
+        recorder.close()
+    assert threading.active_count() == threads
+
+
+def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch):
+    monkeypatch.setattr(Recorder, "PATIENCE_S", 0.05)
+    monkeypatch.setattr(Recorder, "BACKLOG", 2)
+    monkeypatch.setattr(Recorder, "BLOCK_ROWS", 1)
+    release = threading.Event()
+
+    class Hanging(ListSink):
+        def append(self, rows):
+            release.wait(30.0)
+
+    recorder = Recorder(Hanging())
+    with pytest.raises(RecordingError, match="has not taken a block"):
+        fill(recorder)
+    monkeypatch.setattr(Recorder, "LAST_PATIENCE_S", 0.05)
+    with pytest.raises(RecordingError, match="has not taken"):
+        recorder.close()
+    release.set()
+
+
+def fill(recorder):
+    for row in range(100):
+        recorder.row((float(row),))
+
+
+def test_a_full_backlog_is_worked_through_at_the_end(monkeypatch):
+    monkeypatch.setattr(Recorder, "BACKLOG", 3)
+    monkeypatch.setattr(Recorder, "BLOCK_ROWS", 1)
+
+    class Slow(ListSink):
+        def append(self, rows):
+            time.sleep(0.01)
+            super().append(rows)
+
+    sink = Slow()
+    recorder = Recorder(sink)
+    fill(recorder)
+    recorder.close()
+    assert len(sink.blocks) == 100

@@ -1,0 +1,62 @@
+"""Position servo and current servo."""
+
+from math import nan
+
+import pytest
+
+from bench.errors import ConfigurationError
+from bench.rig import Gear, Motor, Rig
+from bench.servo import CurrentServo, PositionServo, ServoSettings, current_servo
+from drivers.contract import Sample, Status
+from tests.bench.fake_drive import RIG
+
+SETTINGS = ServoSettings(
+    proportional_a_rad=10.0, integral_a_rad_s=100.0, derivative_a_s_rad=0.5, dead_band_rad=0.01, current_a=1.0
+)
+SAMPLE = Sample(0.0, 0.0, 0.0, 2.0, 0.5, nan, 24.0, nan, Status.ENABLED)
+
+
+def test_pid_by_hand():
+    servo = PositionServo(SETTINGS, period_s=0.01)
+    # integral 100 * 0.05 * 0.01, proportional 10 * 0.05, derivative 0.5 * (0.2 - 0.4)
+    assert servo.current_a(0.05, 0.0, 0.4, 0.2) == pytest.approx(0.05 + 0.5 - 0.1)
+
+
+def test_in_the_dead_band_the_current_stands():
+    servo = PositionServo(SETTINGS, period_s=0.01)
+    servo.reset(0.3)
+    assert [servo.current_a(0.009, 0.0, 0.0) for _ in range(5)] == [pytest.approx(0.3)] * 5
+
+
+def test_output_is_limited_and_the_integral_does_not_wind_up():
+    servo = PositionServo(SETTINGS, period_s=0.01)
+    for _ in range(1000):
+        assert servo.current_a(1.0, 0.0, 0.0) == 1.0
+    # back within two cycles of the error's change of sign
+    assert servo.current_a(-0.11, 0.0, 0.0) < 0.0
+
+
+def test_current_servo_by_hand():
+    servo = CurrentServo(RIG)
+    # (24 * 0.5 - 0.02 * 2 rad/s * 50) / 4
+    assert servo.estimate_a(SAMPLE, 2.0) == pytest.approx(2.5)
+    assert servo.duty(2.5, SAMPLE, 2.0) == pytest.approx(0.5)
+    assert servo.duty(1e3, SAMPLE, 2.0) == 1.0
+
+
+def test_an_unmeasured_supply_is_the_rigs():
+    servo = CurrentServo(RIG)
+    assert servo.estimate_a(SAMPLE._replace(supply_v=nan), 2.0) == pytest.approx(2.5)
+
+
+def test_a_supply_that_nobody_knows_is_asked_for():
+    rig = Rig(name="r", motor=Motor(resistance_ohm=1, back_emf_v_s_rad=1), gear=Gear(ratio=1))
+    with pytest.raises(ConfigurationError, match=r"supply.voltage_v \[V\]"):
+        CurrentServo(rig).estimate_a(SAMPLE._replace(supply_v=nan), 0.0)
+
+
+def test_a_rig_without_motor_constants_has_no_current_servo():
+    rig = Rig(name="bare")
+    assert current_servo(rig) is None
+    with pytest.raises(ConfigurationError, match=r"rig 'bare'.*resistance_ohm"):
+        CurrentServo(rig)
