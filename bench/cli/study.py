@@ -1,5 +1,6 @@
 """`friction-bench study ...`: compare, diagnose, add, drop, ladder."""
 
+from enum import Enum
 from typing import Annotated, Any
 
 import typer
@@ -13,6 +14,21 @@ StudyId = Annotated[int, typer.Argument(metavar="STUDY", help="Number of the stu
 Effect = Annotated[str, typer.Argument(help="Name of the effect; list them with: friction-bench effects")]
 Model = Annotated[int | None, typer.Option(help="Which model; without it, the newest of the study.")]
 
+_HOLD_OUT = (
+    "Trials that judge the model instead of being fitted; KEY is a condition, `trial` or `kind`; repeatable. "
+    "Without it, each trial is left out in turn."
+)
+_WHERE = "Use only trials of which this holds; repeatable."
+_BASE = "Effect of the first model; repeatable. Without it, the rigid joint with General Kinetic Friction."
+
+
+class Rows(Enum):
+    """Which rows count."""
+
+    SLIDING = "sliding"
+    MOVING = "moving"
+    ALL = "all"
+
 
 @app.callback()
 def _study() -> None:
@@ -24,41 +40,16 @@ def new(
     context: typer.Context,
     name: Annotated[str, typer.Argument(help="Name of the study.")],
     experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are used; repeatable.")],
-    hold_out: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=VALUE",
-            help="Trials that judge the model instead of being fitted; KEY is a condition, `trial` or `kind`; "
-            "repeatable. Without it, each trial is left out in turn.",
-        ),
-    ] = None,
-    base: Annotated[
-        list[str] | None, typer.Option(help="Effect of the first model; repeatable. Without it, the default.")
-    ] = None,
-    where: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Use only trials that meet this; repeatable."),
-    ] = None,
-    cutoff_hz: Annotated[
-        float | None, typer.Option(help="Cut-off of the final low-pass [Hz]; without it, the data choose.")
-    ] = None,
-    rows: Annotated[str, typer.Option(help="Which rows count: sliding, moving or all.")] = "sliding",
+    hold_out: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_HOLD_OUT)] = None,
+    where: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_WHERE)] = None,
+    base: Annotated[list[str] | None, typer.Option(help=_BASE)] = None,
+    rows: Annotated[Rows, typer.Option(help="Which rows count in fit and error.")] = Rows.SLIDING,
+    cutoff_hz: Annotated[float | None, typer.Option(help="Low-pass [Hz]; without it, chosen from the data.")] = None,
     as_json: Json = False,
 ) -> None:
     """Create a study: which trials are fitted, and which judge the fit."""
-    _show(
-        context,
-        as_json,
-        tables.study,
-        "create_study",
-        name,
-        experiment_ids=experiment,
-        hold_out=hold_out or [],
-        base=base,
-        where=where or [],
-        cutoff_hz=cutoff_hz,
-        rows=rows,
-    )
+    chosen = {"hold_out": hold_out or [], "where": where or [], "base": base or None, "rows": rows.value}
+    _show(context, as_json, tables.study, "create_study", name, experiment, **chosen, cutoff_hz=cutoff_hz)
 
 
 @app.command("list")

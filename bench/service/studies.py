@@ -38,6 +38,16 @@ class NewStudy(BaseModel):
         "Without any, each trial is left out in turn",
         examples=[["load_kg=0.1", "trial=pulses"]],
     )
+    where: list[str] = Field(
+        default=[],
+        max_length=1000,
+        description="criteria key=value that a trial must meet to be used",
+        examples=[["kind=steps"]],
+    )
+    rows: Literal["sliding", "moving", "all"] = Field(default="sliding", description="which rows count")
+    cutoff_hz: float | None = Field(
+        default=None, gt=0, le=1000, description="low-pass [Hz]; null: chosen from the data"
+    )
     base: list[str] | None = Field(default=None, description="effects of the first model; null: the default base model")
 
 
@@ -52,11 +62,11 @@ class Change(BaseModel):
     action: Literal["add", "drop"] = "add"
 
 
-async def _lab(request: Request, name: str, store: Store, *args: Any, **kwargs: Any) -> Any:
+async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
     def call() -> Any:
         from bench import study  # the lab is imported when it is first needed: `serve` starts at once
 
-        function: Callable[..., Any] = getattr(study, name)
+        function: Callable[..., Any] = getattr(study, function_name)
         return plain(function(store, *args, **kwargs))
 
     return await in_worker(request, call)
@@ -71,15 +81,7 @@ async def _lab(request: Request, name: str, store: Store, *args: Any, **kwargs: 
 )
 async def create(request: Request, response: Response, store: StoreOf, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
-    found = await _lab(
-        request,
-        "create_study",
-        store,
-        body.name,
-        experiment_ids=body.experiment_ids,
-        hold_out=body.hold_out,
-        base=body.base,
-    )
+    found = await _lab(request, "create_study", store, **body.model_dump())
     response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
     return Study.model_validate(found)
 

@@ -33,6 +33,8 @@ class Study(BaseModel):
     name: str
     trials: list[StudyTrial]
     effort: EffortName
+    cutoff_hz: float = Field(description="low-pass to which effort and motion are filtered alike [Hz]")
+    rows: str = Field(description="which rows count: sliding, moving or all")
     model_id: int = Field(description="the base model at creation, the newest model later")
 
 
@@ -153,6 +155,7 @@ class Picture(BaseModel):
 
     driver: str
     unit: str
+    against_motion: bool = Field(description="True where the residual is counted positive against the motion")
     x: Numbers
     residual: Numbers
     low: Numbers
@@ -230,6 +233,7 @@ class Rung(BaseModel):
     held_out: float | None
     held_out_low: float | None
     held_out_high: float | None
+    held_out_kind: str = Field(description="hold-out, leave-one-trial-out or leave-one-block-out")
 
 
 class Ladder(BaseModel):

@@ -41,5 +41,7 @@ def _of_channel(values: FloatArray, points: int) -> NDArray[np.intp]:
     before = np.flatnonzero(np.diff(np.isnan(values)))
     edges = np.concatenate([before, before + 1])
     chosen: NDArray[np.uint64] = _REDUCE.downsample(np.ascontiguousarray(values[known]), n_out=points)
-    kept = known[chosen.astype(np.intp)]
+    # MinMaxLTTB keeps the shape, but may drop the very highest or lowest sample
+    extremes = known[[int(np.argmin(values[known])), int(np.argmax(values[known]))]]
+    kept = np.union1d(known[chosen.astype(np.intp)], extremes)
     return np.union1d(kept, edges) if len(edges) <= points else kept

@@ -28,8 +28,8 @@ export async function comparison(place, compared) {
 
 function errors({ error, effort }) {
   const text = (one) => (one ? `${percent(one.relative)} (${number(one.rms, 3)} ${effort.unit} rms)` : "unknown: needs repeated trials");
-  const kind = error.held_out?.kind === "leave-one-trial-out" ? "each trial left out in turn" : "held-out trials";
-  return facts([["training error", text(error.training)], [kind, text(error.held_out)], ["floor from repeats", text(error.floor)]]);
+  const kinds = { "hold-out": "held-out trials", "leave-one-trial-out": "each trial left out in turn", "leave-one-block-out": "stretches left out in turn" };
+  return facts([["training error", text(error.training)], [kinds[error.held_out?.kind] ?? "held-out", text(error.held_out)], ["floor from repeats", text(error.floor)]]);
 }
 
 function seriesPlot(plot, one, effort) {
@@ -41,7 +41,7 @@ function seriesPlot(plot, one, effort) {
     line(one.measured, "measured", "blue"), line(one.predicted, "predicted", "orange", { dash: "dash", width: 2 }),
     { ...line(one.residual, "residual", "red"), yaxis: "y2" },
   ], { height: 440, uirevision: one.trial_id, xaxis: { title: { text: "time [s]" }, anchor: "y2" },
-    yaxis: { domain: [0.42, 1], title: { text: `${effort.name} [${effort.unit}]` } }, yaxis2: { domain: [0, 0.34], title: { text: `residual [${effort.unit}]` } } });
+    yaxis: { domain: [0.42, 1], title: { text: `effort [${effort.unit}]` } }, yaxis2: { domain: [0, 0.34], title: { text: `residual [${effort.unit}]` } } });
 }
 
 function driverPlot(plot, driver, effort) {

@@ -2,6 +2,7 @@
 
 import { get } from "./api.js";
 import { facts, h, panel, replace } from "./dom.js";
+import { equation } from "./equation.js";
 import { nameOf, number } from "./format.js";
 import { attempt } from "./problem.js";
 
@@ -15,8 +16,8 @@ export function effectsView(place) {
 function card(effect) {
   const parameters = effect.parameters.map((one) => `${one.name} [${one.unit}], ${bound(one.low, "−∞")} to ${bound(one.high, "∞")}`);
   const words = (names) => names.map((name) => name.replaceAll("_", " ")).join(", ") || "–";
-  return h("article", { class: "panel" }, h("h3", {}, effect.title), h("p", {}, effect.physics), h("p", { class: "equation" }, effect.equation),
-    facts([["name", effect.name], ["parameters", parameters.join("; ")], ["driven by", nameOf(effect.driver)], ["needs", effect.channels.map(nameOf).join(", ")],
+  return h("article", { class: "panel" }, h("h3", {}, effect.title), h("p", {}, effect.physics), equation(effect.equation),
+    facts([["name", effect.name], ["parameters", parameters.join("; ")], ["driven by", nameOf(effect.driver)], ["needs", effect.channels.map(nameOf).join(", ") || "position and effort"],
       ["excited by", [effect.excited_by].flat().join(", ")], ["confused with", words(effect.confused_with)], ["source", effect.source]]));
 }
 

@@ -29,7 +29,7 @@ export async function startForm(place, live) {
     form.showProblems([], "parameters");
     const body = { kind: choice.value, parameters: form.values(), operator: operator.value, note: note.value };
     if (live.status?.simulated) body.pace = pace.checked ? "fast" : "real-time";
-    const started = await attempt(answer, () => send(body, form, answer), button);
+    const started = await attempt(answer, () => send(body, form, answer), { button });
     if (started) replace(answer, h("div", { class: "good", role: "status" }, `Experiment ${started.experiment_id} has started.`));
   };
   choice.addEventListener("change", choose);

@@ -25,7 +25,7 @@ export async function newStudy(place) {
     event.preventDefault();
     const hold_out = [...holdOut.querySelectorAll("input:checked")].map((box) => box.value);
     const body = { name: name.value, experiment_ids: chosen(), hold_out };
-    const study = await attempt(answer, () => post("/studies", body), button);
+    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …" });
     if (study) location.hash = `#study/${study.study_id}`;
   };
   const choices = usable.map((one, index) => h("label", { class: "inline" }, boxes[index],

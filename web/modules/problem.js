@@ -6,12 +6,15 @@ export function problemBox(error) {
   return h("div", { class: "problem", role: "alert" }, error.message);
 }
 
-// runs an action, shows what went wrong in `place`, and disables the button meanwhile
-export async function attempt(place, action, button = null) {
-  place.replaceChildren();
+// runs an action; `place` says meanwhile that it is busy, and afterwards what went wrong
+export async function attempt(place, action, { button = null, busy = "" } = {}) {
+  if (busy) place.replaceChildren(h("p", { class: "busy", role: "status" }, busy));
+  else place.querySelector(":scope > .problem")?.remove();
   if (button) button.disabled = true;
   try {
-    return await action();
+    const result = await action();
+    if (busy) place.querySelector(":scope > .busy")?.remove();
+    return result;
   } catch (error) {
     if (error.name !== "AbortError") place.replaceChildren(problemBox(error));
     return undefined;

@@ -13,7 +13,7 @@ export function importForm(done) {
     event.preventDefault();
     const [chosen] = file.files;
     const query = { name: name.value || chosen.name.replace(/\.zip$/i, "") };
-    const result = await attempt(answer, () => upload("/recording-sets", chosen, query), button);
+    const result = await attempt(answer, () => upload("/recording-sets", chosen, query), { button });
     if (!result) return;
     replace(answer, h("div", { class: "good", role: "status" }, `Imported ${result.trials} trials as experiment ${result.experiment_id}.`));
     done();

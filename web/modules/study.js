@@ -44,27 +44,30 @@ class Study {
   }
 
   async showComparison() {
-    replace(this.parts.compared, h("p", { class: "busy" }, "Fitting …"));
-    await attempt(this.parts.compared, async () => comparison(this.parts.compared, await get(`${this.path}/compare`, { model_id: this.model })));
+    const model_id = this.model;
+    const compared = await attempt(this.parts.compared, () => get(`${this.path}/compare`, { model_id }), { busy: "Fitting …" });
+    if (compared && model_id === this.model) await comparison(this.parts.compared, compared);
   }
 
   askDiagnosis() {
     const answer = h("div");
     const button = h("button", { class: "primary", type: "button" }, "Diagnose");
     button.addEventListener("click", async () => {
-      replace(answer, h("p", { class: "busy" }, "Testing every effect of the catalogue …"));
-      const found = await attempt(answer, () => get(`${this.path}/diagnose`, { model_id: this.model }), button);
+      const busy = "Testing every effect of the catalogue …";
+      const found = await attempt(answer, () => get(`${this.path}/diagnose`, { model_id: this.model }), { button, busy });
       if (found) await diagnosis(answer, found, (effect, place) => this.add(effect, place));
     });
     replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), button, answer);
   }
 
   add(effect, place) {
-    return attempt(place, async () => this.changed(await post(`${this.path}/models`, { effect, model_id: this.model })));
+    const body = { effect, model_id: this.model };
+    return attempt(place, async () => this.changed(await post(`${this.path}/models`, body)), { busy: "Fitting …" });
   }
 
   drop(effect) {
-    return attempt(this.parts.change, async () => this.changed(await post(`${this.path}/models`, { effect, model_id: this.model, action: "drop" })));
+    const body = { effect, model_id: this.model, action: "drop" };
+    return attempt(this.parts.change, async () => this.changed(await post(`${this.path}/models`, body)), { busy: "Fitting …" });
   }
 
   async changed(result) {

@@ -90,7 +90,7 @@ function actions(...buttons) {
 }
 
 function fetchButton(text, label, path, name) {
-  const fetchFile = ({ currentTarget: button }) => attempt(button.parentElement.nextElementSibling, () => download(path, name), button);
+  const fetchFile = ({ currentTarget: button }) => attempt(button.parentElement.nextElementSibling, () => download(path, name), { button });
   return h("button", { class: "small", type: "button", "aria-label": label, onclick: fetchFile }, text);
 }
 

@@ -1,0 +1,99 @@
+"""`friction-bench serve`, `status` and `stop`, in processes of their own."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from bench.store import Store
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+
+
+def _free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return int(probe.getsockname()[1])
+
+
+@pytest.fixture
+def served(tmp_path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
+    port = _free_port()
+    words = [sys.executable, "-m", "bench.cli", "serve", "--port", str(port)]
+    with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        lines = ""
+        assert process.stdout is not None
+        while "Ctrl-C" not in lines:
+            line = process.stdout.readline()
+            assert line, lines
+            lines += line
+        assert "SIMULATED" in lines
+        token = re.search(r"token\s+(\S+)", lines)
+        assert token is not None, lines
+        yield process, f"http://127.0.0.1:{port}", token[1]
+        process.terminate()
+
+
+def _wait_until_answering(url: str) -> None:
+    deadline_s = time.monotonic() + 15
+    while True:
+        try:
+            httpx.get(f"{url}/api/v1/bench")
+            return
+        except httpx.ConnectError:
+            assert time.monotonic() < deadline_s
+            time.sleep(0.05)
+
+
+def _start(url: str, token: str) -> None:
+    body, headers = {"kind": "steps", "pace": "real-time"}, {"Authorization": f"Bearer {token}"}
+    assert httpx.post(f"{url}/api/v1/experiments", json=body, headers=headers).status_code == 201
+
+
+def test_status_and_stop_from_another_process(served, command, tmp_path):
+    _, url, token = served
+    _wait_until_answering(url)
+    assert json.loads(command("status", "--url", url, "--json").stdout)["state"] == "idle"
+    _start(url, token)
+    assert "running" in command("status", "--url", url).stdout
+    stopped = command("stop", "--url", url)  # finds the token file of the store in the working directory
+    assert stopped.exit_code == 0, stopped.output
+    assert "Stop accepted" in stopped.stdout
+    (tmp_path / "friction-bench.token").unlink()
+    refused = command("stop", "--url", url)
+    assert refused.exit_code == 5
+    assert "needs a token" in refused.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
+    process, url, token = served
+    _wait_until_answering(url)
+    _start(url, token)
+    time.sleep(0.3)
+    with httpx.stream("GET", f"{url}/api/v1/live", timeout=10) as watching:  # must not hold the service open
+        next(watching.iter_lines())
+        process.send_signal(number)
+        assert process.wait(4.0) == 0
+    with Store.open(f"sqlite:///{tmp_path / 'friction-bench.sqlite'}") as store:
+        [experiment] = store.experiments()
+    assert experiment.outcome == "stopped"
+    assert "the service was ended" in experiment.reason
+
+
+def test_what_serve_refuses(command):
+    beyond = command("serve", "--host", "0.0.0.0")
+    assert beyond.exit_code == 3
+    assert "FRICTION_BENCH_TOKEN" in beyond.stderr
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        result = command("serve", "--port", port)
+    assert result.exit_code == 3
+    assert str(port) in result.stderr

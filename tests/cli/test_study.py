@@ -1,0 +1,37 @@
+"""`friction-bench study ...` and `effects`."""
+
+import json
+
+
+def test_from_trials_to_an_error_that_falls(command):
+    ran = command(
+        "run", "excitation", "--loads-kg", "0,0.05,0.1", "--waveforms", "multisine,triangles", "--duration-s", 4
+    )
+    assert ran.exit_code == 0, ran.output
+    made = command("study", "new", "arm", "--experiment", 1, "--hold-out", "load_kg=0.05", "--json")
+    assert made.exit_code == 0, made.output
+    study = json.loads(made.stdout)["study_id"]
+    assert "arm" in command("study", "list").stdout
+    compared = command("study", "compare", study)
+    assert compared.exit_code == 0, compared.output
+    for words in ("hold-out", "viscous friction", "sliding"):
+        assert words in compared.stdout
+    found = json.loads(command("study", "diagnose", study, "--json").stdout)
+    best = found["ranking"][0]["effect"]
+    assert best in command("study", "diagnose", study).stdout
+    added = json.loads(command("study", "add", study, best, "--json").stdout)
+    assert added["after"]["held_out"] < added["before"]["held_out"]
+    assert f"+ {best}" in command("study", "ladder", study).stdout
+    dropped = json.loads(command("study", "drop", study, best, "--json").stdout)
+    assert best not in dropped["effects"]
+    refused = command("study", "add", study, "magic")
+    assert refused.exit_code == 3
+    assert "magic" in refused.stderr
+
+
+def test_effects(command):
+    names = [one["name"] for one in json.loads(command("effects", "--json").stdout)]
+    assert "load_friction" in names
+    assert "load_friction" in command("effects").stdout
+    assert "Rhoban" in command("effects", "load_friction").stdout
+    assert command("effects", "magic").exit_code == 3

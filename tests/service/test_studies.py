@@ -1,0 +1,102 @@
+"""From trials to an explained effect, over REST."""
+
+import pytest
+
+EXCITATION = {
+    "loads_kg": [0.0, 0.05, 0.1],
+    "waveforms": ["multisine", "triangles"],
+    "duration_s": 4.0,
+    "repeats": 2,
+}
+
+
+@pytest.fixture(scope="module")
+def experiment_id(service) -> int:
+    assert service.runner.wait(30.0)
+    found = service.run("excitation", **EXCITATION)
+    assert found["outcome"] == "completed", found["reason"]
+    return found["experiment_id"]
+
+
+@pytest.fixture(scope="module")
+def study(service, experiment_id):
+    body = {"name": "arm", "experiment_ids": [experiment_id], "hold_out": ["load_kg=0.05"]}
+    answer = service.client.post("/studies", json=body)
+    assert answer.status_code == 201, answer.text
+    assert answer.headers["location"] == f"/api/v1/studies/{answer.json()['study_id']}"
+    return answer.json()
+
+
+def test_a_study_splits_by_condition(service, study):
+    assert len(study["trials"]) == 12
+    for trial in study["trials"]:
+        assert trial["role"] == ("held_out" if trial["conditions"]["load_kg"] == 0.05 else "training")
+    assert service.stranger.get(f"/studies/{study['study_id']}").json() == study
+    assert study["study_id"] in [one["study_id"] for one in service.stranger.get("/studies").json()["items"]]
+
+
+def test_compare_holds_the_measured_against_the_predicted(service, study):
+    found = service.stranger.get(f"/studies/{study['study_id']}/compare").json()
+    assert found["error"]["held_out"]["kind"] == "hold-out"
+    assert 0 < found["error"]["training"]["relative"] < 1
+    assert found["error"]["floor"] is not None
+    assert len(found["series"]) == len(found["trials"]) == 12
+    one = found["series"][0]
+    for measured, predicted, residual in zip(one["measured"], one["predicted"], one["residual"], strict=True):
+        assert measured - predicted == pytest.approx(residual, abs=1e-9)
+    assert {"velocity", "position"} <= {one["driver"] for one in found["residual_against"]}
+    assert found["parameters"]
+
+
+def test_diagnose_add_ladder_drop_and_remove(service, study):
+    path = f"/studies/{study['study_id']}"
+    base = study["model_id"]
+    found = service.stranger.get(f"{path}/diagnose", params={"model_id": base}).json()
+    assert found["verdict"] == "missing", found["sentence"]
+    best = found["ranking"][0]
+    assert best["in_class"]
+    assert best["picture"]["curve"]
+    added = service.client.post(f"{path}/models", json={"effect": best["effect"], "model_id": base}).json()
+    assert added["parent_id"] == base
+    assert added["effects"][-1] == best["effect"]
+    assert added["after"]["held_out"] < added["before"]["held_out"]
+    ladder = service.stranger.get(f"{path}/ladder").json()
+    assert [rung["model_id"] for rung in ladder["rungs"]] == [base, added["model_id"]]
+    assert ladder["rungs"][1]["held_out"] == pytest.approx(added["after"]["held_out"])
+    body = {"effect": best["effect"], "model_id": added["model_id"], "action": "drop"}
+    dropped = service.client.post(f"{path}/models", json=body).json()
+    assert dropped["after"]["held_out"] == pytest.approx(added["before"]["held_out"])
+    refused = service.client.delete(f"{path}/models/{added['model_id']}")
+    assert refused.status_code == 409
+    assert service.client.delete(f"{path}/models/{dropped['model_id']}").status_code == 204
+    assert len(service.stranger.get(f"{path}/ladder").json()["rungs"]) == 2
+
+
+def test_bad_requests_say_what_would_be_right(service, study, experiment_id):
+    def detail(answer, status):
+        assert answer.status_code == status, answer.text
+        assert answer.headers["content-type"] == "application/problem+json"
+        return answer.json()["detail"]
+
+    path = f"/studies/{study['study_id']}"
+    new = {"name": "x", "experiment_ids": [experiment_id]}
+    assert "load_kg" in detail(service.client.post("/studies", json={**new, "hold_out": ["colour=red"]}), 422)
+    assert "key=value" in detail(service.client.post("/studies", json={**new, "hold_out": ["load_kg"]}), 422)
+    assert "experiment 99999" in detail(service.client.post("/studies", json={**new, "experiment_ids": [99999]}), 404)
+    assert "experiment_ids" in detail(service.client.post("/studies", json={"name": "x", "experiment_ids": []}), 422)
+    assert "magic" in detail(service.client.post(f"{path}/models", json={"effect": "magic"}), 422)
+    assert "viscous already" in detail(service.client.post(f"{path}/models", json={"effect": "viscous"}), 422)
+    assert "no model 99999" in detail(service.client.delete(f"{path}/models/99999"), 404)
+    detail(service.client.get("/studies/99999/compare"), 404)
+    detail(service.client.get(f"{path}/compare", params={"model_id": 99999}), 422)
+
+
+def test_the_catalogue_is_complete_enough_to_learn_from(service):
+    effects = {one["name"]: one for one in service.stranger.get("/effects").json()["items"]}
+    assert {"inertia", "gravity", "coulomb", "viscous", "stribeck", "load_friction", "viscous_asymmetry"} <= set(
+        effects
+    )
+    for effect in effects.values():
+        for text in ("title", "physics", "equation", "driver", "excited_by", "source"):
+            assert effect[text], (effect["name"], text)
+        assert set(effect["confused_with"]) <= set(effects), effect["name"]

@@ -1,0 +1,96 @@
+// Equations of the catalogue, written in a small part of LaTeX, as MathML that the browser sets itself.
+
+import { h } from "./dom.js";
+
+const SPACE = "http://www.w3.org/1998/Math/MathML";
+const LETTERS = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", mu: "μ", omega: "ω", phi: "φ", sigma: "σ", tau: "τ", theta: "θ", Delta: "Δ" };
+const ACCENTS = { dot: "˙", ddot: "¨", hat: "^", bar: "¯" };
+const FUNCTIONS = new Set(["sin", "cos", "tan", "exp", "tanh", "ln", "sgn"]);
+const TOKEN = /\\[A-Za-z]+|\\.|[A-Za-z]|\d+(?:\.\d+)?|\S/g;
+
+// shows the source itself where it holds something that is not known here
+export function equation(source) {
+  try {
+    const tokens = source.match(TOKEN) ?? [];
+    const content = row(tokens, null);
+    if (tokens.length) throw new Error(`unexpected ${tokens[0]}`);
+    const math = element("math", content);
+    math.setAttribute("display", "block");
+    math.setAttribute("aria-label", source);
+    return h("div", { class: "equation" }, math);
+  } catch {
+    return h("code", { class: "equation" }, source);
+  }
+}
+
+function element(name, ...children) {
+  const made = document.createElementNS(SPACE, name);
+  made.append(...children);
+  return made;
+}
+
+function row(tokens, end) {
+  const items = [];
+  while (tokens.length && tokens[0] !== end) items.push(scripted(tokens));
+  if (end !== null && tokens.shift() !== end) throw new Error(`missing ${end}`);
+  return element("mrow", ...items);
+}
+
+// one item with its subscript and superscript
+function scripted(tokens) {
+  const base = item(tokens);
+  let below = null;
+  let above = null;
+  while (tokens[0] === "_" || tokens[0] === "^") {
+    if (tokens.shift() === "_") below = item(tokens);
+    else above = item(tokens);
+  }
+  if (below && above) return element("msubsup", base, below, above);
+  if (below) return element("msub", base, below);
+  return above ? element("msup", base, above) : base;
+}
+
+function item(tokens) {
+  const token = tokens.shift();
+  if (token === undefined || token === "}") throw new Error("something is missing");
+  if (token === "{") return row(tokens, "}");
+  if (token.startsWith("\\")) return command(token.slice(1), tokens);
+  if (/[A-Za-z]/.test(token)) return element("mi", token);
+  if (/\d/.test(token)) return element("mn", token);
+  const sign = element("mo", token === "-" ? "−" : token);
+  if (token === "|") sign.setAttribute("stretchy", "false");
+  return sign;
+}
+
+function command(name, tokens) {
+  if (/^[,;: !]$/.test(name)) return space();
+  if (name in LETTERS) return element("mi", LETTERS[name]);
+  if (FUNCTIONS.has(name)) return element("mrow", element("mi", name), space());
+  if (name in ACCENTS) return accented(ACCENTS[name], item(tokens));
+  if (name === "mathrm" || name === "text") return upright(tokens);
+  if (name === "frac") return element("mfrac", item(tokens), item(tokens));
+  if (name === "cdot") return element("mo", "·");
+  throw new Error(`unknown \\${name}`);
+}
+
+function space() {
+  const made = element("mspace");
+  made.setAttribute("width", "0.17em");
+  return made;
+}
+
+function accented(sign, base) {
+  const made = element("mover", base, element("mo", sign));
+  made.setAttribute("accent", "true");
+  return made;
+}
+
+function upright(tokens) {
+  if (tokens.shift() !== "{") throw new Error("missing {");
+  let text = "";
+  while (tokens.length && tokens[0] !== "}") text += tokens.shift();
+  tokens.shift();
+  const made = element("mi", text);
+  made.setAttribute("mathvariant", "normal");
+  return made;
+}
