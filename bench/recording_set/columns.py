@@ -57,7 +57,7 @@ def _check_known(table: Table, mapping: Mapping) -> None:
     if not unknown:
         return
     first = unknown[0]
-    parts = [f"is no known channel. {suggestion(first)}".rstrip()]
+    parts = ["is no known channel", *filter(None, [suggestion(first)])]
     if len(unknown) > 1:
         parts.append(f"Nor are {', '.join(unknown[1:])}")
     if len(table.header) == 1 and any(sign in first for sign in ";\t|"):

@@ -18,8 +18,9 @@ kind = "reference"
 conditions = { repeat = 1 }
 """
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
@@ -27,6 +28,7 @@ from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.toml_file import parse_toml
 from bench.rig import Section
 from compensator.lab.channels import CHANNELS, EVENT_COLUMN
+from compensator.lab.recording import Condition
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
@@ -41,6 +43,14 @@ def _is_known(channel: str) -> str:
     if channel not in CHANNELS and channel != EVENT_COLUMN:
         raise ValueError(f"wanted one of {', '.join([*CHANNELS, EVENT_COLUMN])}")
     return channel
+
+
+def _is_condition(value: Any) -> Condition:
+    if isinstance(value, (bool, str)):
+        return value
+    if isinstance(value, (int, float)) and math.isfinite(value):
+        return float(value)
+    raise ValueError("wanted a finite number, text, true or false")
 
 
 class Column(Section):
@@ -58,7 +68,7 @@ class MappedTrial(Section):
 
     file: str
     kind: str = "recording"
-    conditions: dict[str, bool | Finite | str] = Field(default_factory=dict)
+    conditions: dict[str, Annotated[Any, AfterValidator(_is_condition)]] = Field(default_factory=dict)
 
 
 class Mapping(Section):

@@ -145,6 +145,13 @@ class Table:
                 raise self.error("is there twice; remove one of the two", 1, name)
 
 
+def quoted(cell: str) -> str:
+    """A cell as it stands in a file. (Python's own writer leaves a carriage return bare, which then ends the line.)"""
+    if any(sign in cell for sign in ',"\r\n'):
+        return '"' + cell.replace('"', '""') + '"'
+    return cell
+
+
 def place(container: Container, file: str) -> str:
     """A file of a set as its user knows it."""
     return file if container.path.name == file else f"{container.path.name}/{file}"

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from collections import Counter
 from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -11,7 +12,8 @@ from bench.validation import problems
 
 MOST_BYTES = 2**20
 Model = TypeVar("Model", bound=BaseModel)
-_TABLE = re.compile(r"\s*\[+\s*([^\[\]]+?)\s*\]+")
+_TABLE = re.compile(r"\s*\[+(?P<name>[^\[\]]+)\]")
+_KEY = re.compile(r"\s*(?P<name>[^=#\[\]]+?)\s*=")
 
 
 def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
@@ -43,14 +45,25 @@ def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
 
 
 def line_of(text: str, location: tuple[int | str, ...]) -> int:
-    """The line of a key, from 1; of its table where the key is missing, and 1 where that is missing too."""
-    *tables, key = [str(part) for part in location if isinstance(part, str)] or [""]
-    wanted, present, best = ".".join(tables), "", 1
+    """The line of a key, from 1; where the key is missing the line of what holds it."""
+    table: tuple[int | str, ...] = ()
+    counts: Counter[str] = Counter()
+    best, depth = 1, 0
     for number, line in enumerate(text.splitlines(), start=1):
-        if header := _TABLE.fullmatch(line.partition("#")[0].rstrip()):
-            present = header[1].replace('"', "").replace(" ", "")
-            if present in (wanted, ".".join([*tables, key])):
-                best = number
-        elif present == wanted and re.match(rf'\s*"?{re.escape(key)}"?\s*=', line):
-            return number
+        if header := _TABLE.match(line):
+            table = _keys(header["name"])
+            if line.lstrip().startswith("[["):
+                table += (counts[header["name"]],)
+                counts[header["name"]] += 1
+            place = table
+        elif key := _KEY.match(line):
+            place = table + _keys(key["name"])
+        else:
+            continue
+        if len(place) > depth and place == location[: len(place)]:
+            best, depth = number, len(place)
     return best
+
+
+def _keys(dotted: str) -> tuple[str, ...]:
+    return tuple(part.strip().strip("\"'") for part in dotted.split("."))

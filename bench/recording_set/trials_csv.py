@@ -1,6 +1,5 @@
 """`trials.csv`: one row per trial: file, kind, conditions, free tags."""
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import IO
@@ -9,7 +8,7 @@ from bench.recording_set import values
 from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Column, Mapping
-from bench.recording_set.table import Row, Table
+from bench.recording_set.table import Row, Table, quoted
 from compensator.lab.recording import Condition
 
 TRIALS_FILE = "trials.csv"
@@ -64,14 +63,14 @@ def write_trials_csv(file: IO[str], entries: Sequence[TrialEntry]) -> None:
     """
     keys = list(dict.fromkeys(key for entry in entries for key in entry.conditions))
     for key in keys:
-        if key in RESERVED or key != key.strip() or not key:
-            raise RecordingSetError(TRIALS_FILE, f"a condition cannot be called '{key}'; rename it", column=key)
+        if key in RESERVED or key != key.strip() or not key or not key.isprintable():
+            raise RecordingSetError(TRIALS_FILE, f"a condition cannot be called {key!r}; rename it")
     named = ["name"] if any(entry.name != name_of(entry.file) for entry in entries) else []
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["file", *named, "kind", *keys, "rows"])
+    lines = [["file", *named, "kind", *keys, "rows"]]
     for entry in entries:
         conditions = [values.write(entry.conditions.get(key)) for key in keys]
-        writer.writerow([entry.file, *[entry.name for _ in named], entry.kind, *conditions, entry.rows])
+        lines.append([entry.file, *(entry.name for _ in named), entry.kind, *conditions, str(entry.rows)])
+    file.writelines(",".join(map(quoted, line)) + "\n" for line in lines)
 
 
 def _places(table: Table, mapping: Mapping) -> dict[str, tuple[int, Column]]:

@@ -1,6 +1,5 @@
 """Write a recording set: what is written reads back as the same numbers, bit for bit."""
 
-import csv
 import io
 import re
 import tempfile
@@ -17,6 +16,7 @@ from bench.recording_set import events as event_cells
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.read import RIG_FILE
 from bench.recording_set.recording_set import RecordingSet
+from bench.recording_set.table import quoted
 from bench.recording_set.trials_csv import TRIALS_FILE, TrialEntry, write_trials_csv
 from bench.rig import Rig
 from compensator.lab.channels import EVENT_COLUMN
@@ -119,7 +119,7 @@ def csv_chunks(recording: Recording) -> Iterator[str]:
         rows = slice(start, start + CHUNK_ROWS)
         columns = [_texts(recording.channels[name][rows]) for name in names]
         if cells:
-            columns.append([_quoted(cells.get(row, "")) for row in range(*rows.indices(len(recording)))])
+            columns.append([quoted(cells.get(row, "")) for row in range(*rows.indices(len(recording)))])
         yield "".join(f"{line}\n" for line in map(",".join, zip(*columns, strict=True)))
 
 
@@ -138,9 +138,3 @@ def _event_cells(events: Iterable[Event], time_s: FloatArray) -> dict[int, str]:
         row = min(int(np.searchsorted(time_s, event.time_s)), len(time_s) - 1)
         of_row.setdefault(row, []).append(event)
     return {row: event_cells.encode(found, float(time_s[row])) for row, found in of_row.items()}
-
-
-def _quoted(cell: str) -> str:
-    buffer = io.StringIO()
-    csv.writer(buffer, lineterminator="").writerow([cell, ""])
-    return buffer.getvalue()[:-1]

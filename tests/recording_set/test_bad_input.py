@@ -1,0 +1,157 @@
+"""Bad input: the message names file, line and column, what was found and what is wanted."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.recording_set import RecordingSetError, read_recording_set
+from tests.recording_set.examples import GOOD, write_set
+
+# what is wrong: the CSV, and what the message must say
+BAD_CSV: dict[str, tuple[str | bytes, str]] = {
+    "empty file": ("", "run.csv: the file or its first line is empty; wanted a header"),
+    "header only": ("time_s,duty\n", "run.csv: has 0 rows below the header; wanted at least 2"),
+    "one row": ("time_s,duty\n0,1\n", "run.csv: has 1 row below the header; wanted at least 2"),
+    "no time": ("position_rad,duty\n0,1\n1,1\n", "run.csv, line 1: has no column time_s"),
+    "nothing but time": ("time_s\n0\n1\n", "run.csv, line 1: has no channel but time_s"),
+    "text in a number": (
+        "time_s,duty\n0,0.1\n1,fast\n2,0.3\n",
+        "run.csv, line 3, column 'duty': found 'fast'; wanted a number in the unit of the column's name",
+    ),
+    "a number with groups": ("time_s,duty\n0,1\n1,1_000\n", "line 3, column 'duty': found '1_000'"),
+    "time unknown": ("time_s,duty\n0,1\n,1\n", "line 3, column 'time_s': found nan; wanted a finite time"),
+    "time infinite": ("time_s,duty\n0,1\ninf,1\n", "line 3, column 'time_s': found inf; wanted a finite time"),
+    "time backwards": (
+        "time_s,duty\n0,1\n1,1\n0.5,1\n",
+        "line 4, column 'time_s': time runs backwards: found 0.5 s after 1.0 s; wanted a time that rises",
+    ),
+    "time stands still": (
+        "time_s,duty\n0,1\n1,1\n1,1\n",
+        "line 4, column 'time_s': time stands still: found 1.0 s after",
+    ),
+    "wrong unit": (
+        "time_s,position_deg\n0,1\n1,1\n",
+        "run.csv, line 1, column 'position_deg': is no known channel. position_rad is known; convert with a mapping",
+    ),
+    "unknown columns": (
+        "time_s,humidity,wind\n0,1,1\n",
+        "column 'humidity': is no known channel. Nor are wind. Known: time_s",
+    ),
+    "column twice": ("time_s,duty,duty\n0,1,1\n", "line 1, column 'duty': is there twice"),
+    "column without a name": ("time_s,,duty\n0,1,1\n", "line 1: column 2 has no name"),
+    "short line": ("time_s,duty\n0,1\n1\n2,1\n", "line 3: found 1 cells; wanted 2, one per column"),
+    "long line": ("time_s,duty\n0,1\n1,1,1\n2,1\n", "line 3: found 3 cells; wanted 2"),
+    "open quote": ('time_s,duty\n0,1\n1,"1\n2,1\n', "unexpected end of data; wanted cells between ','"),
+    "stray quote": ('time_s,duty\n0,1\n1,"1"2\n2,"1"\n', "line 3: "),
+    "other encoding": (
+        b"time_s,duty,event\n0,1,\n1,1,gr\xfc\xdfe\n",
+        "line 3: found byte 0xFC, which is not UTF-8; save the file as CSV UTF-8",
+    ),
+    "UTF-16": (GOOD.encode("utf-16"), "line 1: found byte 0xFF, which is not UTF-8"),
+    "other delimiter": (
+        "time_s;duty\n0;1\n1;1\n",
+        'Is the delimiter another sign? Then say so in a mapping: delimiter = ";"',
+    ),
+    "not a table": (b"\x00\x01\x02PNG\n\x00\n", "is no known channel"),
+}
+
+
+@pytest.mark.parametrize("what", BAD_CSV)
+def test_a_bad_table_is_explained(tmp_path: Path, what: str) -> None:
+    content, message = BAD_CSV[what]
+    folder = write_set(tmp_path / "set", {"run.csv": content})
+    with pytest.raises(RecordingSetError, match=re.escape(message)) as caught:
+        read_recording_set(folder)
+    assert str(caught.value).startswith("set/run.csv")
+
+
+def test_the_line_is_right_far_down_a_file_with_blank_and_quoted_lines(tmp_path: Path) -> None:
+    rows = [f"{time},0.5,\n" for time in range(200_000)]
+    rows[10] = '10,0.5,"two\nlines"\n'
+    rows[20] = "\n20,0.5,\n"
+    rows[150_000] = "150000,bad,\n"
+    folder = write_set(tmp_path / "set", {"run.csv": "time_s,duty,event\n" + "".join(rows)})
+    with pytest.raises(RecordingSetError, match="line 150004, column 'duty': found 'bad'"):
+        read_recording_set(folder)
+
+
+def test_time_is_watched_from_one_part_of_a_file_to_the_next(tmp_path: Path) -> None:
+    times = np.arange(300_000) * 0.001
+    for place in (120_000, 299_999):
+        lines = [f"{time:.6f},0.5" for time in times]
+        lines[place] = f"{times[place - 1]:.6f},0.5"
+        folder = write_set(tmp_path / "set", {"run.csv": "time_s,duty\n" + "\n".join(lines)})
+        with pytest.raises(RecordingSetError, match=f"line {place + 2}, column 'time_s': time stands still"):
+            read_recording_set(folder)
+
+
+# what is wrong: trials.csv, and what the message must say
+BAD_TRIALS: dict[str, tuple[str, str]] = {
+    "no file column": ("name,kind\nrun.csv,a\n", "trials.csv, line 1: has no column 'file'; it has name, kind"),
+    "no trial": ("file,kind\n", "trials.csv: names no trial"),
+    "missing file": ("file\nrun.csv\ngone.csv\n", "trials.csv, line 3, column 'file': 'gone.csv' is not in the set"),
+    "file twice": ("file\nrun.csv\nrun.csv\n", "line 3, column 'file': 'run.csv' is named in line 2 already"),
+    "name twice": ("file,name\nrun.csv,a\nb.csv,a\n", "line 3, column 'name': 'a' is named in line 2 already"),
+    "outside": ("file\n../run.csv\n", "line 2, column 'file': the file name '../run.csv' leads out of the set"),
+    "absolute": ("file\n/etc/passwd\n", "line 2, column 'file': the file name '/etc/passwd' leads out of the set"),
+    "rows wrong": ("file,rows\nrun.csv,4\n", "run.csv: has 3 rows; trials.csv, line 2, says 4. Is it cut off?"),
+    "rows no number": ("file,rows\nrun.csv,many\n", "line 2, column 'rows': found 'many'; wanted the number of rows"),
+    "ragged": ("file,kind\nrun.csv\n", "trials.csv, line 2: found 1 cells; wanted 2"),
+    "empty name": ("file,kind\n,a\n", "line 2, column 'file': the file name '' leads out of the set"),
+}
+
+
+@pytest.mark.parametrize("what", BAD_TRIALS)
+def test_bad_trials_are_explained(tmp_path: Path, what: str) -> None:
+    content, message = BAD_TRIALS[what]
+    folder = write_set(tmp_path / "set", {"trials.csv": content, "run.csv": GOOD, "b.csv": GOOD})
+    with pytest.raises(RecordingSetError, match=re.escape(message)):
+        read_recording_set(folder)
+
+
+# what is wrong: rig.toml, and what the message must say
+BAD_RIG: dict[str, tuple[str | bytes, str]] = {
+    "negative resistance": (
+        'name = "x"\n\n[motor]\nresistance_ohm = -1.5\n',
+        "set/rig.toml, line 4: motor.resistance_ohm: found -1.5; should be greater than 0",
+    ),
+    "unknown key": ('name = "x"\n[motor]\nresistance = 1\n', "rig.toml, line 3: motor.resistance: unknown key"),
+    "no name": ("[motor]\n", "rig.toml, line 1: name: missing"),
+    "text for a number": ('name = "x"\n[gear]\nratio = "many"\n', "rig.toml, line 3: gear.ratio: found 'many'"),
+    "no TOML": ("name = \n", "rig.toml: is no TOML"),
+    "no UTF-8": (b'name = "x"\n# \xb5m\n', "rig.toml, line 2: found byte 0xB5"),
+}
+
+
+@pytest.mark.parametrize("what", BAD_RIG)
+def test_a_bad_rig_is_explained(tmp_path: Path, what: str) -> None:
+    content, message = BAD_RIG[what]
+    folder = write_set(tmp_path / "set", {"rig.toml": content, "run.csv": GOOD})
+    with pytest.raises(RecordingSetError, match=re.escape(message)):
+        read_recording_set(folder)
+
+
+def test_every_problem_of_a_rig_is_named_with_its_line(tmp_path: Path) -> None:
+    text = 'name = "x"\n[motor]\nresistance_ohm = 0\n[gear]\nratio = -2\n'
+    folder = write_set(tmp_path / "set", {"rig.toml": text, "run.csv": GOOD})
+    with pytest.raises(RecordingSetError) as caught:
+        read_recording_set(folder)
+    first, second = str(caught.value).splitlines()
+    assert first.startswith("set/rig.toml, line 3: motor.resistance_ohm")
+    assert second.startswith("set/rig.toml, line 5: gear.ratio")
+
+
+def test_a_set_without_a_rig_says_how_to_write_one(tmp_path: Path) -> None:
+    folder = write_set(tmp_path / "set", {"run.csv": GOOD})
+    (folder / "rig.toml").unlink()
+    with pytest.raises(RecordingSetError, match=r"set/rig.toml: is not there; write one"):
+        read_recording_set(folder)
+
+
+def test_a_set_without_tables_is_explained(tmp_path: Path) -> None:
+    with pytest.raises(RecordingSetError, match=r"set: holds no CSV; wanted trials.csv"):
+        read_recording_set(write_set(tmp_path / "set", {}))
+    with pytest.raises(RecordingSetError, match="there is no such folder or file"):
+        read_recording_set(tmp_path / "gone")

@@ -1,0 +1,35 @@
+"""What an unknown column could be meant to be."""
+
+import pytest
+
+from bench.recording_set.suggestions import _UNITS, suggestion
+from compensator.lab.channels import CHANNELS
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("position_deg", '[columns.position_rad] from = "position_deg", scale = 0.01745329252'),
+        ("velocity_rpm", '[columns.velocity_rad_s] from = "velocity_rpm", scale = 0.1047197551'),
+        ("velocity_deg_s", '[columns.velocity_rad_s] from = "velocity_deg_s", scale = 0.01745329252'),
+        ("current_mA", '[columns.current_a] from = "current_mA", scale = 0.001'),
+        ("time_ms", '[columns.time_s] from = "time_ms", scale = 0.001'),
+        ("duty_percent", '[columns.duty] from = "duty_percent", scale = 0.01'),
+        ("position_mm", '[columns.position_m] from = "position_mm", scale = 0.001'),
+        ("torque_enabled", "is enabled meant?"),
+        ("position", "is position_rad or position_m meant?"),
+        ("positon_rad", "is position_rad"),
+        ("Duty", "is duty meant?"),
+    ],
+)
+def test_near_names_are_suggested(name: str, expected: str) -> None:
+    assert expected in suggestion(name)
+
+
+def test_far_names_suggest_nothing() -> None:
+    assert suggestion("humidity") == ""
+
+
+def test_every_unit_leads_to_a_unit_of_a_channel() -> None:
+    suffixes = tuple(f"_{si_unit}" for si_unit, _ in _UNITS.values() if si_unit)
+    assert all(any(name.endswith(suffix) for name in CHANNELS) for suffix in suffixes)
