@@ -59,7 +59,7 @@ def _check_known(table: Table, mapping: Mapping) -> None:
     first = unknown[0]
     parts = ["is no known channel", *filter(None, [suggestion(first)])]
     if len(unknown) > 1:
-        parts.append(f"Nor are {', '.join(unknown[1:])}")
+        parts.append(f"Not known either: {', '.join(unknown[1:])}")
     if len(table.header) == 1 and any(sign in first for sign in ";\t|"):
         parts.append('Is the delimiter another sign? Then say so in a mapping: delimiter = ";"')
     parts.append(f"Known: {', '.join([*CHANNELS, EVENT_COLUMN])}. Map or ignore the column in a mapping file")

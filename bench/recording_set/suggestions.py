@@ -36,11 +36,11 @@ def suggestion(name: str) -> str:
     for unit, (si_unit, factor) in _UNITS.items():
         channel = lower.removesuffix(f"_{unit}") + (f"_{si_unit}" if si_unit else "")
         if lower.endswith(f"_{unit}") and channel in CHANNELS:
-            entry = f'[columns.{channel}] from = "{name}", scale = {factor:.10g}'
+            entry = f'columns.{channel} = {{ from = "{name}", scale = {factor:.10g} }}'
             return f"{channel} is known; convert with a mapping: {entry}"
     near = [channel for channel in CHANNELS if channel in lower or channel.startswith(f"{lower}_")]
     near += difflib.get_close_matches(lower, CHANNELS, n=2, cutoff=0.7)
     if not near:
         return ""
     names = " or ".join(dict.fromkeys(near))
-    return f'is {names} meant? Then rename it, or use a mapping: [columns.{near[0]}] from = "{name}"'
+    return f'is {names} meant? Then rename it, or use a mapping: columns.{near[0]} = {{ from = "{name}" }}'

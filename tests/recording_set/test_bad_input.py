@@ -37,7 +37,7 @@ BAD_CSV: dict[str, tuple[str | bytes, str]] = {
     ),
     "unknown columns": (
         "time_s,humidity,wind\n0,1,1\n",
-        "column 'humidity': is no known channel. Nor are wind. Known: time_s",
+        "column 'humidity': is no known channel. Not known either: wind. Known: time_s",
     ),
     "column twice": ("time_s,duty,duty\n0,1,1\n", "line 1, column 'duty': is there twice"),
     "column without a name": ("time_s,,duty\n0,1,1\n", "line 1: column 2 has no name"),

@@ -65,3 +65,24 @@ def test_a_reader_does_not_wait_for_a_writer(store: Store, url: str) -> None:
         assert store.experiment(experiment_id).outcome == "running"
         assert time.monotonic() - started < 1.0
     other.close()
+
+
+def test_two_benches_on_one_store_take_turns(store: Store, url: str) -> None:
+    errors: list[BaseException] = []
+
+    def begins(opened: Store, kind: str) -> None:
+        try:
+            experiment_id = begin(opened, kind)
+            for number in range(40):  # each reads before it writes: the write lock must be there from the start
+                begin_trial(opened, experiment_id, f"{number}").append(rows(0, 5))
+        except BaseException as error:
+            errors.append(error)
+
+    with Store.open(url) as other:
+        threads = [threading.Thread(target=begins, args=pair) for pair in ((store, "a"), (other, "b"))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert errors == []
+        assert len(store.trials()) == 80
