@@ -40,7 +40,7 @@ class WallClock:
             now and then only.
     """
 
-    def __init__(self, spin_s: float = 0.0003) -> None:
+    def __init__(self, spin_s: float = 0.0002) -> None:
         self.overruns = 0
         self._spin_s = spin_s
         self._period_s = 0.0

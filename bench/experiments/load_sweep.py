@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from bench.configuration import BenchConfiguration
-from bench.experiments.at_rest import RIGHT_ANGLE_RAD, SECONDS, measure_at_rest
+from bench.experiments.at_rest import MOVES_S, RIGHT_ANGLE_RAD, SEARCH_S, measure_at_rest
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.reflected_load import reflected_load_kg
@@ -26,6 +26,7 @@ class LoadSweepParameters(Parameters):
         (0.0, RIGHT_ANGLE_RAD), "rad", "Angles; 0 is vertically down", min_length=1
     )
     repeats: int = quantity(1, "", "Trials at each load and angle", ge=1, le=100)
+    searches: int = quantity(2, "", "Zero-speed searches in each trial, of which the mean is taken", ge=1, le=20)
 
 
 def _plan(parameters: LoadSweepParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
@@ -33,7 +34,7 @@ def _plan(parameters: LoadSweepParameters, configuration: BenchConfiguration) ->
         TrialPlan(
             name=f"load-{number:02d}-angle-{place}-{repeat:02d}",
             conditions=conditions(configuration, load_kg=load_kg, balanced=False, angle_rad=angle_rad, repeat=repeat),
-            procedure=partial(measure_at_rest, configuration, angle_rad),
+            procedure=partial(measure_at_rest, configuration, angle_rad, parameters.searches),
             load_kg=load_kg,
         )
         for number, load_kg in enumerate(parameters.loads_kg, 1)
@@ -53,7 +54,8 @@ def _refuse(parameters: LoadSweepParameters, configuration: BenchConfiguration) 
 
 
 def _duration_s(parameters: LoadSweepParameters, _configuration: BenchConfiguration) -> float:
-    return SECONDS * len(parameters.loads_kg) * len(parameters.angles_rad) * parameters.repeats
+    trials = len(parameters.loads_kg) * len(parameters.angles_rad) * parameters.repeats
+    return trials * (MOVES_S + SEARCH_S * parameters.searches)
 
 
 def _summarise(_parameters: LoadSweepParameters, trials: list[FinishedTrial]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import model_validator
 
 from bench.configuration import BenchConfiguration
-from bench.experiments.at_rest import RIGHT_ANGLE_RAD, SECONDS, measure_at_rest
+from bench.experiments.at_rest import MOVES_S, RIGHT_ANGLE_RAD, SEARCH_S, measure_at_rest
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.reflected_load import reflected_load_kg
@@ -27,6 +27,7 @@ class StepsParameters(Parameters):
     load_kg: float = quantity(0.1, "kg", "Load at the tip of the arm", ge=0)
     angle_rad: float = quantity(RIGHT_ANGLE_RAD, "rad", "Angle that is stepped to; 0 is vertically down")
     repeats: int = quantity(25, "", "Number of steps", ge=1, le=1000)
+    searches: int = quantity(1, "", "Zero-speed searches in each trial, of which the mean is taken", ge=1, le=20)
     slowest_rad_s: float = quantity(0.5, "rad/s", "Slowest approach", gt=0)
     fastest_rad_s: float = quantity(4.0, "rad/s", "Fastest approach; as the slowest for steps that are all alike", gt=0)
 
@@ -54,7 +55,13 @@ def _plan(parameters: StepsParameters, configuration: BenchConfiguration) -> lis
                 approach_rad_s=parameters.approach_rad_s(repeat),
                 repeat=repeat,
             ),
-            procedure=partial(measure_at_rest, configuration, parameters.angle_rad, parameters.approach_rad_s(repeat)),
+            procedure=partial(
+                measure_at_rest,
+                configuration,
+                parameters.angle_rad,
+                parameters.searches,
+                parameters.approach_rad_s(repeat),
+            ),
             load_kg=parameters.load_kg,
         )
         for repeat in range(1, parameters.repeats + 1)
@@ -71,7 +78,7 @@ def _refuse(parameters: StepsParameters, configuration: BenchConfiguration) -> N
 
 
 def _duration_s(parameters: StepsParameters, _configuration: BenchConfiguration) -> float:
-    return SECONDS * parameters.repeats
+    return parameters.repeats * (MOVES_S + SEARCH_S * parameters.searches)
 
 
 def _summarise(_parameters: StepsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
