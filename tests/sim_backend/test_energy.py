@@ -40,7 +40,8 @@ def test_energy_balance_closes_over_a_long_mixed_run_with_every_mechanism_on() -
     busy = Plant(PlantParameters.from_dict(EVERYTHING, presets.paper()), seed=3)
     left_over_j, through_j = _mixed_run(busy, seed=3, pieces=400)
     assert through_j > 50.0
-    assert abs(left_over_j) < 1e-3 * through_j
+    # what is left over is what teeth gain when they close in the middle of a step
+    assert abs(left_over_j) < 1e-4 * through_j
 
 
 @settings(deadline=None, max_examples=60)
@@ -87,5 +88,4 @@ def test_no_plant_blows_up_or_makes_energy(
     truth = plant.truth()
     assert all(np.isfinite(getattr(truth, name)) for name in truth.__dataclass_fields__)
     assert plant.energy().stored_j >= 0.0
-    # a bare plant turns over little energy, so what teeth gain when they close mid-step shows more
-    assert abs(left_over_j) <= 5e-3 * through_j + 1e-6
+    assert abs(left_over_j) <= 1e-3 * through_j + 1e-6
