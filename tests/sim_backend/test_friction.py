@@ -1,4 +1,4 @@
-from math import exp
+from math import exp, sin
 
 import pytest
 
@@ -108,7 +108,6 @@ def test_mesh_loss_helps_the_motor_when_the_load_drives(factor: float, falls: bo
 
 def _on_the_load_friction(factor: float) -> object:
     """A load at 1.5 rad, friction by mesh loss alone, motor torque as a factor of gravity's."""
-    from math import sin
 
     gravity = 0.2 * G * 0.3 * sin(1.5)
     held = plant(load={"mass_kg": 0.2}, load_friction={"driving": 0.3, "back_driving": 0.2})
