@@ -92,7 +92,9 @@ def facts_of(rig: Rig) -> Facts:
         horizontal=rig.horizontal,
         torque_per_current_n_m_a=(motor.torque_constant_n_m_a or 0.0) * (ratio or 0.0) if known else None,
         gear_ratio=ratio,
+        backlash_rad=rig.gear.backlash_rad,
         arm_m=rig.arm.length_m,
+        arm_inertia_kg_m2=rig.arm.inertia_kg_m2,
         effort=rig.effort.quantity if rig.effort else None,
     )
 

@@ -1,15 +1,15 @@
-"""Up to which frequency the motion tells anything about the effort: it sets the cut-off of the final filter.
+"""The cut-off of the final filter: four times the bandwidth of the motion, but never where there is mostly noise.
 
-Effort and the plainest columns (acceleration, velocity, its sign, position, sin q) are split into bands; in each the
-share of the effort that the columns explain is a multiple coherence. Beyond the band where it falls below one half
-there is mostly noise, of the encoder after differentiation or of the effort itself.
+Effort and the plainest columns (acceleration, velocity, its sign, position, sin q, and those that grow with the load)
+are split into bands; in each the share of the effort that the columns explain is a multiple coherence. Beyond the
+band where it falls below one half there is mostly noise, of the encoder after differentiation or of the effort itself.
 """
 
 from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfiltfilt, welch
 
 from compensator.lab.effort import Effort
 from compensator.lab.facts import Facts
@@ -18,22 +18,43 @@ from compensator.lab.recording import FloatArray, Recording
 
 COHERENT = 0.5
 LOWEST_HZ = 2.0
+MOTION_SHARE = 0.99
+SEGMENT_S = 4.0
+HARMONICS = 4.0
 BANDS_PER_OCTAVE = 2
 MOST_RECORDINGS = 24  # enough to see a corner; keeps the cost bounded
 
 
 def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> float:
-    """The final low-pass cut-off [Hz]: the noise corner, within 2 Hz and a fifth of the sample rate."""
+    """The final low-pass cut-off [Hz].
+
+    Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the noise
+    corner, and within 2 Hz and a fifth of the sample rate.
+    """
     slowest_hz = min(1.0 / float(np.median(np.diff(r.channels["time_s"]))) for r in recordings)
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
-    corner = noise_corner_hz(some, effort, facts, 0.4 * slowest_hz)
-    return float(np.clip(corner, LOWEST_HZ, 0.2 * slowest_hz))
+    highest_hz = 0.2 * slowest_hz
+    wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)
+    return max(noise_corner_hz(some, effort, facts, wanted_hz), LOWEST_HZ)
+
+
+def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
+    """The frequency below which lies 99 % of the velocity's power, over all recordings [Hz]."""
+    frequencies = np.linspace(0.0, 3.0 * highest_hz, 1024)
+    power = np.zeros(len(frequencies))
+    for recording in recordings:
+        signals = make_signals(recording, effort, facts, highest_hz)
+        segment = min(len(signals.velocity), int(SEGMENT_S * signals.rate_hz))
+        at, density = welch(signals.velocity, signals.rate_hz, nperseg=segment)
+        power += np.interp(frequencies, at, density, right=0.0)
+    share = np.cumsum(power) / max(float(power.sum()), np.finfo(float).tiny)
+    return float(frequencies[min(int(np.searchsorted(share, MOTION_SHARE)), len(frequencies) - 1)])
 
 
 def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
     """The frequency above which the motion explains less than half of the effort's power [Hz]."""
     edges = LOWEST_HZ * 2.0 ** (np.arange(64) / BANDS_PER_OCTAVE)
-    edges = np.append(edges[edges < highest_hz], highest_hz)
+    edges = np.append(edges[edges < 0.99 * highest_hz], max(highest_hz, LOWEST_HZ))
     for low, high in pairwise(edges):
         signals = [make_signals(recording, effort, facts, high) for recording in recordings]
         if _explained_share(signals, low, high) < COHERENT:
@@ -58,16 +79,12 @@ def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -
 def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:
     position = low_pass(trial.position, high_hz, trial.rate_hz)
     speed = max(1e-12, 0.02 * float(np.quantile(np.abs(trial.velocity), 0.95)))
-    stack = np.array(
-        [
-            trial.acceleration,
-            trial.velocity,
-            np.tanh(trial.velocity / speed),
-            position,
-            np.sin(position),
-            trial.effort,
-        ]
-    )
+    load = trial.recording.conditions.get("load_kg", 0.0)
+    load_kg = float(load) if isinstance(load, int | float) else 0.0
+    direction, sine = np.tanh(trial.velocity / speed), np.sin(position)
+    plain = [trial.acceleration, trial.velocity, direction, position, sine]
+    with_load = [load_kg * column for column in (trial.acceleration, direction, sine)]
+    stack = np.array([*plain, *with_load, trial.effort])
     top = min(high_hz, 0.45 * trial.rate_hz)
     sections = butter(2, (low_hz, top), btype="bandpass", fs=trial.rate_hz, output="sos")
     filtered: FloatArray = sosfiltfilt(sections, np.nan_to_num(stack), axis=-1)

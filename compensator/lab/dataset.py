@@ -236,7 +236,17 @@ def _make_trial(
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)
     picked = picked[signals.usable[picked]]
-    return Trial(signals, motion, picked, classify(signals.velocity, slow, signals.rate_hz)[picked])
+    return Trial(signals, motion, picked, classify(signals.velocity, _carried(motion), slow, signals.rate_hz)[picked])
+
+
+def _carried(motion: Motion) -> FloatArray:
+    """Torque [N m] that the gear is known to carry: weight and inertia beyond it. All zero without known free play."""
+    facts = motion.facts
+    if not facts.backlash_rad or facts.joint == "linear":
+        return np.zeros(len(motion.time_s))
+    moment = 0.0 if facts.horizontal else motion.load_moment_n_m
+    inertia = motion.load_inertia_kg_m2 + (facts.arm_inertia_kg_m2 or 0.0)
+    return moment * np.sin(motion.position) + inertia * motion.acceleration
 
 
 def _velocity_noise(signals: Signals, facts: Facts, cutoff_hz: float) -> float:

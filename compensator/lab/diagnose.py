@@ -5,6 +5,8 @@ score, its null by sign flips of whole stretches), what is it called (likelihood
 shapes), does it help (held-out error, resampled by whole trials).
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from compensator.lab.candidates import Candidates, gather
@@ -30,32 +32,60 @@ FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less i
 def diagnose(fit: Fit) -> Diagnosis:
     """Diagnose a fitted model on its training rows.
 
+    Effects of the joint are judged first. Effects of the measuring chain are named only where no effect of the joint
+    is, and are a note otherwise: every other effect is judged with their columns already in the base.
+
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
     gathered = gather(fit)
     stretch = fit.dataset.block_index[gathered.rows]
-    named = screen(gathered.bases, gathered.named, stretch)
-    generic = screen(gathered.bases, gathered.generic, stretch)
-    if not named.evidence:
+    physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
+    if not physical:
         raise UnusableDataError(
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
+    generic = screen(gathered.bases, gathered.generic, stretch)
+    answer = _answer(fit, gathered, screen(gathered.bases, physical, stretch), generic)
+    chain = _answer(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
+    first, second = (chain, answer) if answer.verdict == "nothing" and chain.verdict == "missing" else (answer, chain)
+    candidates = [*first.candidates, *second.candidates]
+    notes = [second.sentence] if second is chain and chain.verdict == "missing" else []
+    return Diagnosis(
+        verdict=first.verdict,
+        sentence=first.sentence,
+        p_value=first.p_value,
+        classes=_classes(candidates),
+        candidates=candidates,
+        driver=first.driver,
+        data_problems=data_problems(fit),
+        notes=[*first.notes, *notes],
+        left_out=gathered.left_out,
+    )
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """What one family of effects has to say."""
+
+    verdict: Verdict
+    sentence: str
+    p_value: float
+    candidates: list[Candidate]
+    driver: str | None
+    notes: list[str]
+
+
+def _answer(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> _Answer:
     best_of_each = _best_shapes(named)
+    if not best_of_each:
+        return _Answer("nothing", "", 1.0, [], None, [])
     candidates = _examine(fit, gathered, best_of_each[:EXAMINED])
     best = next(item for item in best_of_each if item.block.name == candidates[0].effect.name)
     verdict, driver = _verdict(named, generic, best, candidates[0])
-    return Diagnosis(
-        verdict=verdict,
-        sentence=_sentence(verdict, named.p_value, candidates, driver),
-        p_value=named.p_value,
-        classes=_classes(candidates),
-        candidates=candidates,
-        driver=driver,
-        data_problems=data_problems(fit),
-        notes=_notes(gathered, best, verdict),
-        left_out=gathered.left_out,
-    )
+    sentence = _sentence(verdict, named.p_value, candidates, driver)
+    return _Answer(verdict, sentence, named.p_value, candidates, driver, _notes(gathered, best, verdict))
 
 
 def _best_shapes(screening: Screening) -> list[Evidence]:
@@ -66,11 +96,18 @@ def _best_shapes(screening: Screening) -> list[Evidence]:
     return list(found.values())
 
 
-def _verdict(named: Screening, generic: Screening, best: Evidence, candidate: Candidate) -> tuple[Verdict, str | None]:
-    curve = generic.evidence[0] if generic.evidence else None
+def _verdict(
+    named: Screening, generic: Screening | None, best: Evidence, candidate: Candidate
+) -> tuple[Verdict, str | None]:
+    curve = generic.evidence[0] if generic is not None and generic.evidence else None
     formula_found = named.p_value <= SIGNIFICANT and _confirmed(candidate)
-    curve_found = curve is not None and generic.p_value <= SIGNIFICANT and curve.score > 0.0
-    if curve is not None and curve_found and best.noncentrality < FORMULA_SHARE * curve.noncentrality:
+    curve_found = generic is not None and generic.p_value <= SIGNIFICANT
+    if (
+        curve is not None
+        and curve_found
+        and curve.score > 0.0
+        and best.noncentrality < FORMULA_SHARE * curve.noncentrality
+    ):
         return "unknown-effect", curve.block.name
     return ("missing", None) if formula_found else ("nothing", None)
 

@@ -17,7 +17,9 @@ class Facts:
         horizontal: gravity does no work on the joint.
         torque_per_current_n_m_a: joint torque per motor ampere, torque constant x gear ratio [N m/A].
         gear_ratio: motor turns per joint turn.
+        backlash_rad: free play at the joint; 0 where there is none, None where nobody measured it.
         arm_m: axis to the tip load [m], where the trial's conditions do not tell.
+        arm_inertia_kg_m2: of the arm without load, about the axis.
         effort: the quantity that the models predict; None takes the best that every trial has.
     """
 
@@ -25,7 +27,9 @@ class Facts:
     horizontal: bool = False
     torque_per_current_n_m_a: float | None = None
     gear_ratio: float | None = None
+    backlash_rad: float | None = None
     arm_m: float | None = None
+    arm_inertia_kg_m2: float | None = None
     effort: EffortQuantity | None = None
 
     @property

@@ -51,9 +51,10 @@ def effort_per_torque(fit: "Fit") -> float | None:
 
 
 def _load_inertia_effort(fit: "Fit", motion: Motion, per_torque: float | None) -> FloatArray:
-    """Effort that accelerates what hangs beyond the gear; all of the inertia where the load's is not known."""
-    if motion.load_inertia_kg_m2 > 0.0 and per_torque is not None:
-        return per_torque * motion.load_inertia_kg_m2 * motion.acceleration
+    """Effort that accelerates what hangs beyond the gear; all of a linear joint's inertia where that is not known."""
+    beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
+    if beyond_kg_m2 > 0.0 and per_torque is not None:
+        return per_torque * beyond_kg_m2 * motion.acceleration
     if motion.facts.joint == "rotary":
         return np.zeros(len(motion.time_s))
     inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)

@@ -6,6 +6,7 @@ then thinned to the Nyquist rate (Janot, Gautier, Brunot 2019; "parallel decimat
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
@@ -56,9 +57,14 @@ def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray
     """Zero-phase Butterworth low-pass along the last axis; unchanged where the cut-off is beyond Nyquist."""
     if cutoff_hz >= 0.49 * rate_hz:
         return values
-    sections = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
-    filtered: FloatArray = sosfiltfilt(sections, values, axis=-1)
+    filtered: FloatArray = sosfiltfilt(_sections(cutoff_hz, rate_hz), values, axis=-1)
     return filtered
+
+
+@lru_cache(maxsize=256)  # designing a filter takes longer than applying it to one trial
+def _sections(cutoff_hz: float, rate_hz: float) -> FloatArray:
+    sections: FloatArray = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
+    return sections
 
 
 def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: float) -> Signals:

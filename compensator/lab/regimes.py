@@ -27,11 +27,13 @@ class Regime(IntEnum):
     STUCK = 2
 
 
-def classify(velocity: FloatArray, slow: float, rate_hz: float) -> NDArray[np.uint8]:
+def classify(velocity: FloatArray, carried: FloatArray, slow: float, rate_hz: float) -> NDArray[np.uint8]:
     """Regime of each row, shape (n,).
 
     Args:
         velocity: filtered velocity, shape (n,).
+        carried: torque that the gear is known to carry, shape (n,); where its sign changes the teeth cross their free
+            play, and the motor moves alone. All zero where it is not known or there is no free play.
         slow: speed below which the direction of motion is uncertain.
         rate_hz: of the rows.
     """
@@ -39,14 +41,15 @@ def classify(velocity: FloatArray, slow: float, rate_hz: float) -> NDArray[np.ui
     regime = np.full(len(velocity), Regime.TRANSIENT, dtype=np.uint8)
     around_s = 2 * round(SLIDE_MARGIN_S * rate_hz) + 1
     sliding = minimum_filter1d(speed, around_s) > slow
-    regime[sliding & ~_near_reversal(velocity, slow, rate_hz)] = Regime.SLIDING
+    disturbed = _after_reversal(velocity, slow, rate_hz) | _near_flank_change(carried, rate_hz)
+    regime[sliding & ~disturbed] = Regime.SLIDING
     window = 2 * round(0.5 * STUCK_AFTER_S * rate_hz) + 1
     stuck = minimum_filter1d((speed < slow).astype(np.uint8), window) > 0
     regime[maximum_filter1d(stuck.astype(np.uint8), window) > 0] = Regime.STUCK
     return regime
 
 
-def _near_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolArray:
+def _after_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolArray:
     """True within TRANSIENT_S after the direction of motion changed."""
     direction = np.where(velocity > slow, 1, np.where(velocity < -slow, -1, 0))
     moving = np.flatnonzero(direction)
@@ -55,4 +58,13 @@ def _near_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolArr
     after = round(TRANSIENT_S * rate_hz)
     for change in changes:
         near[change : change + after] = True
+    return near
+
+
+def _near_flank_change(carried: FloatArray, rate_hz: float) -> BoolArray:
+    """True within TRANSIENT_S of a change of sign: filters spread the shock of contact to both sides."""
+    sign = np.sign(carried)
+    changes = np.zeros(len(carried), dtype=np.uint8)
+    changes[1:] = (sign[1:] * sign[:-1]) < 0.0
+    near: BoolArray = maximum_filter1d(changes, 2 * round(TRANSIENT_S * rate_hz) + 1) > 0
     return near

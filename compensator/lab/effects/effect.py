@@ -116,6 +116,8 @@ class Effect:
         channels: channels that the recordings must have.
         confused_with: effects that trials often cannot tell apart from it.
         carried: part of the load that the gear transmits (see `prediction`).
+        pipeline: of the measuring chain, not of the joint: reported as a finding of its own, so that a small skew
+            between channels never hides physics.
         uses_prediction: columns use `load_effort` or `effort_rate`: a model must be fitted first.
         standing_in: pipeline nuisance columns that would absorb this effect (see `nuisance`).
         varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
@@ -136,6 +138,7 @@ class Effect:
     channels: tuple[str, ...] = ()
     confused_with: tuple[str, ...] = ()
     carried: bool = False
+    pipeline: bool = False
     uses_prediction: bool = False
     standing_in: frozenset[str] = field(default_factory=frozenset)
     varies_with: str | None = None

@@ -24,5 +24,6 @@ EFFECT = Effect(
     source="first-order expansion in the delay",
     confused_with=("inertia",),
     uses_prediction=True,
+    pipeline=True,
     standing_in=frozenset({"jerk", "sign_rate"}),
 )
