@@ -5,13 +5,28 @@ from typing import Annotated
 
 import typer
 
-from bench.cli.output import say
+from bench.cli.output import say, table
+from bench.report import Section
 
 
 def demo(
-    report: Annotated[Path, typer.Option(help="Where the HTML report is written.")] = Path("out/demo.html"),
+    report: Annotated[Path, typer.Option(help="Where the HTML report is written; the trials go beside it.")] = Path(
+        "out/demo.html"
+    ),
+    seed: Annotated[int, typer.Option(min=0, help="Draws the hidden effect.")] = 1,
 ) -> None:
     """Run the main job end to end: steps, load sweep, a hidden effect found. Prints tables, writes one HTML report."""
-    from bench.demo import run_demo
+    from bench.demo import run_demo  # the lab and the plant are loaded when they are first needed
 
-    raise typer.Exit(run_demo(report, say))
+    database = run_demo(report, _print, seed)
+    say(f"Report: {report}")
+    say(f"Look at the trials and the study on the page: friction-bench --store sqlite:///{database} serve")
+
+
+def _print(section: Section) -> None:
+    say("")
+    say(section.title)
+    for sentence in section.sentences:
+        say(sentence)
+    for one in section.tables:
+        table(one.title, one.columns, one.rows)

@@ -1,0 +1,83 @@
+"""Figures as data, and as Plotly's JSON. Colours tell apart under colour blindness (Okabe, Ito 2008)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+Numbers = Sequence[float | None]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through points; dashed for references."""
+
+    name: str
+    x: Numbers
+    y: Numbers
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points, with bars from low to high where given."""
+
+    name: str
+    x: Numbers
+    y: Numbers
+    low: Sequence[float] = ()
+    high: Sequence[float] = ()
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Bars over names, with error bars from low to high where given."""
+
+    name: str
+    x: Sequence[str]
+    y: Sequence[float]
+    low: Sequence[float] = ()
+    high: Sequence[float] = ()
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One plot: title, axis titles with units, and what is drawn."""
+
+    title: str
+    x_title: str
+    y_title: str
+    drawn: Sequence[Line | Points | Bars]
+
+    def to_plotly(self) -> dict[str, Any]:
+        """Data and layout as Plotly takes them."""
+        traces = [_trace(one, COLOURS[i % len(COLOURS)]) for i, one in enumerate(self.drawn)]
+        return {
+            "data": traces,
+            "layout": {
+                "title": {"text": self.title},
+                "xaxis": {"title": {"text": self.x_title}},
+                "yaxis": {"title": {"text": self.y_title}},
+                "legend": {"orientation": "h", "y": -0.25},
+                "margin": {"l": 70, "r": 20, "t": 50, "b": 60},
+                "template": "none",
+            },
+        }
+
+
+def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
+    common: dict[str, Any] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
+    if isinstance(one, Line):
+        dash = "dash" if one.dashed else "solid"
+        return {**common, "type": "scatter", "mode": "lines", "line": {"color": colour, "dash": dash}}
+    if len(one.low):
+        measured = [float(value or 0.0) for value in one.y]
+        common["error_y"] = {
+            "type": "data",
+            "symmetric": False,
+            "array": [high - value for high, value in zip(one.high, measured, strict=True)],
+            "arrayminus": [value - low for low, value in zip(one.low, measured, strict=True)],
+        }
+    if isinstance(one, Points):
+        return {**common, "type": "scatter", "mode": "markers", "marker": {"color": colour, "size": 7}}
+    return {**common, "type": "bar", "marker": {"color": colour}}

@@ -1,0 +1,71 @@
+"""A report as one HTML file that needs no network: words, tables, and figures drawn by Plotly's own JavaScript."""
+
+import json
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+
+from plotly.offline import get_plotlyjs
+
+from bench.report.section import Section, Table
+
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
+caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
+th, td { padding: .15rem .8rem; border-bottom: 1px solid #ccc; text-align: left; }
+.number { text-align: right; }
+.figure { width: 100%; height: 26rem; }
+"""
+_DRAW = """
+for (const place of document.querySelectorAll(".figure")) {
+  const figure = JSON.parse(document.getElementById(place.dataset.from).textContent);
+  Plotly.newPlot(place, figure.data, figure.layout, { responsive: true, displaylogo: false });
+}
+"""
+
+
+def write_html(path: Path, title: str, sections: Sequence[Section]) -> None:
+    """Write a report. The file is complete or not there: it is written beside and then renamed."""
+    parts = [part for number, section in enumerate(sections) for part in _section(section, number)]
+    page = (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>\n'
+        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head>\n'
+        f"<body><h1>{escape(title)}</h1>\n{''.join(parts)}\n"
+        f"<script>{get_plotlyjs()}</script><script>{_DRAW}</script></body></html>\n"
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f"{path.name}.part")
+    unfinished.write_text(page, encoding="utf-8")
+    unfinished.replace(path)
+
+
+def cell_text(value: object) -> str:
+    """A cell: short numbers, '-' for nothing."""
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _section(section: Section, number: int) -> list[str]:
+    parts = [f"<h2>{escape(section.title)}</h2>\n"]
+    parts += [f"<p>{escape(sentence)}</p>\n" for sentence in section.sentences]
+    parts += [_table(table) for table in section.tables]
+    for index, figure in enumerate(section.figures):
+        name = f"figure-{number}-{index}"
+        data = json.dumps(figure.to_plotly(), allow_nan=False).replace("</", "<\\/")
+        parts.append(f'<script type="application/json" id="{name}">{data}</script>')
+        parts.append(f'<div class="figure" data-from="{name}" role="img" aria-label="{escape(figure.title)}"></div>\n')
+    return parts
+
+
+def _table(table: Table) -> str:
+    sides = [' class="number"' if column.endswith("#") else "" for column in table.columns]
+    head = "".join(
+        f"<th{side}>{escape(c.removesuffix('#'))}</th>" for c, side in zip(table.columns, sides, strict=True)
+    )
+    rows = "".join(
+        "<tr>" + "".join(f"<td{s}>{escape(cell_text(v))}</td>" for v, s in zip(row, sides, strict=True)) + "</tr>"
+        for row in table.rows
+    )
+    return f"<table><caption>{escape(table.title)}</caption><tr>{head}</tr>{rows}</table>\n"
