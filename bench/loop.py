@@ -5,12 +5,12 @@ procedure. However a run ends, it ends in power-off, and the outcome says why.
 """
 
 import threading
-from collections.abc import Generator
 from dataclasses import dataclass, field, replace
 from math import ceil, isnan, nan
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from bench.clock import Clock
+from bench.cycle import OFF, RECORDED, Action, Procedure, Reading, row_of
 from bench.errors import ConfigurationError, LimitTrip
 from bench.limits import Guard
 from bench.recorder import Recorder, Sink
@@ -18,62 +18,10 @@ from bench.servo import CurrentServo
 from drivers.contract import Command, Drive, Mode, Sample, Status
 from drivers.errors import DriveStateError
 
-RECORDED: tuple[str, ...] = (
-    "time_s",
-    "target_rad",
-    "position_rad",
-    "velocity_rad_s",
-    "duty",
-    "current_a",
-    "current_estimate_a",
-    "current_command_a",
-    "current_load_a",
-    "supply_v",
-    "temperature_c",
-    "enabled",
-    "age_s",
-)
-"""The channels of a row, in order; all from `compensator.lab.channels`."""
+__all__ = ["OFF", "RECORDED", "Action", "ControlLoop", "Outcome", "OutcomeName", "Procedure", "Reading"]
 
-OFF = Command(Mode.OFF)
 BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
 OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
-
-
-class Reading(NamedTuple):
-    """What a procedure receives each cycle.
-
-    Attributes:
-        time_s: since the start of the trial, from the drive's own stamps [s].
-        sample: as the drive gave it.
-        velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
-        current_a: measured where the drive measures it, else eq. (3) [A].
-    """
-
-    time_s: float
-    sample: Sample
-    velocity_rad_s: float
-    current_a: float
-
-
-class Action(NamedTuple):
-    """What a procedure yields each cycle.
-
-    Attributes:
-        command: to the drive. Mode.CURRENT works on every drive.
-        target_rad: position set point [rad], recorded and compared with the tracking limit.
-        current_load_a: friction-compensated current [A], recorded.
-        event: (name, detail), recorded.
-    """
-
-    command: Command
-    target_rad: float = nan
-    current_load_a: float = nan
-    event: tuple[str, str] | None = None
-
-
-Procedure = Generator[Action, Reading, dict[str, Any]]
-"""Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +161,7 @@ class ControlLoop:
             reading, estimate_a = self._read(sample)
             self.cycles += 1
             self.last_reading = reading
-            record(_row(action, reading, estimate_a))
+            record(row_of(action, reading, estimate_a))
             if action.event is not None:
                 recorder.event(reading.time_s, *action.event)
             check(sample, reading.velocity_rad_s, reading.current_a, action.target_rad)
@@ -285,7 +233,7 @@ class ControlLoop:
                 reading, estimate_a = self._read(sample)
                 self.last_reading = reading
                 if recorder.error is None:
-                    recorder.row(_row(_BRAKING, reading, estimate_a))
+                    recorder.row(row_of(_BRAKING, reading, estimate_a))
                 if sample.status is not Status.QUICK_STOP:
                     break
         except BaseException as error:  # a second Ctrl-C, too: on to power-off
@@ -304,26 +252,6 @@ class ControlLoop:
                 notes.append(f"power-off failed: {str(error) or type(error).__name__}")
         self._mode = Mode.OFF
         return notes
-
-
-def _row(action: Action, reading: Reading, estimate_a: float) -> tuple[float, ...]:
-    sample = reading.sample
-    command = action.command
-    return (
-        reading.time_s,
-        action.target_rad,
-        sample.position_rad,
-        reading.velocity_rad_s,
-        sample.duty,
-        sample.current_a,
-        estimate_a,
-        command.value if command.mode is Mode.CURRENT else nan,
-        action.current_load_a,
-        sample.supply_v,
-        sample.temperature_c,
-        1.0 if sample.status is Status.ENABLED else 0.0,
-        sample.age_s,
-    )
 
 
 def _joined(*reasons: str) -> str:

@@ -1,0 +1,83 @@
+"""What one control cycle is made of: the procedure's action, the reading that answers it, the row that is kept."""
+
+from collections.abc import Generator
+from math import nan
+from typing import Any, NamedTuple
+
+from drivers.contract import Command, Mode, Sample, Status
+
+RECORDED: tuple[str, ...] = (
+    "time_s",
+    "target_rad",
+    "position_rad",
+    "velocity_rad_s",
+    "duty",
+    "current_a",
+    "current_estimate_a",
+    "current_command_a",
+    "current_load_a",
+    "supply_v",
+    "temperature_c",
+    "enabled",
+    "age_s",
+)
+"""The channels of a row, in order; all from `compensator.lab.channels`."""
+
+OFF = Command(Mode.OFF)
+
+
+class Reading(NamedTuple):
+    """What a procedure receives each cycle.
+
+    Attributes:
+        time_s: since the start of the trial, from the drive's own stamps [s].
+        sample: as the drive gave it.
+        velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
+        current_a: measured where the drive measures it, else eq. (3) [A].
+    """
+
+    time_s: float
+    sample: Sample
+    velocity_rad_s: float
+    current_a: float
+
+
+class Action(NamedTuple):
+    """What a procedure yields each cycle.
+
+    Attributes:
+        command: to the drive. Mode.CURRENT works on every drive.
+        target_rad: position set point [rad], recorded and compared with the tracking limit.
+        current_load_a: friction-compensated current [A], recorded.
+        event: (name, detail), recorded.
+    """
+
+    command: Command
+    target_rad: float = nan
+    current_load_a: float = nan
+    event: tuple[str, str] | None = None
+
+
+Procedure = Generator[Action, Reading, dict[str, Any]]
+"""Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
+
+
+def row_of(action: Action, reading: Reading, estimate_a: float) -> tuple[float, ...]:
+    """The row of a cycle, in the order of `RECORDED`."""
+    sample = reading.sample
+    command = action.command
+    return (
+        reading.time_s,
+        action.target_rad,
+        sample.position_rad,
+        reading.velocity_rad_s,
+        sample.duty,
+        sample.current_a,
+        estimate_a,
+        command.value if command.mode is Mode.CURRENT else nan,
+        action.current_load_a,
+        sample.supply_v,
+        sample.temperature_c,
+        1.0 if sample.status is Status.ENABLED else 0.0,
+        sample.age_s,
+    )
