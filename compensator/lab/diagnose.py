@@ -124,8 +124,8 @@ def _examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[C
 
 
 def _confirmed(candidate: Candidate) -> bool:
-    """Whether the evidence pays for its parameters and the gain on held-out rows is more than luck."""
-    return candidate.score > 0.0 and candidate.gain.low > 0.0
+    """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck."""
+    return candidate.score > 0.0 and candidate.p_value <= SIGNIFICANT and candidate.gain.low > 0.0
 
 
 def _with_effect(fit: Fit, item: Evidence) -> Fit:

@@ -12,13 +12,13 @@ Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
 
 @dataclass(frozen=True)
 class Picture:
-    """Why: the model's residual against the effect's driving variable, and the effect's own curve over it.
+    """Why: what the effect has to explain against its driving variable, and the effect's own curve over it.
 
     Attributes:
         driver: key of `DRIVERS`.
         against_motion: values are counted positive against the motion, as friction is.
-        residual: of the model without the effect.
-        curve: contribution of the fitted effect in the same bins.
+        residual: partial residual: what the model with the effect leaves, plus the effect.
+        curve: the effect alone, in the same bins.
     """
 
     driver: str

@@ -1,4 +1,4 @@
-"""The picture that shows why an effect is ranked: residual against its driving variable, its curve laid over."""
+"""The picture that shows why an effect is ranked: partial residual over its driving variable, with its curve."""
 
 import numpy as np
 
@@ -12,15 +12,13 @@ from compensator.lab.recording import FloatArray
 
 
 def picture_of(gathered: Candidates, item: Evidence) -> Picture | None:
-    """Residual and curve over the effect's driver, on the tested rows; None where the driver is not measured."""
+    """Partial residual and curve over the effect's driver, on the tested rows; None where that is not measured."""
     dataset, rows = gathered.fit.dataset, gathered.rows
     driver = DRIVERS[effect_named(item.block.name).driver]
     values = dataset.rows_of([driver.of(trial) for trial in dataset.trials])[rows]
     if not np.isfinite(values).all():
         return None
-    base = gathered.bases[item.block.base]
-    residual = base.residual / gathered.weights
-    curve = item.direction * float(item.direction @ base.residual) / gathered.weights
+    residual, curve = _partial_residual(gathered, item)
     motion = np.sign(dataset.rows_of([trial.motion.direction for trial in dataset.trials])[rows])
     against = driver.name != "velocity" and _spread(values, curve * motion) > _spread(values, curve)
     sign = motion if against else np.ones(len(values))
@@ -28,6 +26,19 @@ def picture_of(gathered: Candidates, item: Evidence) -> Picture | None:
     return Picture(
         driver.name, against, binned_mean(values, residual * sign, stretch), binned_mean(values, curve * sign, stretch)
     )
+
+
+def _partial_residual(gathered: Candidates, item: Evidence) -> tuple[FloatArray, FloatArray]:
+    """What the model with the effect leaves plus the effect's own contribution, and that contribution, both (n,).
+
+    The effect's whole column is drawn, not only its part that no other column explains: that is the shape one knows.
+    """
+    base, columns = gathered.bases[item.block.base], item.block.columns
+    projected = columns - base.basis @ (base.basis.T @ columns)
+    coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
+    curve = columns @ coefficients / gathered.weights
+    left = (base.residual - projected @ coefficients) / gathered.weights
+    return left + curve, curve
 
 
 def _spread(driver: FloatArray, values: FloatArray) -> float:
