@@ -2,13 +2,13 @@
 
 import json
 
+from tests.service.recorded_joint import recording_set_zip
 
-def test_from_trials_to_an_error_that_falls(command):
-    ran = command(
-        "run", "excitation", "--loads-kg", "0,0.05,0.1", "--waveforms", "multisine,triangles", "--duration-s", 4
-    )
-    assert ran.exit_code == 0, ran.output
-    made = command("study", "new", "arm", "--experiment", 1, "--hold-out", "load_kg=0.05", "--json")
+
+def test_from_trials_to_an_error_that_falls(command, tmp_path):
+    (tmp_path / "known joint.zip").write_bytes(recording_set_zip())
+    assert command("import", "known joint.zip").exit_code == 0
+    made = command("study", "new", "arm", "--experiment", 1, "--hold-out", "amplitude_rad=0.9", "--json")
     assert made.exit_code == 0, made.output
     study = json.loads(made.stdout)["study_id"]
     assert "arm" in command("study", "list").stdout
@@ -18,6 +18,7 @@ def test_from_trials_to_an_error_that_falls(command):
         assert words in compared.stdout
     found = json.loads(command("study", "diagnose", study, "--json").stdout)
     best = found["ranking"][0]["effect"]
+    assert best == "viscous_asymmetry"
     assert best in command("study", "diagnose", study).stdout
     added = json.loads(command("study", "add", study, best, "--json").stdout)
     assert added["after"]["held_out"] < added["before"]["held_out"]

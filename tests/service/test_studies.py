@@ -2,25 +2,20 @@
 
 import pytest
 
-EXCITATION = {
-    "loads_kg": [0.0, 0.05, 0.1],
-    "waveforms": ["multisine", "triangles"],
-    "duration_s": 4.0,
-    "repeats": 2,
-}
+from tests.service.recorded_joint import recording_set_zip
 
 
 @pytest.fixture(scope="module")
 def experiment_id(service) -> int:
-    assert service.runner.wait(30.0)
-    found = service.run("excitation", **EXCITATION)
-    assert found["outcome"] == "completed", found["reason"]
-    return found["experiment_id"]
+    headers = {"Content-Type": "application/zip"}
+    answer = service.client.post("/recording-sets?name=known+joint", content=recording_set_zip(), headers=headers)
+    assert answer.status_code == 201, answer.text
+    return answer.json()["experiment_id"]
 
 
 @pytest.fixture(scope="module")
 def study(service, experiment_id):
-    body = {"name": "arm", "experiment_ids": [experiment_id], "hold_out": ["load_kg=0.05"]}
+    body = {"name": "arm", "experiment_ids": [experiment_id], "hold_out": ["amplitude_rad=0.9"]}
     answer = service.client.post("/studies", json=body)
     assert answer.status_code == 201, answer.text
     assert answer.headers["location"] == f"/api/v1/studies/{answer.json()['study_id']}"
@@ -28,9 +23,9 @@ def study(service, experiment_id):
 
 
 def test_a_study_splits_by_condition(service, study):
-    assert len(study["trials"]) == 12
+    assert len(study["trials"]) == 6
     for trial in study["trials"]:
-        assert trial["role"] == ("held_out" if trial["conditions"]["load_kg"] == 0.05 else "training")
+        assert trial["role"] == ("held_out" if trial["conditions"]["amplitude_rad"] == 0.9 else "training")
     assert service.stranger.get(f"/studies/{study['study_id']}").json() == study
     assert study["study_id"] in [one["study_id"] for one in service.stranger.get("/studies").json()["items"]]
 
@@ -40,7 +35,7 @@ def test_compare_holds_the_measured_against_the_predicted(service, study):
     assert found["error"]["held_out"]["kind"] == "hold-out"
     assert 0 < found["error"]["training"]["relative"] < 1
     assert found["error"]["floor"] is not None
-    assert len(found["series"]) == len(found["trials"]) == 12
+    assert len(found["series"]) == len(found["trials"]) == 6
     one = found["series"][0]
     for measured, predicted, residual in zip(one["measured"], one["predicted"], one["residual"], strict=True):
         assert measured - predicted == pytest.approx(residual, abs=1e-9)
@@ -54,6 +49,7 @@ def test_diagnose_add_ladder_drop_and_remove(service, study):
     found = service.stranger.get(f"{path}/diagnose", params={"model_id": base}).json()
     assert found["verdict"] == "missing", found["sentence"]
     best = found["ranking"][0]
+    assert best["effect"] == "viscous_asymmetry"
     assert best["in_class"]
     assert best["picture"]["curve"]
     added = service.client.post(f"{path}/models", json={"effect": best["effect"], "model_id": base}).json()
@@ -80,8 +76,8 @@ def test_bad_requests_say_what_would_be_right(service, study, experiment_id):
 
     path = f"/studies/{study['study_id']}"
     new = {"name": "x", "experiment_ids": [experiment_id]}
-    assert "load_kg" in detail(service.client.post("/studies", json={**new, "hold_out": ["colour=red"]}), 422)
-    assert "key=value" in detail(service.client.post("/studies", json={**new, "hold_out": ["load_kg"]}), 422)
+    assert "amplitude_rad" in detail(service.client.post("/studies", json={**new, "hold_out": ["colour=red"]}), 422)
+    assert "key=value" in detail(service.client.post("/studies", json={**new, "hold_out": ["repeat"]}), 422)
     assert "experiment 99999" in detail(service.client.post("/studies", json={**new, "experiment_ids": [99999]}), 404)
     assert "experiment_ids" in detail(service.client.post("/studies", json={"name": "x", "experiment_ids": []}), 422)
     assert "magic" in detail(service.client.post(f"{path}/models", json={"effect": "magic"}), 422)

@@ -1,0 +1,135 @@
+"""The page in Chromium, on the simulated bench: the technician's and the engineer's path."""
+
+import pytest
+
+from tests.service.recorded_joint import recording_set_zip
+from tests.service.running_service import TOKEN
+
+pytestmark = pytest.mark.browser
+
+
+def held_out_errors(page) -> list[float]:
+    cells = page.locator("[aria-label='Ladder'] tbody tr td:nth-child(3)").all_inner_texts()
+    return [float(cell.split(" ")[0]) for cell in cells]
+
+
+def test_the_technician_starts_watches_and_stops(service, open_page):
+    page = open_page(token=False)
+    page.get_by_text("SIMULATED", exact=True).wait_for()
+    page.get_by_label("Token: to start").fill(TOKEN)
+    page.get_by_role("button", name="Use token").click()
+    page.get_by_label("Token: to start").wait_for(state="detached")
+    page.get_by_label("repeats").fill("3")
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.locator(".badge.running").wait_for()
+    page.locator(".plot.live .scatterlayer .trace").first.wait_for()
+    assert page.locator(".plot.live .scatterlayer .trace").count() >= 3
+    page.keyboard.press("Escape")
+    page.get_by_text("Stop accepted").wait_for()
+    page.locator(".badge.idle").wait_for()
+    page.get_by_text("stopped: trial 'step-001': STOP on the page").wait_for()
+
+    page.get_by_role("link", name="Trials").click()
+    row = page.locator("[aria-label='Trials'] tbody tr").first
+    row.get_by_text("stopped").wait_for()
+    row.get_by_role("button", name="Plot").click()
+    page.locator("[aria-label^='Channels of trial'] .scatterlayer .trace").first.wait_for()
+    with page.expect_download() as download:
+        row.get_by_role("button", name="CSV").click()
+    text = download.value.path().read_text()
+    assert text.startswith("time_s,target_rad,position_rad")
+    assert text.count("\n") == service.store.trials()[-1].rows + 1
+
+
+def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
+    page = open_page("#trials")
+    page.get_by_text("Import a recording set", exact=True).click()
+    zipped = {"name": "known joint.zip", "mimeType": "application/zip", "buffer": recording_set_zip()}
+    page.get_by_label("Recording set (.zip)").set_input_files(zipped)
+    page.get_by_role("button", name="Import").click()
+    page.get_by_text("Imported 6 trials").wait_for()
+    page.get_by_role("link", name="Study").click()
+    page.get_by_label("known joint").check()
+    page.get_by_label("0.9 rad").check()
+    page.get_by_label("Name").fill("arm")
+    page.get_by_role("button", name="Create study").click()
+    page.get_by_text("4 training trials, 2 held out").wait_for()
+    page.locator("[aria-label='Measured and predicted effort over time, residual beneath'] .trace").first.wait_for()
+    page.get_by_role("button", name="Diagnose").click()
+    first = page.locator("article").first
+    first.locator(".plot .trace").first.wait_for()
+    assert first.get_by_text("candidate").is_visible()
+    assert first.get_by_text("Direction-asymmetric viscous friction").first.is_visible()
+    before = held_out_errors(page)
+    assert len(before) == 1
+    first.get_by_role("button", name="Add").click()
+    page.get_by_text("It helps: keep it.").wait_for()
+    page.locator("[aria-label='Ladder'] tbody tr").nth(1).wait_for()
+    after = held_out_errors(page)
+    assert after[0] == before[0]
+    assert after[1] < 0.95 * before[0]
+    page.locator(".plot.ladder .trace").first.wait_for()
+
+    page.get_by_role("button", name="Drop").last.click()
+    page.locator("[aria-label='Ladder'] tbody tr").nth(2).wait_for()
+    assert held_out_errors(page)[2] == pytest.approx(before[0], abs=0.02)
+
+
+def test_refusals_stand_at_their_fields(open_page):
+    page = open_page()
+    page.get_by_label("load [kg]").fill("-1")
+    page.get_by_label("repeats").fill("many")
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.get_by_text("nothing has moved").wait_for()
+    assert page.locator("[aria-invalid=true]").count() == 2
+    page.get_by_label("load [kg]").fill("5")
+    page.get_by_label("repeats").fill("1")
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.get_by_text("load_kg is 5 kg; allowed is at most 0.1 kg").first.wait_for()
+    assert page.locator("[aria-invalid=true]").count() == 0
+    # the browser logs the two refused requests itself
+    expected = [text for text in open_page.complaints if "422" in text]
+    assert len(expected) == 2
+    open_page.complaints[:] = [text for text in open_page.complaints if text not in expected]
+
+
+def test_the_page_says_when_the_service_is_gone(service, open_page):
+    page = open_page()
+    page.locator(".badge.idle").wait_for()
+    page.route("**/api/**", lambda route: route.abort())
+    page.evaluate("window.stop()")  # ends the open stream
+    page.get_by_text("STALE").wait_for()
+    page.keyboard.press("Escape")
+    page.get_by_text("Stop NOT confirmed").wait_for()
+    open_page.complaints[:] = [text for text in open_page.complaints if "ERR_FAILED" not in text]
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (400, "dark")])
+def test_every_view_fits_and_keeps_stop_in_reach(open_page, width, scheme):
+    page = open_page(width=width, scheme=scheme)
+    for name in ("Bench", "Trials", "Study", "Effects"):
+        page.get_by_role("link", name=name, exact=True).click()
+        page.locator("main .panel").first.wait_for()
+        page.wait_for_timeout(300)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width, name
+        page.mouse.wheel(0, 2000)
+        stop = page.get_by_role("button", name="STOP").bounding_box()
+        assert stop is not None
+        assert 0 <= stop["y"] < 100
+        unlabelled = page.evaluate(
+            "[...document.querySelectorAll('main input, main select')]"
+            ".filter(one => !one.labels.length && !one.ariaLabel).map(one => one.outerHTML)"
+        )
+        assert unlabelled == []
+    assert page.locator("math").count() > 10
+
+
+def test_the_keyboard_alone_is_enough_to_start(service, open_page):
+    page = open_page()
+    page.get_by_label("repeats").focus()
+    page.keyboard.press("Control+A")
+    page.keyboard.type("1")
+    page.keyboard.press("Enter")
+    page.locator(".badge.running").wait_for()
+    page.keyboard.press("Escape")
+    page.locator(".badge.idle").wait_for()
