@@ -12,8 +12,27 @@ from bench.cli.exit_codes import HELP, errors_as_messages
 from bench.cli.output import say
 
 
+_ORDER = (
+    "demo",
+    "serve",
+    "run",
+    "status",
+    "stop",
+    "experiments",
+    "trials",
+    "trial",
+    "export",
+    "import",
+    "study",
+    "effects",
+)
+
+
 class _Group(TyperGroup):
-    """Errors of every command end here."""
+    """Errors of every command end here; the help lists them in the order of their use."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return sorted(super().list_commands(ctx), key=_ORDER.index)
 
     def invoke(self, ctx: Any) -> Any:
         with errors_as_messages():
