@@ -40,12 +40,14 @@ class LiveBuffer:
         self._lock = threading.Lock()
         self._blocks: list[FloatArray] = []
         self._first_row = 0  # number of the first row kept
+        self._trial_row = 0  # number of the first row of the trial
         self._kept = 0
 
     def begin_trial(self) -> None:
         """Forget the rows of the trial before."""
         with self._lock:
             self._first_row += self._kept
+            self._trial_row = self._first_row
             self._kept = 0
             self._blocks.clear()
 
@@ -69,7 +71,8 @@ class LiveBuffer:
         with self._lock:
             last_row = self._first_row + self._kept - 1
             first_row = max(self._first_row, last_row + 1 - max(limit, 1))
-            restarted = after_row < first_row - 1 or after_row > last_row
+            left_out = after_row < first_row - 1 or after_row > last_row
+            restarted = left_out or 0 <= after_row < self._trial_row
             begin = first_row if restarted else after_row + 1
             wanted = last_row + 1 - begin
             blocks = self._newest(wanted)

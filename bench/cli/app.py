@@ -11,7 +11,6 @@ from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import HELP, errors_as_messages
 from bench.cli.output import say
 
-
 _ORDER = (
     "demo",
     "serve",

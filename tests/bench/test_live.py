@@ -44,7 +44,7 @@ def test_a_new_trial_starts_over_and_numbers_go_on():
     live.begin_trial()
     live.append(block(100, 2))
     answer = live.since(4, 100)
-    assert (numbers(answer), answer.last_row) == ([100, 101], 6)
+    assert (numbers(answer), answer.last_row, answer.restarted) == ([100, 101], 6, True)
     assert live.since(2, 100).restarted
 
 

@@ -171,3 +171,18 @@ def test_live_stream_sends_status_and_rows(idle):
                 break
     idle.client.post("/stop")
     assert idle.runner.wait(5.0)
+
+
+def test_live_rows_of_the_next_trial_are_marked_as_such(idle):
+    idle.start("steps", pace="fast", repeats=1)
+    assert idle.runner.wait(30.0)
+    seen = idle.stranger.get("/live/now").json()["rows"]["last_row"]
+    idle.start("steps", pace="real-time", repeats=1)
+    time.sleep(0.5)
+    rows = idle.stranger.get("/live/now", params={"after_row": seen}).json()["rows"]
+    idle.client.post("/stop")
+    assert rows["restarted"] is True
+    assert rows["rows"][0][rows["channels"].index("time_s")] < 0.02
+    later = idle.stranger.get("/live/now", params={"after_row": rows["last_row"]}).json()["rows"]
+    assert later["restarted"] is False
+    assert idle.runner.wait(5.0)

@@ -9,7 +9,7 @@ import { attempt } from "./problem.js";
 export function effectsView(place) {
   const list = h("div", { class: "cards" });
   replace(place, panel("Effects that a model can be made of", list));
-  attempt(list, async () => replace(list, (await get("/effects")).items.map(card)));
+  attempt(list, async () => replace(list, (await get("/effects")).items.map(card)), { busy: "Loading …" });
   return () => {};
 }
 
