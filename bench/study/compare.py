@@ -132,6 +132,11 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
         f"Errors count {int(material.dataset.counted.sum())} rows {rows[material.definition.rows]}, effort and motion "
         f"filtered alike at {material.definition.cutoff_hz:.3g} Hz."
     ]
+    if material.dataset.crosses_free_play:
+        notes.append(
+            "The motion is so quick that the teeth cross their free play all the time: those rows are counted too, and "
+            "the error is mostly theirs. Record slower motion, or keep the load on one side."
+        )
     if found.held_out.kind == "leave-one-block-out":
         notes.append("Too few trials to hold one out: stretches of 2 s are left out instead, which flatters the model.")
     if found.floor is None:

@@ -15,7 +15,7 @@ from compensator.lab.errors import NotApplicableError, UnusableDataError
 from compensator.lab.facts import Facts
 from compensator.lab.processing import DIFFERENTIATION_FACTOR, Signals, low_pass, make_signals
 from compensator.lab.recording import FloatArray, Recording
-from compensator.lab.regimes import BoolArray, Regime, classify
+from compensator.lab.regimes import BoolArray, Regime, classify, near_flank_change
 
 RowChoice = Literal["sliding", "moving", "all"]
 IntArray = NDArray[np.int64]
@@ -26,6 +26,7 @@ TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so th
 ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
 BLOCK_S = 2.0  # rows closer than this are not independent
 FEWEST_ROWS = 40
+FLANK_SHARE = 0.1  # of the sliding rows that must be left when those near a crossing of the free play are dropped
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +62,7 @@ class Dataset:
         facts: of the joint.
         cutoff_hz: of the final low-pass.
         rows: which regimes count.
+        crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
     """
 
     trials: tuple[Trial, ...]
@@ -68,6 +70,7 @@ class Dataset:
     facts: Facts
     cutoff_hz: float
     rows: RowChoice
+    crosses_free_play: bool = False
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
@@ -202,7 +205,10 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     noise = max(_velocity_noise(s, facts, cutoff) for s in signals)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     trials = tuple(_make_trial(s, facts, cutoff, noise, slow, fast, span) for s in signals)
-    dataset = Dataset(trials, effort, facts, cutoff, processing.rows)
+    plain = Dataset(trials, effort, facts, cutoff, processing.rows)
+    settled = replace(plain, trials=_on_one_flank(trials), cache={})
+    enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
+    dataset = settled if int(settled.counted.sum()) >= enough else replace(plain, crosses_free_play=True)
     found = int(dataset.counted.sum())
     if found < FEWEST_ROWS:
         raise UnusableDataError(
@@ -236,7 +242,18 @@ def _make_trial(
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)
     picked = picked[signals.usable[picked]]
-    return Trial(signals, motion, picked, classify(signals.velocity, _carried(motion), slow, signals.rate_hz)[picked])
+    return Trial(signals, motion, picked, classify(signals.velocity, slow, signals.rate_hz)[picked])
+
+
+def _on_one_flank(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
+    """The trials with rows near a crossing of the free play no longer counted as sliding."""
+    made = []
+    for trial in trials:
+        crossing = near_flank_change(_carried(trial.motion), trial.signals.rate_hz)[trial.picked]
+        sliding = trial.regime == Regime.SLIDING
+        regime = np.where(sliding & crossing, Regime.TRANSIENT, trial.regime).astype(np.uint8)
+        made.append(replace(trial, regime=regime))
+    return tuple(made)
 
 
 def _carried(motion: Motion) -> FloatArray:

@@ -204,7 +204,7 @@ def _classes(candidates: list[Candidate]) -> list[tuple[str, ...]]:
 
 def _sentence(verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None) -> str:
     if verdict == "nothing":
-        return f"Nothing is missing that these trials can show (p = {p_value:.3g}; {SIGNIFICANT:g} or less would tell)."
+        return _nothing(p_value)
     best = candidates[0]
     if verdict == "unknown-effect":
         return (
@@ -218,6 +218,15 @@ def _sentence(verdict: Verdict, p_value: float, candidates: list[Candidate], dri
         f"{title} is missing{also}{sign}: adding it changes the held-out error from {best.before:.2%} to "
         f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
         f"p = {p_value:.3g})."
+    )
+
+
+def _nothing(p_value: float) -> str:
+    if p_value > SIGNIFICANT:
+        return f"Nothing is missing that these trials can show (p = {p_value:.3g}; {SIGNIFICANT:g} or less would tell)."
+    return (
+        f"No effect of the catalogue is confirmed: the residual is not mere noise (p = {p_value:.3g}), but none lowers "
+        "the held-out error for sure."
     )
 
 

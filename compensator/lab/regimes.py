@@ -27,13 +27,11 @@ class Regime(IntEnum):
     STUCK = 2
 
 
-def classify(velocity: FloatArray, carried: FloatArray, slow: float, rate_hz: float) -> NDArray[np.uint8]:
+def classify(velocity: FloatArray, slow: float, rate_hz: float) -> NDArray[np.uint8]:
     """Regime of each row, shape (n,).
 
     Args:
         velocity: filtered velocity, shape (n,).
-        carried: torque that the gear is known to carry, shape (n,); where its sign changes the teeth cross their free
-            play, and the motor moves alone. All zero where it is not known or there is no free play.
         slow: speed below which the direction of motion is uncertain.
         rate_hz: of the rows.
     """
@@ -41,8 +39,7 @@ def classify(velocity: FloatArray, carried: FloatArray, slow: float, rate_hz: fl
     regime = np.full(len(velocity), Regime.TRANSIENT, dtype=np.uint8)
     around_s = 2 * round(SLIDE_MARGIN_S * rate_hz) + 1
     sliding = minimum_filter1d(speed, around_s) > slow
-    disturbed = _after_reversal(velocity, slow, rate_hz) | _near_flank_change(carried, rate_hz)
-    regime[sliding & ~disturbed] = Regime.SLIDING
+    regime[sliding & ~_after_reversal(velocity, slow, rate_hz)] = Regime.SLIDING
     window = 2 * round(0.5 * STUCK_AFTER_S * rate_hz) + 1
     stuck = minimum_filter1d((speed < slow).astype(np.uint8), window) > 0
     regime[maximum_filter1d(stuck.astype(np.uint8), window) > 0] = Regime.STUCK
@@ -61,8 +58,16 @@ def _after_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolAr
     return near
 
 
-def _near_flank_change(carried: FloatArray, rate_hz: float) -> BoolArray:
-    """True within TRANSIENT_S of a change of sign: filters spread the shock of contact to both sides."""
+def near_flank_change(carried: FloatArray, rate_hz: float) -> BoolArray:
+    """Rows within TRANSIENT_S of a change of sign of the torque that the gear carries, shape (n,).
+
+    There the teeth cross their free play and the motor moves alone; filters spread the shock to both sides.
+
+    Args:
+        carried: torque, as far as it is known, from the widely filtered motion: bouncing teeth must show. All zero
+            where it is not known or there is no free play.
+        rate_hz: of the rows.
+    """
     sign = np.sign(carried)
     changes = np.zeros(len(carried), dtype=np.uint8)
     changes[1:] = (sign[1:] * sign[:-1]) < 0.0
