@@ -22,12 +22,13 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
 
 @pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
+    """One browser context for all tests; session storage is each page's own."""
     if CHROMIUM is None:
         pytest.skip("Chromium is not installed; on Debian: apt-get install chromium")
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     with playwright.sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield browser
+        yield browser.new_context()
         browser.close()
 
 
@@ -35,14 +36,15 @@ def chromium() -> Iterator[Any]:
 def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
     """Opens the page; at the end of the test, nothing may have been complained about (errors, policy violations)."""
     complaints: list[str] = []
-    contexts = []
+    pages = []
 
     def opened(view: str = "", token: bool = True, width: int = 1280, scheme: str = "light") -> Any:
-        context = chromium.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
-        contexts.append(context)
+        page = chromium.new_page()
+        pages.append(page)
+        page.set_viewport_size({"width": width, "height": 900})
+        page.emulate_media(color_scheme=scheme)
         if token:
-            context.add_init_script(f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')")
-        page = context.new_page()
+            page.add_init_script(f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')")
         page.set_default_timeout(20_000)
         page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: complaints.append(str(error)))
@@ -51,6 +53,6 @@ def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
 
     opened.complaints = complaints  # type: ignore[attr-defined]
     yield opened
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.close()
     assert complaints == []

@@ -3,6 +3,7 @@
 import { h, replace } from "./dom.js";
 import { number } from "./format.js";
 import { colour, draw, forget } from "./plot.js";
+import { problemBox } from "./problem.js";
 
 const REDRAW_MS = 200;
 const MOST_POINTS = 3000;
@@ -36,7 +37,7 @@ export function livePlot(place, live) {
     plot.hidden = !live.rows.length;
     nothing.hidden = !plot.hidden;
     if (plot.hidden) return;
-    draw(plot, traces(live), axes());
+    draw(plot, traces(live), axes()).catch((error) => replace(nothing, problemBox(error)));
   }, REDRAW_MS);
   live.addEventListener("rows", mark);
   live.addEventListener("status", status);

@@ -30,9 +30,20 @@ export function layout(extra = {}) {
   return { ...base, ...extra, ...axes };
 }
 
-export function draw(place, traces, extra = {}) {
+export async function draw(place, traces, extra = {}) {
   place.classList.add("plot");
-  return window.Plotly.react(place, traces, layout(extra), CONFIG);
+  const plotly = await loaded();
+  return plotly.react(place, traces, layout(extra), CONFIG);
+}
+
+// the page works before plotly has arrived; only its plots wait
+function loaded() {
+  if (window.Plotly) return Promise.resolve(window.Plotly);
+  const script = document.getElementById("plotly");
+  return new Promise((resolve, reject) => {
+    script.addEventListener("load", () => resolve(window.Plotly));
+    script.addEventListener("error", () => reject(new Error("the plots could not be loaded from the service; reload the page")));
+  });
 }
 
 export function forget(place) {
