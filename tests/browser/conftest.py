@@ -32,6 +32,11 @@ def chromium() -> Iterator[Any]:
         browser.close()
 
 
+def is_complaint(message: Any) -> bool:
+    """Errors of any kind, and what plotly says of the content security policy."""
+    return message.type == "error" or "CSP" in message.text
+
+
 @pytest.fixture
 def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
     """Opens the page; at the end of the test, nothing may have been complained about (errors, policy violations)."""
@@ -46,7 +51,7 @@ def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
         if token:
             page.add_init_script(f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')")
         page.set_default_timeout(20_000)
-        page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+        page.on("console", lambda message: complaints.append(message.text) if is_complaint(message) else None)
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.goto(f"{service.url}/{view}")
         return page

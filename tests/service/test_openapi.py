@@ -41,9 +41,12 @@ def test_the_order_of_use_is_in_the_text(document):
 def test_the_page_and_its_files_are_served(service):
     page = httpx.get(service.url)
     assert page.headers["content-type"].startswith("text/html")
-    for part in ("/static/style.css", "/static/plots.css", "/static/modules/main.js", "/static/plotly.min.js"):
+    for part in ("/static/style.css", "/static/plots.css", "/static/modules/main.js"):
         assert part in page.text
         assert httpx.get(service.url + part).status_code == 200
+    plotly = httpx.get(service.url + "/static/plotly.min.js")
+    assert plotly.headers["content-type"].startswith("text/javascript")
+    assert "plotly.js" in plotly.text[:200]
     assert httpx.get(service.url + "/static/../../pyproject.toml").status_code == 404
     assert "<script>" not in page.text
     assert "style=" not in page.text

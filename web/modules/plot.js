@@ -1,5 +1,7 @@
 // Plots: plotly with the colours of the page. Okabe-Ito, told apart with any colour vision.
 
+import { h } from "./dom.js";
+
 const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"] };
 
 export function colour(name) {
@@ -32,19 +34,25 @@ export function layout(extra = {}) {
 
 export async function draw(place, traces, extra = {}) {
   place.classList.add("plot");
-  const plotly = await loaded();
+  const plotly = await PLOTLY;
   return plotly.react(place, traces, layout(extra), CONFIG);
 }
 
-// the page works before plotly has arrived; only its plots wait
-function loaded() {
-  if (window.Plotly) return Promise.resolve(window.Plotly);
-  const script = document.getElementById("plotly");
-  return new Promise((resolve, reject) => {
-    script.addEventListener("load", () => resolve(window.Plotly));
+// STOP and the forms must not wait for a large file; and plotly must find its style sheet when it starts (see index.html)
+async function load() {
+  const sheet = document.getElementById("plotly.js-style-global");
+  if (!sheet.sheet) await new Promise((resolve) => sheet.addEventListener("load", resolve));
+  const script = h("script", { src: "/static/plotly.min.js" });
+  await new Promise((resolve, reject) => {
+    script.addEventListener("load", resolve);
     script.addEventListener("error", () => reject(new Error("the plots could not be loaded from the service; reload the page")));
+    document.head.append(script);
   });
+  return window.Plotly;
 }
+
+const PLOTLY = load();
+PLOTLY.catch(() => {}); // each plot that waits for it says so itself
 
 export function forget(place) {
   if (place && window.Plotly) window.Plotly.purge(place);
