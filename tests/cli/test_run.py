@@ -89,9 +89,7 @@ def test_the_store_is_chosen_by_option_and_by_environment(command, monkeypatch, 
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-@pytest.mark.parametrize(
-    ("number", "times", "code"), [(signal.SIGINT, 2, 130), (signal.SIGTERM, 1, 143)]
-)
+@pytest.mark.parametrize(("number", "times", "code"), [(signal.SIGINT, 2, 130), (signal.SIGTERM, 1, 143)])
 def test_a_signal_stops_the_joint_and_is_recorded(tmp_path, number, times, code):
     words = [sys.executable, "-m", "bench.cli", "run", "steps", "--pace", "real-time"]
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
