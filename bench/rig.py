@@ -3,8 +3,6 @@
 Every value is optional: what is unknown is left out, and whoever needs it says so.
 """
 
-import tomllib
-from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -76,9 +74,3 @@ class Rig(Section):
     sensor: Sensor = Sensor()
     supply: Supply = Supply()
     effort: Effort | None = None
-
-
-def read_rig(path: Path) -> Rig:
-    """Read `rig.toml`. Errors name the file and the key (see `bench.errors`)."""
-    with path.open("rb") as file:
-        return Rig.model_validate(tomllib.load(file))

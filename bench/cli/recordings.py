@@ -7,7 +7,6 @@ import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.output import Json, print_json, say
-from bench.rig import Rig
 
 
 def export(
@@ -34,10 +33,10 @@ def import_(
     as_json: Json = False,
 ) -> None:
     """Read trials of any bench into the store: all of them, or none and the file, line and column at fault."""
-    from bench.recording_set import import_recording_set, read_mapping, read_recording_set
+    from bench.recording_set import import_recording_set, read_mapping, read_recording_set, read_rig
 
     chosen_mapping = None if mapping is None else read_mapping(mapping)
-    recording_set = read_recording_set(path, chosen_mapping, None if rig is None else _read_rig(rig))
+    recording_set = read_recording_set(path, chosen_mapping, None if rig is None else read_rig(rig))
     with session_of(context).open_store() as store:
         experiment_id = import_recording_set(store, recording_set, name or recording_set.name)
     rows = sum(len(recording) for recording in recording_set.recordings)
@@ -46,13 +45,3 @@ def import_(
         print_json({"experiment_id": experiment_id, "name": name or recording_set.name, "trials": trials, "rows": rows})
     else:
         say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
-
-
-def _read_rig(path: Path) -> Rig:
-    from bench.recording_set import RecordingSetError
-    from bench.recording_set.toml_file import parse_toml
-
-    try:
-        return parse_toml(path.read_bytes(), Rig, path.name)
-    except OSError as error:
-        raise RecordingSetError(str(path), f"cannot be read: {error.strerror}; name a rig file") from error

@@ -1,25 +1,26 @@
 """Measured sets of other benches, read with the rigs and mappings under examples/."""
 
-import os
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from bench.recording_set import RecordingSet, export_experiment, import_recording_set, read_mapping, read_recording_set
-from bench.rig import read_rig
+from bench.recording_set import (
+    RecordingSet,
+    export_experiment,
+    import_recording_set,
+    read_mapping,
+    read_recording_set,
+    read_rig,
+)
 from bench.store import Store
-
-ROOT = Path(__file__).parents[2]
-DATA = Path(os.environ.get("FRICTION_BENCH_DATA", ROOT.parent / "shared" / "data"))
+from tests.paths import EXAMPLES, measured
 
 
 def read(name: str) -> RecordingSet:
-    if not (DATA / name).is_dir():
-        pytest.skip(f"measured set '{name}' is not in {DATA}; name its place in FRICTION_BENCH_DATA")
-    example = ROOT / "examples" / name
-    return read_recording_set(DATA / name, read_mapping(example / "mapping.toml"), read_rig(example / "rig.toml"))
+    example = EXAMPLES / name
+    return read_recording_set(measured(name), read_mapping(example / "mapping.toml"), read_rig(example / "rig.toml"))
 
 
 def test_emps() -> None:
@@ -73,7 +74,6 @@ def test_sts3215_goes_through_the_store_and_back_in_seconds(store: Store, tmp_pa
 
 
 def test_without_a_mapping_the_unknown_column_is_named() -> None:
-    if not (DATA / "xl330").is_dir():
-        pytest.skip(f"measured set 'xl330' is not in {DATA}; name its place in FRICTION_BENCH_DATA")
+    folder = measured("xl330")
     with pytest.raises(ValueError, match=r"column 'torque_enabled': is no known channel. is enabled meant\?"):
-        read_recording_set(DATA / "xl330", None, read_rig(ROOT / "examples" / "xl330" / "rig.toml"))
+        read_recording_set(folder, None, read_rig(EXAMPLES / "xl330" / "rig.toml"))
