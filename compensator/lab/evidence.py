@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from compensator.lab.dataset import IntArray
-from compensator.lab.linear import independent, orthonormal
+from compensator.lab.linear import orthonormal
 from compensator.lab.recording import FloatArray
 
 SIGN_FLIPS = 999
@@ -105,30 +105,50 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
     return Screening(sorted(evidence, key=lambda item: -item.score), p_value)
 
 
+def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, float]:
+    """The greatest noncentrality of each name's blocks on top of the bases; 0 where nothing new is left."""
+    inflation = max(_inflation(base.residual) for base in bases)
+    kept: dict[str, float] = {}
+    for block in blocks:
+        base = bases[block.base]
+        directions = _new_directions(base, block)
+        found = _likelihood(base, directions.T @ base.residual, inflation)
+        kept[block.name] = max(kept.get(block.name, 0.0), found)
+    return kept
+
+
 def _judge(
     base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float
 ) -> tuple[Evidence, FloatArray] | None:
-    columns = block.columns - base.basis @ (base.basis.T @ block.columns)
-    before = np.linalg.norm(block.columns, axis=0)
-    new = np.linalg.norm(columns, axis=0) > 1e-3 * np.where(before > 0, before, np.inf)
-    columns = columns[:, new]
-    kept = independent(columns)
-    if not kept.any():
-        return None
-    directions = np.linalg.qr(columns[:, kept])[0]
+    directions = _new_directions(base, block)
     count, rank = directions.shape
+    if rank == 0:
+        return None
     share = directions.T @ base.residual
-    gain = float(share @ share)
-    power = float(base.residual @ base.residual)
     price = rank * np.log(count / inflation) + 2.0 * np.log(block.scanned)
-    likelihood = -count * np.log1p(-min(gain / power, 1.0 - 1e-12)) / inflation
+    likelihood = _likelihood(base, share, inflation)
     by_stretch = np.zeros((int(labels.max()) + 1, rank))
     np.add.at(by_stretch, labels, directions * base.residual[:, None])
     p_values = _robust_p(by_stretch, np.vstack([np.ones(len(by_stretch)), flips]))
     own = directions @ share
     norm = float(np.linalg.norm(own))
-    found = Evidence(block, float(likelihood - price), float(likelihood), float(p_values[0]), own / (norm or 1.0))
+    found = Evidence(block, float(likelihood - price), likelihood, float(p_values[0]), own / (norm or 1.0))
     return found, p_values[1:]
+
+
+def _new_directions(base: Base, block: Block) -> FloatArray:
+    """Orthonormal basis of what the block's columns add to the base, shape (n, rank)."""
+    columns = block.columns - base.basis @ (base.basis.T @ block.columns)
+    before = np.linalg.norm(block.columns, axis=0)
+    new = np.linalg.norm(columns, axis=0) > 1e-3 * np.where(before > 0, before, np.inf)
+    return orthonormal(columns[:, new])
+
+
+def _likelihood(base: Base, share: FloatArray, inflation: float) -> float:
+    """Gain of 2 ln L from explaining `share` (rank,) of the residual, per independent row."""
+    power = float(base.residual @ base.residual)
+    explained = min(float(share @ share) / power, 1.0 - 1e-12) if power > 0.0 else 0.0
+    return float(-len(base.residual) * np.log1p(-explained) / inflation)
 
 
 def _robust_p(by_stretch: FloatArray, signs: FloatArray) -> FloatArray:

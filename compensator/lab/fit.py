@@ -8,9 +8,9 @@ import numpy as np
 
 from compensator.lab.catalogue import effect_named
 from compensator.lab.dataset import Dataset
-from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.linear import Bounds, solve
+from compensator.lab.linear import Bounds, Solution, solve
 from compensator.lab.prediction import with_own_prediction
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
@@ -128,8 +128,13 @@ def fit_linear(dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, sha
             f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
         )
     solution = solve(columns[rows], dataset.effort[rows], bounds_of(effects))
-    ends = np.cumsum([0, *(block.shape[1] for block in blocks)])
-    terms = tuple(
+    return Fit(dataset, rows, _terms(effects, shapes, solution), columns)
+
+
+def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Solution) -> tuple[Term, ...]:
+    """Share a solution out among the effects."""
+    ends = np.cumsum([0, *(len(effect.parameters) for effect in effects)])
+    return tuple(
         Term(
             effect,
             shapes.get(effect.name, ()),
@@ -139,7 +144,28 @@ def fit_linear(dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, sha
         )
         for effect, (a, b) in zip(effects, pairwise(ends), strict=True)
     )
-    return Fit(dataset, rows, terms, columns)
+
+
+def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
+    """The fit refitted with more columns (N, k) that no formula of the catalogue stands for, as a free curve.
+
+    Args:
+        fit: to be extended; its shapes are kept.
+        name: of the new term.
+        columns: over all rows.
+    """
+    unit = "{effort}"
+    parameters = tuple(Parameter(f"knot {index + 1}", unit) for index in range(columns.shape[1]))
+    curve = Effect(name, name, "", "", _no_columns, parameters, "time", "", "")
+    wide = np.column_stack([fit.columns, columns])
+    effects = [*(term.effect for term in fit.terms), curve]
+    solution = solve(wide[fit.training], fit.dataset.effort[fit.training], bounds_of(effects))
+    shapes = {**fit.shapes, name: ()}
+    return Fit(fit.dataset, fit.training, _terms(effects, shapes, solution), wide)
+
+
+def _no_columns(motion: Motion, _: Shape) -> FloatArray:
+    raise NotImplementedError(f"a free curve knows its columns over rows, not over {len(motion.time_s)} samples")
 
 
 def bounds_of(effects: Sequence[Effect]) -> Bounds:

@@ -1,0 +1,95 @@
+"""Examine candidates: refit with each, measure the gain on held-out rows, find its rivals."""
+
+import numpy as np
+
+from compensator.lab.candidates import Candidates
+from compensator.lab.catalogue import effect_named
+from compensator.lab.diagnosis import Candidate
+from compensator.lab.effects.effect import Shape
+from compensator.lab.evidence import Evidence, screen
+from compensator.lab.fit import Fit, fit_model
+from compensator.lab.gain import chance_not_worse, held_out_gain
+from compensator.lab.pictures import picture_of
+from compensator.lab.validation import HeldOut, held_out
+
+SIGNIFICANT = 0.01
+EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
+NOT_WORSE = 0.10  # one-sided
+
+
+def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
+    """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
+    before = held_out(fit)
+    afters = [held_out(_with_effect(fit, item)) for item in evidence]
+    given = [_evidence_given(gathered, item) for item in evidence]
+    candidates = [
+        _candidate(gathered, item, (before, after), _rivals(index, evidence, afters, given[index]))
+        for index, (item, after) in enumerate(zip(evidence, afters, strict=True))
+    ]
+    return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
+
+
+def is_confirmed(candidate: Candidate) -> bool:
+    """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck."""
+    return candidate.score > 0.0 and candidate.p_value <= SIGNIFICANT and candidate.gain.low > 0.0
+
+
+def _with_effect(fit: Fit, item: Evidence) -> Fit:
+    """The model and one more effect, refitted at the shapes already found."""
+    shapes = {**fit.shapes, item.block.name: _shape(item)}
+    return fit_model(fit.dataset, [*fit.names, item.block.name], fit.training, shapes)
+
+
+def _shape(item: Evidence) -> Shape:
+    return item.block.key if isinstance(item.block.key, tuple) else ()
+
+
+def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:
+    """Evidence that every effect keeps once this one is in the model."""
+    left = screen(
+        gathered.with_block(item.block).bases, gathered.named, gathered.fit.dataset.block_index[gathered.rows]
+    )
+    kept: dict[str, float] = {}
+    for evidence in left.evidence:
+        kept[evidence.block.name] = max(kept.get(evidence.block.name, 0.0), evidence.noncentrality)
+    return kept
+
+
+def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: dict[str, float]) -> dict[str, float]:
+    """Rivals of one candidate, with the correlation of their contributions."""
+    own = evidence[index]
+    found = {}
+    for other, after in zip(evidence, afters, strict=True):
+        explained = left.get(other.block.name, 0.0) < EXPLAINED_BY_RIVAL * other.noncentrality
+        if other is not own and explained and chance_not_worse(after, afters[index]) > NOT_WORSE:
+            found[other.block.name] = abs(float(own.direction @ other.direction))
+    return found
+
+
+def _candidate(
+    gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: dict[str, float]
+) -> Candidate:
+    before, after = errors
+    nearest = max(rivals.values(), default=0.0)
+    return Candidate(
+        effect=effect_named(item.block.name),
+        shape=_shape(item),
+        score=item.score,
+        p_value=item.p_value,
+        detectability=float(np.sqrt(item.noncentrality * max(0.0, 1.0 - nearest**2))),
+        rivals=tuple(sorted(rivals)),
+        before=before.relative,
+        after=after.relative,
+        gain=held_out_gain(before, after),
+        physical=_physical(gathered, item),
+        picture=picture_of(gathered, item),
+    )
+
+
+def _physical(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the freely fitted coefficients lie within the effect's bounds."""
+    base = gathered.bases[item.block.base]
+    columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
+    coefficients = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0]
+    parameters = effect_named(item.block.name).parameters
+    return all(p.low <= c <= p.high for p, c in zip(parameters, coefficients, strict=True))

@@ -1,0 +1,33 @@
+"""What a diagnosis says in words."""
+
+from compensator.lab.diagnosis import Candidate, Verdict
+from compensator.lab.examination import SIGNIFICANT
+
+
+def answer_in_words(verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None) -> str:
+    """The answer in one sentence, with its numbers."""
+    if verdict == "nothing":
+        return _nothing(p_value)
+    best = candidates[0]
+    if verdict == "unknown-effect":
+        return (
+            f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
+            f"{best.effect.title.lower()}, does not follow its curve (p = {p_value:.3g})."
+        )
+    title = best.effect.title
+    also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
+    sign = "" if best.physical else "; the sign found is not physical for it, so the shape fits, the name may not"
+    return (
+        f"{title} is missing{also}{sign}: adding it changes the held-out error from {best.before:.2%} to "
+        f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
+        f"p = {p_value:.3g})."
+    )
+
+
+def _nothing(p_value: float) -> str:
+    if p_value > SIGNIFICANT:
+        return f"Nothing is missing that these trials can show (p = {p_value:.3g}; {SIGNIFICANT:g} or less would tell)."
+    return (
+        f"No effect of the catalogue is confirmed: the residual is not mere noise (p = {p_value:.3g}), but none lowers "
+        "the held-out error for sure."
+    )
