@@ -13,7 +13,7 @@ def demo(
     report: Annotated[Path, typer.Option(help="Where the HTML report is written; the trials go beside it.")] = Path(
         "out/demo.html"
     ),
-    seed: Annotated[int, typer.Option(min=0, help="Draws the hidden effect.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Draws the hidden effect.")] = 2,
 ) -> None:
     """Run the main job end to end: steps, load sweep, a hidden effect found. Prints tables, writes one HTML report."""
     from bench.demo import run_demo  # the lab and the plant are loaded when they are first needed

@@ -79,8 +79,9 @@ def _answer(fit: Fit, gathered: Candidates, named: Screening, generic: Screening
     candidates = examine(fit, gathered, best_of_each[:EXAMINED])
     best = next(item for item in best_of_each if item.block.name == candidates[0].effect.name)
     verdict, driver = _verdict(fit, gathered, named, generic, best, candidates[0])
-    sentence = answer_in_words(verdict, named.p_value, candidates, driver)
-    return _Answer(verdict, sentence, named.p_value, candidates, driver, _notes(gathered, best, verdict))
+    p_value = generic.p_value if generic is not None and verdict == "unknown-effect" else named.p_value
+    sentence = answer_in_words(verdict, p_value, candidates, driver)
+    return _Answer(verdict, sentence, p_value, candidates, driver, _notes(gathered, best, verdict))
 
 
 def _best_shapes(screening: Screening) -> list[Evidence]:

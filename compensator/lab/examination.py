@@ -6,7 +6,7 @@ from compensator.lab.candidates import Candidates
 from compensator.lab.catalogue import effect_named
 from compensator.lab.diagnosis import Candidate
 from compensator.lab.effects.effect import Shape
-from compensator.lab.evidence import Evidence, screen
+from compensator.lab.evidence import Evidence, kept_evidence
 from compensator.lab.fit import Fit, fit_model
 from compensator.lab.gain import chance_not_worse, held_out_gain
 from compensator.lab.pictures import picture_of
@@ -15,6 +15,7 @@ from compensator.lab.validation import HeldOut, held_out
 SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 NOT_WORSE = 0.10  # one-sided
+VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
@@ -30,8 +31,12 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
 
 
 def is_confirmed(candidate: Candidate) -> bool:
-    """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck."""
-    return candidate.score > 0.0 and candidate.p_value <= SIGNIFICANT and candidate.gain.low > 0.0
+    """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
+
+    The p-value cannot fall far where a few stretches hold most of the evidence; a very strong score stands without it.
+    """
+    no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
+    return candidate.score > 0.0 and no_luck and candidate.gain.low > 0.0
 
 
 def _with_effect(fit: Fit, item: Evidence) -> Fit:
@@ -46,13 +51,7 @@ def _shape(item: Evidence) -> Shape:
 
 def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:
     """Evidence that every effect keeps once this one is in the model."""
-    left = screen(
-        gathered.with_block(item.block).bases, gathered.named, gathered.fit.dataset.block_index[gathered.rows]
-    )
-    kept: dict[str, float] = {}
-    for evidence in left.evidence:
-        kept[evidence.block.name] = max(kept.get(evidence.block.name, 0.0), evidence.noncentrality)
-    return kept
+    return kept_evidence(gathered.with_block(item.block).bases, gathered.named)
 
 
 def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: dict[str, float]) -> dict[str, float]:

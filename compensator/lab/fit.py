@@ -16,7 +16,8 @@ from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
 from compensator.lab.shape_search import find_shapes, first_shapes
 
-PREDICTION_PASSES = 2  # the predicted load converges geometrically; a third pass changes the fourth digit
+MOST_PASSES = 20  # each shrinks the change of the predicted load several times
+SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
 
 
 @dataclass(frozen=True)
@@ -112,11 +113,19 @@ def fit_model(
     fit = fit_linear(dataset, plain or chosen, rows, find_shapes(dataset, plain or chosen, rows, kept))
     if len(plain) == len(chosen):
         return fit
-    for _ in range(PREDICTION_PASSES):
-        predicted = with_own_prediction(fit)
-        fit = fit_linear(predicted, chosen, rows, {**first_shapes(predicted, chosen), **fit.shapes})
-    predicted = with_own_prediction(fit)
-    return fit_linear(predicted, chosen, rows, find_shapes(predicted, chosen, rows, kept))
+    fit = _settle(fit, chosen, {**first_shapes(dataset, chosen), **fit.shapes, **kept})
+    return _settle(fit, chosen, find_shapes(with_own_prediction(fit), chosen, rows, kept))
+
+
+def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> Fit:
+    """Refit until the load that the model predicts is the load that its own terms are built from."""
+    for _ in range(MOST_PASSES):
+        before = fit.predicted
+        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes)
+        change = fit.predicted - before
+        if change @ change <= SETTLED_SHARE**2 * (before @ before):
+            break
+    return fit
 
 
 def fit_linear(dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape]) -> Fit:
