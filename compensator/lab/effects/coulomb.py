@@ -20,5 +20,4 @@ EFFECT = Effect(
     excited_by="motion in both directions at several speeds",
     source="Saini et al. 2013, eq. (2)",
     confused_with=("coulomb_asymmetry", "weight_friction"),
-    standing_in=frozenset({"slow_sign", "fast_sign"}),
 )
