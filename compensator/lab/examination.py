@@ -14,6 +14,7 @@ from compensator.lab.validation import HeldOut, held_out
 
 SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
+LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
 NOT_WORSE = 0.10  # one-sided
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
@@ -36,7 +37,8 @@ def is_confirmed(candidate: Candidate) -> bool:
     The p-value cannot fall far where a few stretches hold most of the evidence; a very strong score stands without it.
     """
     no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
-    return candidate.score > 0.0 and no_luck and candidate.gain.low > 0.0
+    helps = candidate.gain.low > 0.0 and candidate.gain.value >= LEAST_GAIN
+    return candidate.score > 0.0 and no_luck and helps
 
 
 def _with_effect(fit: Fit, item: Evidence) -> Fit:
