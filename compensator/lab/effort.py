@@ -78,10 +78,15 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
         if all(_measured(recording, effort.channels) for recording in recordings):
             return effort
     needed = " or ".join(" x ".join(effort.channels) for effort in wanted)
-    poor = next(r for r in recordings if not any(_measured(r, effort.channels) for effort in wanted))
+    for recording in recordings:
+        if not any(_measured(recording, effort.channels) for effort in wanted):
+            raise UnusableDataError(
+                f"recording '{recording.name}' has no effort channel: found {', '.join(sorted(recording.channels))}; "
+                f"wanted {needed}; record one of them or map a column to it"
+            )
     raise UnusableDataError(
-        f"recording '{poor.name}' has no effort channel: found {', '.join(sorted(poor.channels))}; "
-        f"wanted {needed}; record one of them or map a column to it"
+        f"the {len(recordings)} recordings share no effort channel, though each has one; wanted in all of them "
+        f"{needed}; choose trials that measure the same"
     )
 
 

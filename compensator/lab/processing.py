@@ -144,10 +144,12 @@ def _usable(
     if "duty" in recording.channels:
         good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
     steps = np.diff(raw_time)
-    gap = np.append(steps > LONGEST_GAP_PERIODS * float(np.median(steps)), False)
+    before_gap = np.append(steps > LONGEST_GAP_PERIODS * float(np.median(steps)), False)
+    after_gap = np.roll(before_gap, 1)
+    in_gap = before_gap[np.searchsorted(raw_time, time, side="right") - 1]
     edge_s = EDGE_PERIODS / cutoff_hz
-    usable: BoolArray = (time >= time[0] + edge_s) & (time <= time[-1] - edge_s)
-    return usable & (distance_to_nearest(time, raw_time[~good | gap]) > MASK_PERIODS / cutoff_hz)
+    usable: BoolArray = (time >= time[0] + edge_s) & (time <= time[-1] - edge_s) & ~in_gap
+    return usable & (distance_to_nearest(time, raw_time[~good | before_gap | after_gap]) > MASK_PERIODS / cutoff_hz)
 
 
 def distance_to_nearest(values: FloatArray, marks: FloatArray) -> FloatArray:
