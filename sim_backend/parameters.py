@@ -5,9 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
+from sim_backend.bristle import Bristle
 from sim_backend.contact import Gear
 from sim_backend.coulomb_asymmetry import CoulombAsymmetry
 from sim_backend.drag import Drag
+from sim_backend.dwell import Dwell
 from sim_backend.errors import ParameterError
 from sim_backend.friction import Friction
 from sim_backend.gravity import Arm, CentreOfMass, Load
@@ -26,8 +28,8 @@ from sim_backend.viscous_asymmetry import ViscousAsymmetry
 class PlantParameters:
     """One geared joint.
 
-    `friction` is the drive side's (rotor and gear train), at the motor shaft; `arm_friction` the arm side's, at
-    the joint.
+    `friction`, `bristle` and `dwell` are the drive side's (rotor and gear train), at the motor shaft; the same with
+    `arm_` are the arm side's, at the joint.
     """
 
     motor: Motor
@@ -38,6 +40,10 @@ class PlantParameters:
     load: Load = field(default_factory=Load)
     friction: Friction = field(default_factory=Friction)
     arm_friction: Friction = field(default_factory=Friction)
+    bristle: Bristle = field(default_factory=Bristle)
+    arm_bristle: Bristle = field(default_factory=Bristle)
+    dwell: Dwell = field(default_factory=Dwell)
+    arm_dwell: Dwell = field(default_factory=Dwell)
     load_friction: LoadFriction = field(default_factory=LoadFriction)
     current_loop: CurrentLoop = field(default_factory=CurrentLoop)
     current_sensor: CurrentSensor = field(default_factory=CurrentSensor)
@@ -56,6 +62,8 @@ class PlantParameters:
     def __post_init__(self) -> None:
         if self.current_loop.present and not self.current_sensor.present:
             raise ParameterError("CurrentLoop.present = True: a loop needs CurrentSensor.present = True to close on")
+        self.bristle.check(self.friction)
+        self.arm_bristle.check(self.arm_friction)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any], base: "PlantParameters | None" = None) -> "PlantParameters":

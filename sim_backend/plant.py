@@ -6,6 +6,7 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_backend.bristle import Bristle
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
 from sim_backend.kernel import advance, stored_energy
@@ -19,7 +20,10 @@ COARSEST_STEP_S = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """What no sensor of the drive shows. For tests and demonstrations only. Rotor angles are motor angles / ratio."""
+    """What no sensor of the drive shows. For tests and demonstrations only.
+
+    Rotor angles are motor angles / ratio; bristles are measured at the shaft where the friction acts.
+    """
 
     time_s: float
     rotor_rad: float
@@ -28,6 +32,8 @@ class Truth:
     arm_rad_s: float
     current_a: float
     contact_n_m: float
+    bristle_rad: float
+    arm_bristle_rad: float
     winding_c: float
     housing_c: float
 
@@ -108,8 +114,11 @@ class Plant:
 
     def place(self, rotor_rad: float, arm_rad: float, rotor_rad_s: float = 0.0, arm_rad_s: float = 0.0) -> None:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
-        placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "arm_rad": arm_rad, "arm_rad_s": arm_rad_s}
-        for name, value in (placed | {"current_a": 0.0, "contact_n_m": 0.0}).items():
+        placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "rotor_mean_rad_s": rotor_rad_s}
+        placed |= {"arm_rad": arm_rad, "arm_rad_s": arm_rad_s, "arm_mean_rad_s": arm_rad_s}
+        for name in ("current_a", "contact_n_m", "bristle_rad", "arm_bristle_rad", "slid", "rest_s", "arm_rest_s"):
+            placed[name] = 0.0
+        for name, value in placed.items():
             self._state[name] = value
         self._forget()
 
@@ -132,14 +141,16 @@ class Plant:
     def _check_step(self, step_s: float) -> None:
         if not 0.0 < step_s <= COARSEST_STEP_S:
             raise ParameterError(f"step = {step_s:g} [s]: must be above 0 and at most {COARSEST_STEP_S:g}")
-        gear, arm = self.parameters.gear, self.parameters.arm
-        rotor_kg_m2 = gear.ratio**2 * self.parameters.motor.rotor_inertia_kg_m2
+        gear, arm, rotor = self.parameters.gear, self.parameters.arm, self.parameters.motor.rotor_inertia_kg_m2
+        rotor_kg_m2 = gear.ratio**2 * rotor
         fastest_rad_s = sqrt(gear.stiffness_n_m_rad * (1.0 / rotor_kg_m2 + 1.0 / arm.inertia_kg_m2))
         if step_s * fastest_rad_s > 1.0:
             raise ParameterError(
                 f"step = {step_s:g} [s]: too coarse for Gear.stiffness_n_m_rad = {gear.stiffness_n_m_rad:g} [N m/rad], "
                 f"which swings at {fastest_rad_s:.3g} rad/s; at most {1.0 / fastest_rad_s:.3g} s, or a softer gear"
             )
+        _check_bristles(step_s, "bristle", self.parameters.bristle, rotor)
+        _check_bristles(step_s, "arm_bristle", self.parameters.arm_bristle, arm.inertia_kg_m2)
 
     def _forget(self) -> None:
         """Fill the drive's memory with what it would see at rest here."""
@@ -147,3 +158,12 @@ class Plant:
         self.advance(OPEN, 0.0, 0)
         position = self._state["rotor_rad"][0] * self.parameters.gear.ratio
         self._history[:, 0] = np.floor(position * self.parameters.encoder.counts_per_turn / (2.0 * np.pi))
+
+
+def _check_bristles(step_s: float, name: str, bristle: Bristle, inertia_kg_m2: float) -> None:
+    fastest_rad_s = sqrt(bristle.stiffness_n_m_rad / inertia_kg_m2)
+    if step_s * fastest_rad_s > 1.0:
+        raise ParameterError(
+            f"step = {step_s:g} [s]: too coarse for {name}.stiffness_n_m_rad = {bristle.stiffness_n_m_rad:g} "
+            f"[N m/rad], which swings at {fastest_rad_s:.3g} rad/s; at most {1.0 / fastest_rad_s:.3g} s, or softer"
+        )

@@ -16,8 +16,15 @@ class State:
     rotor_rad_s: float = 0.0
     arm_rad: float = 0.0
     arm_rad_s: float = 0.0
+    rotor_mean_rad_s: float = 0.0  # mean over the last step
+    arm_mean_rad_s: float = 0.0
     current_a: float = 0.0
     contact_n_m: float = 0.0  # torque of the teeth on the arm, mean over the last step
+    bristle_rad: float = 0.0  # deflection of the drive side's bristles, at the motor shaft
+    arm_bristle_rad: float = 0.0
+    slid: bool = False  # the drive side's bristles have slipped since the motion last turned
+    rest_s: float = 0.0  # age of the drive side's contact
+    arm_rest_s: float = 0.0
     static_factor: float = 1.0  # this stop's static friction over the nominal one
     coulomb_factor: float = 1.0  # Coulomb friction here over the nominal one
     wandered_rad: float = 0.0  # way since that was last drawn

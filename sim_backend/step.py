@@ -8,14 +8,16 @@ never blow up, and smooth motion is second order in the step.
 
 from typing import NamedTuple
 
+from sim_backend.bristle import bend
 from sim_backend.contact import contact_energy, flank, is_pull, penetration
+from sim_backend.dwell import aged
 from sim_backend.gravity import STANDARD_GRAVITY_M_S2, arm_inertia, gravity_torque, moment_kg_m
 from sim_backend.heat import warm
 from sim_backend.jit import jitted
 from sim_backend.motor import CurrentLine, current_line, electrical_energy
 from sim_backend.parameters import PlantParameters
 from sim_backend.randomness import draw_static_factor, wander
-from sim_backend.resistance import arm_side, drive_side
+from sim_backend.resistance import Resistance, arm_side, drive_side
 from sim_backend.spring import spring_torque
 from sim_backend.state import State
 from sim_backend.stick_slip import Body, coupled_speeds, free_speeds
@@ -34,8 +36,10 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     """Advance the state by one step at a constant demand (duty or current [A], after the stage)."""
     ratio = parameters.gear.ratio
     line = current_line(stage, demand, state.current_a, ratio * state.rotor_rad_s, parameters, step_s)
-    rotor = _rotor(parameters, state, line, step_s)
-    arm = _arm(parameters, state, step_s)
+    drive_friction = drive_side(parameters, state, _weight(parameters), step_s)
+    arm_friction = arm_side(parameters, state, _weight(parameters), step_s)
+    rotor = _rotor(parameters, state, line, drive_friction, step_s)
+    arm = _arm(parameters, state, arm_friction, step_s)
     motion = _move(parameters, state, rotor, arm, step_s)
     mean_r = 0.5 * (state.rotor_rad_s + motion.rotor_rad_s)
     mean_a = 0.5 * (state.arm_rad_s + motion.arm_rad_s)
@@ -48,19 +52,29 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     friction_j = _friction_loss(rotor, -motion.contact_n_m, motion.rotor_rad_s, mean_r, step_s)
     state.supplied_j += supplied_j
     state.electrical_loss_j += electrical_j
-    state.friction_loss_j += friction_j
-    state.arm_friction_loss_j += _friction_loss(arm, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
+    arm_friction_j = _friction_loss(arm, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
     state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
 
     # what friction and temperature remember
-    if motion.rotor_rad_s == 0.0 and state.rotor_rad_s != 0.0:
+    state.bristle_rad, rubbed_j = bend(parameters.bristle, drive_friction.bristle, state.bristle_rad, mean_r, step_s)
+    state.arm_bristle_rad, arm_rubbed_j = bend(
+        parameters.arm_bristle, arm_friction.bristle, state.arm_bristle_rad, mean_a, step_s
+    )
+    friction_j += rubbed_j
+    state.friction_loss_j += friction_j
+    state.arm_friction_loss_j += arm_friction_j + arm_rubbed_j
+    if _stops(state, motion.rotor_rad_s, mean_r):
         state.static_factor = draw_static_factor(state, parameters.scatter)
+    state.rest_s = aged(parameters.dwell, state.rest_s, ratio * mean_r, step_s)
+    state.arm_rest_s = aged(parameters.arm_dwell, state.arm_rest_s, mean_a, step_s)
     wander(state, parameters.scatter, abs(step_s * mean_r))
     if parameters.heat.present:
         warm(state, parameters.heat, electrical_j, friction_j, step_s)
 
     state.rotor_rad += step_s * mean_r
     state.arm_rad += step_s * mean_a
+    state.rotor_mean_rad_s = mean_r
+    state.arm_mean_rad_s = mean_a
     state.rotor_rad_s = motion.rotor_rad_s
     state.arm_rad_s = motion.arm_rad_s
     state.contact_n_m = motion.contact_n_m
@@ -69,28 +83,36 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
 
 
 @jitted
-def _rotor(parameters: PlantParameters, state: State, line: CurrentLine, step_s: float) -> Body:
+def _rotor(parameters: PlantParameters, state: State, line: CurrentLine, friction: Resistance, step_s: float) -> Body:
     """Return the rotor's share: motor torque, with the back-EMF as viscous friction, and the drive side's friction."""
     ratio, speed = parameters.gear.ratio, state.rotor_rad_s
     strength = ratio * parameters.motor.torque_constant_n_m_a
-    lower, upper, viscous = drive_side(parameters, state, _weight(parameters))
-    damping = viscous + strength * ratio * line.slope_a_s_rad
+    damping = friction.viscous_n_m_s_rad + strength * ratio * line.slope_a_s_rad + friction.bristle.slope_n_m_s_rad
     inertia = ratio * ratio * parameters.motor.rotor_inertia_kg_m2
-    impulse = inertia * speed + step_s * (strength * line.constant_a - 0.5 * damping * speed)
-    return Body(inertia + 0.5 * step_s * damping, impulse, step_s * lower, step_s * upper, viscous)
+    impulse = inertia * speed + step_s * (
+        strength * line.constant_a - 0.5 * damping * speed - friction.bristle.known_n_m
+    )
+    return Body(
+        inertia + 0.5 * step_s * damping, impulse,
+        step_s * friction.lower_n_m, step_s * friction.upper_n_m, friction.viscous_n_m_s_rad,
+    )  # fmt: skip
 
 
 @jitted
-def _arm(parameters: PlantParameters, state: State, step_s: float) -> Body:
+def _arm(parameters: PlantParameters, state: State, friction: Resistance, step_s: float) -> Body:
     """Return the arm's share: gravity and spring, half a step ahead, and the arm side's friction."""
     speed = state.arm_rad_s
     middle_rad = state.arm_rad + 0.5 * step_s * speed
     pull = gravity_torque(moment_kg_m(parameters.arm, parameters.load), parameters.centre_of_mass, middle_rad)
     pull += spring_torque(parameters.spring, middle_rad)
-    dry, viscous = arm_side(parameters, state, _weight(parameters))
+    pull -= friction.bristle.known_n_m
+    damping = friction.viscous_n_m_s_rad + friction.bristle.slope_n_m_s_rad
     inertia = arm_inertia(parameters.arm, parameters.load)
-    impulse = inertia * speed + step_s * (pull - 0.5 * viscous * speed)
-    return Body(inertia + 0.5 * step_s * viscous, impulse, step_s * dry, step_s * dry, viscous)
+    impulse = inertia * speed + step_s * (pull - 0.5 * damping * speed)
+    return Body(
+        inertia + 0.5 * step_s * damping, impulse,
+        step_s * friction.lower_n_m, step_s * friction.upper_n_m, friction.viscous_n_m_s_rad,
+    )  # fmt: skip
 
 
 @jitted
@@ -123,6 +145,15 @@ def _friction_loss(body: Body, contact_n_m: float, new_rad_s: float, mean_rad_s:
     """Return what friction took from a body [J]: dry (the impulse that is missing) and viscous."""
     dry_impulse = body.impulse + step_s * contact_n_m - body.diagonal * new_rad_s
     return dry_impulse * mean_rad_s + step_s * body.viscous * mean_rad_s * mean_rad_s
+
+
+@jitted
+def _stops(state: State, new_rad_s: float, mean_rad_s: float) -> bool:
+    """Tell whether the rotor comes to rest: sticks, or turns back on bristles after it has slipped."""
+    if state.slid and mean_rad_s * state.bristle_rad <= 0.0:
+        state.slid = False
+        return True
+    return new_rad_s == 0.0 and state.rotor_rad_s != 0.0
 
 
 @jitted

@@ -19,6 +19,10 @@ EVERYTHING = {
     "centre_of_mass": {"angle_rad": 0.1},
     "lubricant": {"vogel_k": 1000.0},
     "heat": {"present": True},
+    "bristle": {"stiffness_n_m_rad": 2.0, "damping_n_m_s_rad": 4e-3, "elastic_fraction": 0.3},
+    "arm_bristle": {"stiffness_n_m_rad": 5.0, "damping_n_m_s_rad": 0.02},
+    "dwell": {"rise_fraction": 0.3},
+    "arm_dwell": {"rise_fraction": 0.3},
     "load_friction": {"driving": 0.3, "back_driving": 0.2},
     "current_sensor": {"present": True},
     "current_loop": {"present": True},
@@ -58,10 +62,14 @@ def test_energy_balance_closes_over_a_long_mixed_run_with_every_mechanism_on() -
     viscous=st.floats(0.0, 1e-3),
     mesh=st.floats(0.0, 0.6),
     inductance=st.floats(0.0, 5e-3),
+    bristles=st.floats(0.0, 50.0),
+    micro=st.floats(0.0, 1.0),
+    elastic=st.floats(0.0, 0.95),
 )
 def test_no_plant_blows_up_or_makes_energy(
     seed: int, ratio: float, backlash: float, stiffness: float, damping: float, load: float, coulomb: float,
     rise: float, stribeck: float, viscous: float, mesh: float, inductance: float,
+    bristles: float, micro: float, elastic: float,
 ) -> None:  # fmt: skip
     drawn = parameters(
         motor={"inductance_h": inductance, "rotor_inertia_kg_m2": 5e-5},
@@ -80,6 +88,11 @@ def test_no_plant_blows_up_or_makes_energy(
             "viscous_n_m_s_rad": viscous,
         },
         load_friction={"driving": mesh, "back_driving": mesh},
+        bristle={
+            "stiffness_n_m_rad": bristles,
+            "damping_n_m_s_rad": micro * 9.0 * coulomb / stribeck,
+            "elastic_fraction": elastic,
+        },
         current_sensor={"present": True},
         current_loop={"present": True},
     )

@@ -26,6 +26,9 @@ from tests.sim_backend.plants import parameters, plant
         ("heat", {"present": 1}, r"plant.heat.present = 1: true or false is wanted"),
         ("motor", {"resistance_ohm": True}, r"plant.motor.resistance_ohm = True: a number is wanted"),
         ("motor", 8.0, r"plant.motor: a table of parameters is wanted, found 8.0"),
+        ("bristle", {"stiffness_n_m_rad": 2.0, "damping_n_m_s_rad": 0.01}, r"make energy: s1\(w\) \|w\| <= .* 0.0056"),
+        ("arm_bristle", {"elastic_fraction": 1.0}, r"plant.arm_bristle: Bristle.elastic_fraction = 1.0 .*at most 0.95"),
+        ("dwell", {"slip_rad": 0.0}, r"Dwell.slip_rad = 0.0 \[rad\]: must be greater than 0"),
         ("current_loop", {"present": True}, r"a loop needs CurrentSensor.present"),
     ],
 )
@@ -58,6 +61,9 @@ def test_whole_plant_can_be_written_as_tables() -> None:
 def test_step_too_coarse_for_the_teeth_is_refused() -> None:
     with pytest.raises(ParameterError, match=r"too coarse for Gear.stiffness_n_m_rad = 1e\+06 .* at most .* s"):
         plant(gear={"stiffness_n_m_rad": 1e6})
+    for name in ("bristle", "arm_bristle"):
+        with pytest.raises(ParameterError, match=rf"too coarse for {name}.stiffness_n_m_rad = 1e\+06 .* at most .* s"):
+            plant(**{name: {"stiffness_n_m_rad": 1e6}})
     with pytest.raises(ParameterError, match=r"step = 0.001 \[s\]: must be above 0 and at most 0.0001"):
         Plant(parameters(), step_s=1e-3)
 
