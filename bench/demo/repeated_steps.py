@@ -21,9 +21,9 @@ def repeated_steps(configuration: BenchConfiguration, store: Store) -> Section:
     return Section(
         title="The same step 25 times: 0 to 90 degrees, 100 g",
         sentences=[
-            f"Each step approaches at another speed. Friction holds the joint wherever the position servo lets it "
-            f"rest, so the steady current differs from step to step. The zero-speed search finds the load's share: its spread is {results['spread_ratio']:.0f} "
-            f"times smaller, {1e3 * results['spread_reflected_load_kg']:.1f} g of load.",
+            "Each step approaches at another speed. Friction holds the joint wherever the servo lets it rest, so "
+            "the steady current differs from step to step. The zero-speed search finds the load's share: its spread is "
+            f"{results['spread_ratio']:.0f} times smaller, {1e3 * results['spread_reflected_load_kg']:.1f} g of load.",
         ],
         tables=[
             Table("Steady current [mA]", ["current", "lowest#", "highest#", "spread#", "paper, Fig. 4 (about)"], rows)
