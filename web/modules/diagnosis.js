@@ -44,5 +44,5 @@ function picture(plot, { picture: shown, title }) {
     band(shown.x, shown.low, shown.high, "residual", "blue"),
     { x: shown.x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
     { x: shown.curve_x, y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
-  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${shown.unit ? ` [${shown.unit}]` : ""}` } }, yaxis: { title: { text: "residual" } } });
+  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${shown.unit ? ` [${shown.unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
 }
