@@ -46,9 +46,9 @@ def is_pull(gear: Gear, side: float, torque_n_m: float) -> bool:
 
 
 @jitted
-def contact_energy(gear: Gear, twist_rad: float) -> float:
-    """Return the energy in the pressed teeth [J]."""
+def contact_energy(gear: Gear, stiffness_n_m_rad: float, twist_rad: float) -> float:
+    """Return the energy in the pressed teeth, and in what winds up behind them [J]."""
     side = flank(gear, twist_rad)
     if side == 0.0:
         return 0.0
-    return 0.5 * gear.stiffness_n_m_rad * penetration(gear, side, twist_rad) ** 2
+    return 0.5 * stiffness_n_m_rad * penetration(gear, side, twist_rad) ** 2

@@ -11,8 +11,10 @@ from sim_backend.bristle import bristle_energy
 from sim_backend.contact import contact_energy
 from sim_backend.gravity import arm_inertia, gravity_energy, moment_kg_m
 from sim_backend.jit import jitted_and_cached
+from sim_backend.obstacles import obstacles_energy
 from sim_backend.record import Records
 from sim_backend.sensing import counts, measured_current, radians_per_count
+from sim_backend.shaft import stiffness
 from sim_backend.spring import spring_energy
 from sim_backend.step import step
 
@@ -75,7 +77,7 @@ advance = _advance_of(_fingerprint())
 
 @jitted_and_cached
 def stored_energy(parameters: Records, states: Records) -> float:
-    """Return kinetic, height, spring, tooth, bristle and inductor energy [J]."""
+    """Return kinetic, height, spring, tooth, wall, bristle and inductor energy [J]."""
     plant, state = parameters[0], states[0]
     rotor_kg_m2: float = plant.gear.ratio**2 * plant.motor.rotor_inertia_kg_m2
     energy_j: float = (
@@ -83,7 +85,8 @@ def stored_energy(parameters: Records, states: Records) -> float:
         + 0.5 * arm_inertia(plant.arm, plant.load) * state.arm_rad_s**2
         + gravity_energy(moment_kg_m(plant.arm, plant.load), plant.centre_of_mass, state.arm_rad)
         + spring_energy(plant.spring, state.arm_rad)
-        + contact_energy(plant.gear, state.rotor_rad - state.arm_rad)
+        + contact_energy(plant.gear, stiffness(plant.gear, plant.shaft), state.rotor_rad - state.arm_rad)
+        + obstacles_energy(plant, state.arm_rad)
         + bristle_energy(plant.bristle, state.bristle_rad)
         + bristle_energy(plant.arm_bristle, state.arm_bristle_rad)
         + 0.5 * plant.motor.inductance_h * state.current_a**2

@@ -10,6 +10,7 @@ from sim_backend.contact import Gear
 from sim_backend.coulomb_asymmetry import CoulombAsymmetry
 from sim_backend.drag import Drag
 from sim_backend.dwell import Dwell
+from sim_backend.end_stops import EndStops
 from sim_backend.errors import ParameterError
 from sim_backend.friction import Friction
 from sim_backend.gravity import Arm, CentreOfMass, Load
@@ -20,8 +21,10 @@ from sim_backend.motor import CurrentLoop, Motor, Supply
 from sim_backend.periodic_friction import PeriodicFriction
 from sim_backend.randomness import Scatter
 from sim_backend.sensing import CurrentSensor, Encoder, Latency
+from sim_backend.shaft import Shaft
 from sim_backend.spring import Spring
 from sim_backend.viscous_asymmetry import ViscousAsymmetry
+from sim_backend.wall import Wall
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +52,9 @@ class PlantParameters:
     current_sensor: CurrentSensor = field(default_factory=CurrentSensor)
     latency: Latency = field(default_factory=Latency)
     scatter: Scatter = field(default_factory=Scatter)
+    shaft: Shaft = field(default_factory=Shaft)
+    end_stops: EndStops = field(default_factory=EndStops)
+    wall: Wall = field(default_factory=Wall)
     heat: Heat = field(default_factory=Heat)
     # mechanisms to hide from whoever explains the data
     viscous_asymmetry: ViscousAsymmetry = field(default_factory=ViscousAsymmetry)

@@ -1,12 +1,10 @@
 """The plant: parameters, state and the compiled kernel behind four calls."""
 
 from dataclasses import dataclass, replace
-from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_backend.bristle import Bristle
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
 from sim_backend.kernel import advance, stored_energy
@@ -14,6 +12,7 @@ from sim_backend.motor import OPEN
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
 from sim_backend.state import at_rest
+from sim_backend.stiffness import stiffest
 
 COARSEST_STEP_S = 1e-4
 
@@ -32,6 +31,7 @@ class Truth:
     arm_rad_s: float
     current_a: float
     contact_n_m: float
+    leant_n_m: float
     bristle_rad: float
     arm_bristle_rad: float
     winding_c: float
@@ -56,7 +56,7 @@ class Plant:
         step_s: integration step [s].
 
     Raises:
-        ParameterError: the step is too coarse for the teeth.
+        ParameterError: the step is too coarse for something stiff.
     """
 
     def __init__(self, parameters: PlantParameters, seed: int = 0, step_s: float = COARSEST_STEP_S) -> None:
@@ -73,7 +73,7 @@ class Plant:
         """Go on with another integration step [s]; the drive's speed window starts afresh.
 
         Raises:
-            ParameterError: the step is coarser than 0.1 ms, or too coarse for the teeth.
+            ParameterError: the step is coarser than 0.1 ms, or too coarse for something stiff.
         """
         self._check_step(step_s)
         self._origin_s = self.time_s
@@ -116,8 +116,10 @@ class Plant:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
         placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "rotor_mean_rad_s": rotor_rad_s}
         placed |= {"arm_rad": arm_rad, "arm_rad_s": arm_rad_s, "arm_mean_rad_s": arm_rad_s}
-        for name in ("current_a", "contact_n_m", "bristle_rad", "arm_bristle_rad", "slid", "rest_s", "arm_rest_s"):
-            placed[name] = 0.0
+        forgotten = (
+            "current_a", "contact_n_m", "leant_n_m", "bristle_rad", "arm_bristle_rad", "slid", "rest_s", "arm_rest_s"
+        )  # fmt: skip
+        placed |= dict.fromkeys(forgotten, 0.0)
         for name, value in placed.items():
             self._state[name] = value
         self._forget()
@@ -131,7 +133,7 @@ class Plant:
     def energy(self) -> Energy:
         """Return the energy balance so far."""
         state = self._state[0]
-        lost = ("electrical_loss_j", "friction_loss_j", "arm_friction_loss_j", "contact_loss_j")
+        lost = ("electrical_loss_j", "friction_loss_j", "arm_friction_loss_j", "contact_loss_j", "leant_loss_j")
         return Energy(
             float(state["supplied_j"]),
             float(sum(state[name] for name in lost)),
@@ -141,16 +143,8 @@ class Plant:
     def _check_step(self, step_s: float) -> None:
         if not 0.0 < step_s <= COARSEST_STEP_S:
             raise ParameterError(f"step = {step_s:g} [s]: must be above 0 and at most {COARSEST_STEP_S:g}")
-        gear, arm, rotor = self.parameters.gear, self.parameters.arm, self.parameters.motor.rotor_inertia_kg_m2
-        rotor_kg_m2 = gear.ratio**2 * rotor
-        fastest_rad_s = sqrt(gear.stiffness_n_m_rad * (1.0 / rotor_kg_m2 + 1.0 / arm.inertia_kg_m2))
-        if step_s * fastest_rad_s > 1.0:
-            raise ParameterError(
-                f"step = {step_s:g} [s]: too coarse for Gear.stiffness_n_m_rad = {gear.stiffness_n_m_rad:g} [N m/rad], "
-                f"which swings at {fastest_rad_s:.3g} rad/s; at most {1.0 / fastest_rad_s:.3g} s, or a softer gear"
-            )
-        _check_bristles(step_s, "bristle", self.parameters.bristle, rotor)
-        _check_bristles(step_s, "arm_bristle", self.parameters.arm_bristle, arm.inertia_kg_m2)
+        for stiff in stiffest(self.parameters):
+            stiff.check(step_s)
 
     def _forget(self) -> None:
         """Fill the drive's memory with what it would see at rest here."""
@@ -158,12 +152,3 @@ class Plant:
         self.advance(OPEN, 0.0, 0)
         position = self._state["rotor_rad"][0] * self.parameters.gear.ratio
         self._history[:, 0] = np.floor(position * self.parameters.encoder.counts_per_turn / (2.0 * np.pi))
-
-
-def _check_bristles(step_s: float, name: str, bristle: Bristle, inertia_kg_m2: float) -> None:
-    fastest_rad_s = sqrt(bristle.stiffness_n_m_rad / inertia_kg_m2)
-    if step_s * fastest_rad_s > 1.0:
-        raise ParameterError(
-            f"step = {step_s:g} [s]: too coarse for {name}.stiffness_n_m_rad = {bristle.stiffness_n_m_rad:g} "
-            f"[N m/rad], which swings at {fastest_rad_s:.3g} rad/s; at most {1.0 / fastest_rad_s:.3g} s, or softer"
-        )

@@ -20,6 +20,7 @@ class State:
     arm_mean_rad_s: float = 0.0
     current_a: float = 0.0
     contact_n_m: float = 0.0  # torque of the teeth on the arm, mean over the last step
+    leant_n_m: float = 0.0  # torque of wall and end stops on the arm, mean over the last step
     bristle_rad: float = 0.0  # deflection of the drive side's bristles, at the motor shaft
     arm_bristle_rad: float = 0.0
     slid: bool = False  # the drive side's bristles have slipped since the motion last turned
@@ -36,6 +37,7 @@ class State:
     friction_loss_j: float = 0.0
     arm_friction_loss_j: float = 0.0
     contact_loss_j: float = 0.0
+    leant_loss_j: float = 0.0
 
 
 def at_rest(seed: int, temperature_c: float) -> State:

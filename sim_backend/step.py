@@ -15,9 +15,12 @@ from sim_backend.gravity import STANDARD_GRAVITY_M_S2, arm_inertia, gravity_torq
 from sim_backend.heat import warm
 from sim_backend.jit import jitted
 from sim_backend.motor import CurrentLine, current_line, electrical_energy
+from sim_backend.obstacle import Push, push_torque
+from sim_backend.obstacles import obstacles_energy, obstacles_push
 from sim_backend.parameters import PlantParameters
 from sim_backend.randomness import draw_static_factor, wander
 from sim_backend.resistance import Resistance, arm_side, drive_side
+from sim_backend.shaft import damping, stiffness
 from sim_backend.spring import spring_torque
 from sim_backend.state import State
 from sim_backend.stick_slip import Body, coupled_speeds, free_speeds
@@ -40,7 +43,13 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     arm_friction = arm_side(parameters, state, _weight(parameters), step_s)
     rotor = _rotor(parameters, state, line, drive_friction, step_s)
     arm = _arm(parameters, state, arm_friction, step_s)
-    motion = _move(parameters, state, rotor, arm, step_s)
+    push = obstacles_push(parameters, state.arm_rad, step_s)
+    leaning = _leaning(arm, push, state.arm_rad_s, step_s)
+    motion = _move(parameters, state, rotor, leaning, step_s)
+    if push.known_n_m != 0.0 and push_torque(push, 0.5 * (state.arm_rad_s + motion.arm_rad_s)) == 0.0:
+        # the arm leaves what it leant on
+        push, leaning = Push(0.0, 0.0, 0.0), arm
+        motion = _move(parameters, state, rotor, arm, step_s)
     mean_r = 0.5 * (state.rotor_rad_s + motion.rotor_rad_s)
     mean_a = 0.5 * (state.arm_rad_s + motion.arm_rad_s)
     current_a = line.constant_a - line.slope_a_s_rad * ratio * mean_r
@@ -49,20 +58,20 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     supplied_j, electrical_j = electrical_energy(
         stage, state.current_a, current_a, ratio * mean_r, parameters.motor, step_s
     )
-    friction_j = _friction_loss(rotor, -motion.contact_n_m, motion.rotor_rad_s, mean_r, step_s)
-    state.supplied_j += supplied_j
-    state.electrical_loss_j += electrical_j
-    arm_friction_j = _friction_loss(arm, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
-    state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
-
-    # what friction and temperature remember
-    state.bristle_rad, rubbed_j = bend(parameters.bristle, drive_friction.bristle, state.bristle_rad, mean_r, step_s)
-    state.arm_bristle_rad, arm_rubbed_j = bend(
+    state.bristle_rad, friction_j = bend(parameters.bristle, drive_friction.bristle, state.bristle_rad, mean_r, step_s)
+    state.arm_bristle_rad, arm_friction_j = bend(
         parameters.arm_bristle, arm_friction.bristle, state.arm_bristle_rad, mean_a, step_s
     )
-    friction_j += rubbed_j
+    friction_j += _friction_loss(rotor, -motion.contact_n_m, motion.rotor_rad_s, mean_r, step_s)
+    arm_friction_j += _friction_loss(leaning, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
+    state.supplied_j += supplied_j
+    state.electrical_loss_j += electrical_j
     state.friction_loss_j += friction_j
-    state.arm_friction_loss_j += arm_friction_j + arm_rubbed_j
+    state.arm_friction_loss_j += arm_friction_j
+    state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
+    state.leant_loss_j += _leant_loss(parameters, state.arm_rad, push, mean_a, step_s)
+
+    # what friction and temperature remember
     if _stops(state, motion.rotor_rad_s, mean_r):
         state.static_factor = draw_static_factor(state, parameters.scatter)
     state.rest_s = aged(parameters.dwell, state.rest_s, ratio * mean_r, step_s)
@@ -78,6 +87,7 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.rotor_rad_s = motion.rotor_rad_s
     state.arm_rad_s = motion.arm_rad_s
     state.contact_n_m = motion.contact_n_m
+    state.leant_n_m = push_torque(push, mean_a)
     state.current_a = current_a
     state.steps += 1
 
@@ -87,13 +97,11 @@ def _rotor(parameters: PlantParameters, state: State, line: CurrentLine, frictio
     """Return the rotor's share: motor torque, with the back-EMF as viscous friction, and the drive side's friction."""
     ratio, speed = parameters.gear.ratio, state.rotor_rad_s
     strength = ratio * parameters.motor.torque_constant_n_m_a
-    damping = friction.viscous_n_m_s_rad + strength * ratio * line.slope_a_s_rad + friction.bristle.slope_n_m_s_rad
+    drag = friction.viscous_n_m_s_rad + strength * ratio * line.slope_a_s_rad + friction.bristle.slope_n_m_s_rad
     inertia = ratio * ratio * parameters.motor.rotor_inertia_kg_m2
-    impulse = inertia * speed + step_s * (
-        strength * line.constant_a - 0.5 * damping * speed - friction.bristle.known_n_m
-    )
+    impulse = inertia * speed + step_s * (strength * line.constant_a - 0.5 * drag * speed - friction.bristle.known_n_m)
     return Body(
-        inertia + 0.5 * step_s * damping, impulse,
+        inertia + 0.5 * step_s * drag, impulse,
         step_s * friction.lower_n_m, step_s * friction.upper_n_m, friction.viscous_n_m_s_rad,
     )  # fmt: skip
 
@@ -106,26 +114,33 @@ def _arm(parameters: PlantParameters, state: State, friction: Resistance, step_s
     pull = gravity_torque(moment_kg_m(parameters.arm, parameters.load), parameters.centre_of_mass, middle_rad)
     pull += spring_torque(parameters.spring, middle_rad)
     pull -= friction.bristle.known_n_m
-    damping = friction.viscous_n_m_s_rad + friction.bristle.slope_n_m_s_rad
+    drag = friction.viscous_n_m_s_rad + friction.bristle.slope_n_m_s_rad
     inertia = arm_inertia(parameters.arm, parameters.load)
-    impulse = inertia * speed + step_s * (pull - 0.5 * damping * speed)
+    impulse = inertia * speed + step_s * (pull - 0.5 * drag * speed)
     return Body(
-        inertia + 0.5 * step_s * damping, impulse,
+        inertia + 0.5 * step_s * drag, impulse,
         step_s * friction.lower_n_m, step_s * friction.upper_n_m, friction.viscous_n_m_s_rad,
     )  # fmt: skip
 
 
 @jitted
+def _leaning(arm: Body, push: Push, speed_rad_s: float, step_s: float) -> Body:
+    """Return the arm's share while wall or end stop pushes it."""
+    impulse = arm.impulse + step_s * (push.known_n_m - 0.5 * push.slope_n_m_s_rad * speed_rad_s)
+    return Body(arm.diagonal + 0.5 * step_s * push.slope_n_m_s_rad, impulse, arm.lower, arm.upper, arm.viscous)
+
+
+@jitted
 def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, step_s: float) -> Motion:
     """Return the motion: through the teeth where they touch and push, each body on its own where they do not."""
-    gear = parameters.gear
+    gear, shaft = parameters.gear, parameters.shaft
     twist_rad = state.rotor_rad - state.arm_rad
     side = flank(gear, twist_rad)
     if side != 0.0:
         # spring and damper at mid-step: a known part, and one that follows the new speeds
-        rate = 0.25 * step_s * gear.stiffness_n_m_rad + 0.5 * gear.damping_n_m_s_rad
+        rate = 0.25 * step_s * stiffness(gear, shaft) + 0.5 * damping(gear, shaft)
         slip_rad_s = state.rotor_rad_s - state.arm_rad_s
-        known_n_m = gear.stiffness_n_m_rad * penetration(gear, side, twist_rad) + rate * slip_rad_s
+        known_n_m = stiffness(gear, shaft) * penetration(gear, side, twist_rad) + rate * slip_rad_s
         rotor_rad_s, arm_rad_s = coupled_speeds(rotor, arm, step_s * rate, step_s * known_n_m, state.arm_rad_s)
         contact_n_m = known_n_m + rate * (rotor_rad_s - arm_rad_s)
         if not is_pull(gear, side, contact_n_m):
@@ -162,8 +177,19 @@ def _contact_loss(
 ) -> float:
     """Return what the teeth took [J]: damping while they push; what is left in the spring when they let go."""
     if contact_n_m != 0.0:
-        return step_s * parameters.gear.damping_n_m_s_rad * slip_rad_s * slip_rad_s
+        return step_s * damping(parameters.gear, parameters.shaft) * slip_rad_s * slip_rad_s
     twist_rad = state.rotor_rad - state.arm_rad
     if flank(parameters.gear, twist_rad) == 0.0:
         return 0.0
-    return contact_energy(parameters.gear, twist_rad) - contact_energy(parameters.gear, twist_rad + step_s * slip_rad_s)
+    rigidity = stiffness(parameters.gear, parameters.shaft)
+    left_j = contact_energy(parameters.gear, rigidity, twist_rad)
+    return left_j - contact_energy(parameters.gear, rigidity, twist_rad + step_s * slip_rad_s)
+
+
+@jitted
+def _leant_loss(parameters: PlantParameters, arm_rad: float, push: Push, mean_rad_s: float, step_s: float) -> float:
+    """Return what wall and stops took [J]: damping while they push; what is left in them when the arm leaves."""
+    if push.known_n_m != 0.0:
+        return step_s * push.damping_n_m_s_rad * mean_rad_s * mean_rad_s
+    left_j = obstacles_energy(parameters, arm_rad)
+    return left_j - obstacles_energy(parameters, arm_rad + step_s * mean_rad_s) if left_j > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""The preset `paper` inside the ranges of the paper's figures (PAPER.md's table)."""
+"""The preset `paper` inside the ranges of the paper's figures (Saini et al. 2013's table)."""
 
 from math import pi
 

@@ -28,6 +28,10 @@ from tests.sim_backend.plants import parameters, plant
         ("motor", 8.0, r"plant.motor: a table of parameters is wanted, found 8.0"),
         ("bristle", {"stiffness_n_m_rad": 2.0, "damping_n_m_s_rad": 0.01}, r"make energy: s1\(w\) \|w\| <= .* 0.0056"),
         ("arm_bristle", {"elastic_fraction": 1.0}, r"plant.arm_bristle: Bristle.elastic_fraction = 1.0 .*at most 0.95"),
+        ("wall", {"present": True, "angle_rad": 0.0}, r"Wall.angle_rad = 0.0 \[rad\]: the arm rests at angle 0"),
+        ("end_stops", {"lower_rad": 0.1}, r"EndStops.lower_rad = 0.1 \[rad\]: .* lower stop must be below 0"),
+        ("end_stops", {"upper_rad": -0.1}, r"EndStops.upper_rad = -0.1 \[rad\]: .* upper stop must be above 0"),
+        ("shaft", {"compliance_rad_n_m": -1e-3}, r"Shaft.compliance_rad_n_m = -0.001 .*: must be at least 0"),
         ("dwell", {"slip_rad": 0.0}, r"Dwell.slip_rad = 0.0 \[rad\]: must be greater than 0"),
         ("current_loop", {"present": True}, r"a loop needs CurrentSensor.present"),
     ],
@@ -64,6 +68,10 @@ def test_step_too_coarse_for_the_teeth_is_refused() -> None:
     for name in ("bristle", "arm_bristle"):
         with pytest.raises(ParameterError, match=rf"too coarse for {name}.stiffness_n_m_rad = 1e\+06 .* at most .* s"):
             plant(**{name: {"stiffness_n_m_rad": 1e6}})
+    for name in ("wall", "end_stops"):
+        with pytest.raises(ParameterError, match=rf"too coarse for {name}.stiffness_n_m_rad = 1e\+06 .* at most .* s"):
+            plant(**{name: {"present": True, "stiffness_n_m_rad": 1e6}})
+    plant(gear={"stiffness_n_m_rad": 1e6}, shaft={"compliance_rad_n_m": 1e-3})
     with pytest.raises(ParameterError, match=r"step = 0.001 \[s\]: must be above 0 and at most 0.0001"):
         Plant(parameters(), step_s=1e-3)
 

@@ -1,0 +1,33 @@
+"""End stops: the range beyond which the arm cannot turn."""
+
+from dataclasses import dataclass
+from math import pi
+
+from sim_backend.component import quantity
+from sim_backend.jit import jitted
+from sim_backend.obstacle import Surface
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndStops(Surface):
+    """Two stops, one at either end of the arm's range, of the same make."""
+
+    lower_rad: float = quantity("rad", default=-pi)
+    upper_rad: float = quantity("rad", default=pi)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.lower_rad >= 0.0:
+            self.refuse("lower_rad", "the arm rests at angle 0: the lower stop must be below 0")
+        if self.upper_rad <= 0.0:
+            self.refuse("upper_rad", "the arm rests at angle 0: the upper stop must be above 0")
+
+
+@jitted
+def stop_depth(stops: EndStops, angle_rad: float) -> float:
+    """Return how deep the arm is in a stop [rad], negative in the lower one; 0 between them."""
+    if not stops.present:
+        return 0.0
+    if angle_rad > stops.upper_rad:
+        return angle_rad - stops.upper_rad
+    return min(angle_rad - stops.lower_rad, 0.0)

@@ -1,0 +1,51 @@
+"""What is stiff in the plant, and how short a step it asks for."""
+
+from collections.abc import Iterator
+from math import sqrt
+from typing import NamedTuple
+
+from sim_backend.errors import ParameterError
+from sim_backend.parameters import PlantParameters
+
+
+class Stiff(NamedTuple):
+    """A spring that a body swings on.
+
+    Attributes:
+        parameter: the name of its stiffness.
+        stiffness: its value [N m/rad].
+        inertia: of what swings on it, reduced [kg m2].
+        reach: the largest step times natural frequency that is integrated well.
+    """
+
+    parameter: str
+    stiffness: float
+    inertia: float
+    reach: float = 1.0
+
+    def check(self, step_s: float) -> None:
+        """Refuse a step that is too coarse.
+
+        Raises:
+            ParameterError: it is.
+        """
+        fastest_rad_s = sqrt(self.stiffness / self.inertia)
+        if step_s * fastest_rad_s > self.reach:
+            raise ParameterError(
+                f"step = {step_s:g} [s]: too coarse for {self.parameter} = {self.stiffness:g} [N m/rad], which swings "
+                f"at {fastest_rad_s:.3g} rad/s; at most {self.reach / fastest_rad_s:.3g} s, or a softer one"
+            )
+
+
+def stiffest(parameters: PlantParameters) -> Iterator[Stiff]:
+    """Yield what is stiff in a plant, with the least inertia that swings on it."""
+    gear, arm_kg_m2, rotor_kg_m2 = parameters.gear, parameters.arm.inertia_kg_m2, parameters.motor.rotor_inertia_kg_m2
+    reduced = 1.0 / (1.0 / (gear.ratio**2 * rotor_kg_m2) + 1.0 / arm_kg_m2)
+    softened = 1.0 + parameters.shaft.compliance_rad_n_m * gear.stiffness_n_m_rad
+    yield Stiff("Gear.stiffness_n_m_rad", gear.stiffness_n_m_rad / softened, reduced)
+    yield Stiff("bristle.stiffness_n_m_rad", parameters.bristle.stiffness_n_m_rad, rotor_kg_m2)
+    yield Stiff("arm_bristle.stiffness_n_m_rad", parameters.arm_bristle.stiffness_n_m_rad, arm_kg_m2)
+    # an arm that is found inside a surface is given the energy of that depth: (step times frequency)^2 / 3 of its own
+    for name, surface in (("wall", parameters.wall), ("end_stops", parameters.end_stops)):
+        if surface.present:
+            yield Stiff(f"{name}.stiffness_n_m_rad", surface.stiffness_n_m_rad, arm_kg_m2, reach=0.3)
