@@ -10,6 +10,9 @@ class Clock(Protocol):
     overruns: int
     """Cycles that began more than a whole period late, since `start`."""
 
+    patience_s: float
+    """How long a cycle may wait for the store [s]: nothing is lost by it where time itself waits."""
+
     def start(self, period_s: float) -> None:
         """The first cycle begins now."""
 
@@ -21,6 +24,7 @@ class VirtualClock:
     """Never waits: time is whatever the drive's stamps say."""
 
     overruns = 0
+    patience_s = 10.0
 
     def start(self, period_s: float) -> None:
         """Nothing to do."""
@@ -39,6 +43,8 @@ class WallClock:
         spin_s: how long before the deadline to stop sleeping [s]; the operating system's wake-up is later than this
             now and then only.
     """
+
+    patience_s = 0.0
 
     def __init__(self, spin_s: float = 0.0002) -> None:
         self.overruns = 0

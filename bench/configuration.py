@@ -36,30 +36,30 @@ class ControlSettings(Section):
 class MotionSettings(Section):
     """How the joint is moved between set points."""
 
-    speed_rad_s: float = quantity(3.0, "rad/s", "Top speed of a move", gt=0, allow_inf_nan=False)
-    acceleration_rad_s2: float = quantity(60.0, "rad/s2", "Acceleration of a move", gt=0, allow_inf_nan=False)
+    speed_rad_s: float = quantity(3.0, "rad/s", "Top speed of a move", gt=0)
+    acceleration_rad_s2: float = quantity(60.0, "rad/s2", "Acceleration of a move", gt=0)
     settled_cycles: int = quantity(20, "cycles", "Cycles without motion after which the joint is settled", ge=1)
-    settle_timeout_s: float = quantity(10.0, "s", "Longest wait for the joint to settle", gt=0, allow_inf_nan=False)
+    settle_timeout_s: float = quantity(10.0, "s", "Longest wait for the joint to settle", gt=0)
 
 
 class SearchSettings(Section):
     """The zero-speed search (Fig. 5 of the paper)."""
 
-    current_step_a: float = quantity(0.004, "A", "One step of the ramp", gt=0, allow_inf_nan=False)
-    step_s: float = quantity(0.02, "s", "Length of one step", gt=0, allow_inf_nan=False)
-    onset_counts: float = quantity(4.0, "", "Encoder counts that make a departure", ge=2, allow_inf_nan=False)
+    current_step_a: float = quantity(0.004, "A", "One step of the ramp", gt=0)
+    step_s: float = quantity(0.02, "s", "Length of one step", gt=0)
+    onset_counts: float = quantity(4.0, "", "Encoder counts that make a departure", ge=2)
     free_play_rad: float | None = quantity(
-        None, "rad", "Travel without the joint moving; the rig's backlash where left out", ge=0, allow_inf_nan=False
+        None, "rad", "Travel without the joint moving; the rig's backlash where left out", ge=0
     )
-    excursion_rad: float = quantity(0.15, "rad", "Farthest from the set point", gt=0, allow_inf_nan=False)
-    ceiling_a: float = quantity(1.5, "A", "Largest current of the ramp, either way", gt=0, allow_inf_nan=False)
-    creep_timeout_s: float = quantity(3.0, "s", "Longest creep without an outcome", gt=0, allow_inf_nan=False)
+    excursion_rad: float = quantity(0.15, "rad", "Farthest from the set point", gt=0)
+    ceiling_a: float = quantity(1.5, "A", "Largest current of the ramp, either way", gt=0)
+    creep_timeout_s: float = quantity(3.0, "s", "Longest creep without an outcome", gt=0)
 
 
 class StoreSettings(Section):
     """Where the trials are kept."""
 
-    url: str = quantity("sqlite:///bench.sqlite", "", "Database address")
+    url: str = quantity("sqlite:///friction-bench.sqlite", "", "Database address")
 
 
 class BenchConfiguration(Section):

@@ -90,7 +90,7 @@ class ControlLoop:
         Returns:
             The outcome. Errors of the procedure, the drive and the sink are outcomes, not exceptions.
         """
-        recorder = Recorder(sink)
+        recorder = Recorder(sink, self._clock.patience_s)
         lost_before = self._clock.overruns
         ending = Outcome("failed", "the run was torn down")
         try:

@@ -1,4 +1,4 @@
-"""Takes the rows of a running trial to its sink, on a thread of its own: the loop never waits for a disk."""
+"""Takes the rows of a running trial to its sink, on a thread of its own: a paced loop never waits for a disk."""
 
 import queue
 import threading
@@ -30,17 +30,19 @@ class Recorder:
 
     Args:
         sink: where they go.
+        patience_s: how long a full backlog is waited for. None at all where the loop moves a real joint: it has limits
+            and STOP to look at. A simulation is faster than any disk, and waits.
     """
 
     BLOCK_S = 0.1  # of wall time
     BLOCK_ROWS = 4000
     BACKLOG = 64  # blocks that may wait for the sink
-    PATIENCE_S = 10.0  # how long a full backlog is waited for
     LAST_PATIENCE_S = 60.0  # how long the end is waited for: the joint is off by then, and the rows are worth it
 
-    def __init__(self, sink: Sink) -> None:
+    def __init__(self, sink: Sink, patience_s: float = 0.0) -> None:
         self.error: BaseException | None = None
         self._sink = sink
+        self._patience_s = patience_s
         self._rows: list[Row] = []
         self._handed_s = time.monotonic()
         self._ending = False
@@ -93,11 +95,13 @@ class Recorder:
 
     def _put(self, item: list[Row] | Event) -> None:
         try:
-            self._queue.put(item, timeout=self.PATIENCE_S)
+            if self._patience_s > 0.0:
+                self._queue.put(item, timeout=self._patience_s)
+            else:
+                self._queue.put_nowait(item)
         except queue.Full:
             raise RecordingError(
-                f"the store has not taken a block for {self.PATIENCE_S:g} s ({self.BACKLOG} are waiting); "
-                "look for a full or failing disk"
+                f"the store does not keep up: {self.BACKLOG} blocks are waiting for it; look for a full or failing disk"
             ) from None
 
     def _check(self) -> None:

@@ -13,11 +13,11 @@ from drivers.contract import Sample
 class ServoSettings(Section):
     """Gains of the position servo; its output is motor current."""
 
-    proportional_a_rad: float = quantity(35.0, "A/rad", "Current per position error", ge=0, allow_inf_nan=False)
-    integral_a_rad_s: float = quantity(200.0, "A/(rad s)", "Current per integrated error", ge=0, allow_inf_nan=False)
-    derivative_a_s_rad: float = quantity(0.6, "A s/rad", "Current per speed error", ge=0, allow_inf_nan=False)
-    dead_band_rad: float = quantity(0.004, "rad", "Position error that is left alone", gt=0, allow_inf_nan=False)
-    current_a: float = quantity(1.6, "A", "Most current the servo asks for", gt=0, allow_inf_nan=False)
+    proportional_a_rad: float = quantity(35.0, "A/rad", "Current per position error", ge=0)
+    integral_a_rad_s: float = quantity(200.0, "A/(rad s)", "Current per integrated error", ge=0)
+    derivative_a_s_rad: float = quantity(0.6, "A s/rad", "Current per speed error", ge=0)
+    dead_band_rad: float = quantity(0.004, "rad", "Position error that is left alone", gt=0)
+    current_a: float = quantity(1.6, "A", "Most current the servo asks for", gt=0)
 
 
 class PositionServo:

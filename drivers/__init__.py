@@ -1,1 +1,1 @@
-"""The drive contract, its errors, and the real drives that satisfy it."""
+"""The drive contract and its errors; the real drives that satisfy it are to come."""

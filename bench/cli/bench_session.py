@@ -14,8 +14,6 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.configuration import BenchConfiguration
     from bench.store import Store
 
-DEFAULT_STORE = "sqlite:///friction-bench.sqlite"
-
 
 @dataclass(frozen=True)
 class BenchSession:
@@ -51,7 +49,7 @@ class BenchSession:
 
     def _store_url(self, configured: str) -> str:
         if self.store is None:
-            return DEFAULT_STORE if self.config is None else configured
+            return configured
         if "://" in self.store:
             return self.store
         if not self.store:

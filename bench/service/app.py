@@ -35,7 +35,7 @@ A missing effect, found and added:
     POST /api/v1/studies            {"name": "arm", "experiment_ids": [1], "hold_out": ["load_kg=0.1"]}
     GET  /api/v1/studies/1/compare
     GET  /api/v1/studies/1/diagnose
-    POST /api/v1/studies/1/models   {"effect": "viscous_asymmetric"}
+    POST /api/v1/studies/1/models   {"effect": "viscous_asymmetry"}
     GET  /api/v1/studies/1/ladder
 """
 

@@ -23,7 +23,7 @@ class EffectParameter(BaseModel):
 class Effect(BaseModel):
     """One physical mechanism that a model can contain."""
 
-    name: str = Field(examples=["coulomb_asymmetric"])
+    name: str = Field(examples=["coulomb_asymmetry"])
     title: str = Field(examples=["Direction-asymmetric Coulomb friction"])
     physics: str = Field(description="one paragraph")
     equation: str

@@ -55,7 +55,7 @@ class Change(BaseModel):
     """One effect more, or one less."""
 
     model_config = ConfigDict(
-        extra="forbid", json_schema_extra={"examples": [{"effect": "viscous_asymmetric", "model_id": 7}]}
+        extra="forbid", json_schema_extra={"examples": [{"effect": "viscous_asymmetry", "model_id": 7}]}
     )
     effect: str = Field(min_length=1, max_length=100, description="name from GET /effects")
     model_id: int | None = Field(default=None, ge=1, description="the parent; null: the newest model of the study")

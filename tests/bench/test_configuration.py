@@ -32,6 +32,7 @@ WRONG = [
     ("[limits]\nspeed_rads = 1", "limits.speed_rads: unknown key"),
     ("[limits]\ncurrent_a = inf", "limits.current_a: found inf; should be a finite number"),
     ("[limits]\nposition_min_rad = 3", "limits: found"),
+    ("[rig.arm]\ncentre_of_mass_m = nan", "rig.arm.centre_of_mass_m: found nan; should be a finite number"),
     ("[control]\nperiod_s = 0.2", "control.period_s: found 0.2; should be less than or equal to 0.1 s"),
     ("[rig.motor]\nresistance_ohm = -8.0", "rig.motor.resistance_ohm: found -8.0; should be greater than 0 ohm"),
     ("[drive]\nkind = 'can'", "drive.kind: found 'can'; should be 'sim'"),

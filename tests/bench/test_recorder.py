@@ -61,8 +61,8 @@ def test_a_failure_is_raised_and_the_thread_ends():
     assert threading.active_count() == threads
 
 
-def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch):
-    monkeypatch.setattr(Recorder, "PATIENCE_S", 0.05)
+@pytest.mark.parametrize(("patience_s", "longest_s"), [(0.0, 0.02), (0.05, 0.5)])
+def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience_s, longest_s):
     monkeypatch.setattr(Recorder, "BACKLOG", 2)
     monkeypatch.setattr(Recorder, "BLOCK_ROWS", 1)
     release = threading.Event()
@@ -71,9 +71,11 @@ def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch):
         def append(self, rows):
             release.wait(30.0)
 
-    recorder = Recorder(Hanging())
-    with pytest.raises(RecordingError, match="has not taken a block"):
+    recorder = Recorder(Hanging(), patience_s)
+    began_s = time.monotonic()
+    with pytest.raises(RecordingError, match="2 blocks are waiting"):
         fill(recorder)
+    assert patience_s <= time.monotonic() - began_s < longest_s
     monkeypatch.setattr(Recorder, "LAST_PATIENCE_S", 0.05)
     with pytest.raises(RecordingError, match="has not taken"):
         recorder.close()
@@ -95,7 +97,7 @@ def test_a_full_backlog_is_worked_through_at_the_end(monkeypatch):
             super().append(rows)
 
     sink = Slow()
-    recorder = Recorder(sink)
+    recorder = Recorder(sink, patience_s=10.0)
     fill(recorder)
     recorder.close()
     assert len(sink.blocks) == 100

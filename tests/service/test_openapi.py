@@ -1,9 +1,12 @@
 """The interface's own description: good enough to use it alone."""
 
 import json
+import re
 
 import httpx
 import pytest
+
+from compensator.lab.catalogue import catalogue
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +53,12 @@ def test_the_page_and_its_files_are_served(service):
     assert httpx.get(service.url + "/static/../../pyproject.toml").status_code == 404
     assert "<script>" not in page.text
     assert "style=" not in page.text
+
+
+def test_examples_name_effects_that_exist(document):
+    schemas = document["components"]["schemas"]
+    named = [example["effect"] for example in schemas["Change"]["examples"]]
+    named += schemas["Effect"]["properties"]["name"]["examples"]
+    named += re.findall(r'"effect": "(\w+)"', document["info"]["description"])
+    assert len(named) == 3
+    assert set(named) <= set(catalogue())
