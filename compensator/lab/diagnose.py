@@ -96,7 +96,8 @@ def _verdict(
     fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None, best: Evidence, candidate: Candidate
 ) -> tuple[Verdict, str | None]:
     curve = _curve(fit, gathered, generic)
-    if curve is not None and best.noncentrality < FORMULA_SHARE * curve.noncentrality:
+    followed = candidate.physical and curve is not None and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
+    if curve is not None and not followed:
         return "unknown-effect", curve.block.name
     formula_found = named.p_value <= SIGNIFICANT and is_confirmed(candidate)
     return ("missing", None) if formula_found else ("nothing", None)

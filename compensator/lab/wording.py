@@ -10,9 +10,10 @@ def answer_in_words(verdict: Verdict, p_value: float, candidates: list[Candidate
         return _nothing(p_value)
     best = candidates[0]
     if verdict == "unknown-effect":
+        why = "does not follow its curve" if best.physical else "would need a sign or size that is not physical"
         return (
             f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
-            f"{best.effect.title.lower()}, does not follow its curve (p = {p_value:.3g})."
+            f"{best.effect.title.lower()}, {why} (p = {p_value:.3g})."
         )
     title = best.effect.title
     also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
