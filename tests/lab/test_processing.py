@@ -113,9 +113,7 @@ def test_irregular_time_is_made_uniform_and_regular_time_is_left_alone():
 
 
 def test_too_short_says_how_long_is_enough():
-    with pytest.raises(
-        UnusableDataError, match=r"'swing' has 20 samples; at least \d+ are needed.*8 Hz; record longer"
-    ):
+    with pytest.raises(UnusableDataError, match=r"'swing' has 20 samples; at least \d+ are needed.*8 Hz; record"):
         signals_of(recording(np.arange(20) / 200))
 
 

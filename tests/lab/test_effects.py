@@ -1,0 +1,130 @@
+"""Every effect file: its columns against the equation that it states, and what it says about itself."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from compensator.lab.catalogue import catalogue
+from compensator.lab.drivers import DRIVERS
+from compensator.lab.effects.effect import Motion
+from compensator.lab.facts import Facts
+from compensator.lab.nuisance import NAMES as NUISANCES
+
+EFFECTS = catalogue()
+LOAD_KG, ARM_M = 0.2, 0.4
+WEIGHT_N_M = 0.2 * 9.80665 * 0.4
+
+
+def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
+    time_s = np.linspace(0.0, 2.0, 41)
+    q, v, a = np.sin(3 * time_s), 3 * np.cos(3 * time_s), -9 * np.sin(3 * time_s)
+    return Motion(
+        facts=Facts(joint=joint),
+        conditions={"load_kg": LOAD_KG, "arm_m": ARM_M, **conditions},
+        time_s=time_s,
+        position=q,
+        velocity=v,
+        acceleration=a,
+        jerk=-9 * v,
+        direction=np.tanh(v / 0.01),
+        load_effort=1.3 * np.sin(q) - 0.2,
+        effort_rate=4.0 * v,
+        temperature_c=20.0 + 5.0 * time_s,
+        supply_v=np.full(41, 12.0),
+        position_span=2.0,
+        slow=0.06,
+        fast=2.9,
+    )
+
+
+# one row per parameter, from the equation in the effect's file; shape values in its order
+EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray]]]] = {
+    "inertia": ((), lambda m: [m.acceleration, LOAD_KG * ARM_M**2 * m.acceleration]),
+    "gravity": ((), lambda m: [np.sin(m.position), WEIGHT_N_M * np.sin(m.position)]),
+    "offset": ((), lambda m: [np.ones(41)]),
+    "coulomb": ((), lambda m: [np.sign(m.velocity)]),
+    "viscous": ((), lambda m: [m.velocity]),
+    "stribeck": ((0.7, 2.0), lambda m: [np.sign(m.velocity) * np.exp(-((m.velocity / 0.7) ** 2))]),
+    "coulomb_asymmetry": ((), lambda m: [np.ones(41)]),
+    "viscous_asymmetry": ((), lambda m: [np.abs(m.velocity)]),
+    "viscous_quadratic": ((), lambda m: [np.sign(m.velocity) * m.velocity**2]),
+    "load_friction": ((), lambda m: [np.abs(1.3 * np.sin(m.position) - 0.2) * np.sign(m.velocity)]),
+    "load_friction_quadratic": ((), lambda m: [(1.3 * np.sin(m.position) - 0.2) ** 2 * np.sign(m.velocity)]),
+    "weight_friction": ((), lambda m: [LOAD_KG * np.sign(m.velocity)]),
+    "coulomb_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * np.sign(m.velocity)]),
+    "viscous_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * m.velocity]),
+    "position_periodic_friction": (
+        (7.0,),
+        lambda m: [np.cos(7 * m.position) * np.sign(m.velocity), np.sin(7 * m.position) * np.sign(m.velocity)],
+    ),
+    "spring": ((), lambda m: [m.position]),
+    "centre_of_mass_angle": ((), lambda m: [np.cos(m.position), WEIGHT_N_M * np.cos(m.position)]),
+    "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
+}
+
+
+def test_every_effect_of_the_catalogue_has_its_equation_here():
+    assert set(EQUATIONS) == set(EFFECTS)
+
+
+@pytest.mark.parametrize("name", EQUATIONS)
+def test_columns_are_the_written_equation(name):
+    shape, equation = EQUATIONS[name]
+    found, wanted = EFFECTS[name].columns(motion(), shape), np.array(equation(motion()))
+    assert found.shape == (len(EFFECTS[name].parameters), 41)
+    assert found == pytest.approx(wanted, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_what_an_effect_says_of_itself(name):
+    effect = EFFECTS[name]
+    assert effect.driver in DRIVERS
+    assert set(effect.confused_with) <= set(EFFECTS) - {name}
+    assert effect.standing_in <= set(NUISANCES)
+    assert effect.title
+    assert effect.physics.endswith(".")
+    for parameter in effect.parameters:
+        assert parameter.low < parameter.high
+        assert "{" not in parameter.unit_in("N m", "rad")
+    for shape in effect.shapes(motion()):
+        assert len(shape) == len(effect.shape_names)
+
+
+def test_units_are_the_studys_own():
+    (viscous,) = EFFECTS["viscous"].parameters
+    assert viscous.unit_in("N", "m") == "N s/m"
+
+
+def test_friction_and_inertia_are_never_negative_and_a_lubricant_never_thickens():
+    for name in ("inertia", "coulomb", "viscous", "stribeck", "load_friction", "weight_friction"):
+        assert EFFECTS[name].parameters[0].low == 0.0
+    assert EFFECTS["viscous_temperature"].parameters[0].high == 0.0
+    assert EFFECTS["load_friction"].parameters[0].high == 1.0
+
+
+def test_a_balanced_arm_has_inertia_but_no_moment():
+    balanced = motion(balanced=True)
+    assert not EFFECTS["gravity"].columns(balanced, ())[1].any()
+    assert EFFECTS["gravity"].columns(balanced, ())[0].any()
+    assert EFFECTS["inertia"].columns(balanced, ())[1].any()
+
+
+def test_what_is_not_told_of_a_load_is_nothing():
+    bare = motion()
+    untold = Motion(**{**{name: getattr(bare, name) for name in bare.__dataclass_fields__}, "conditions": {}})
+    assert untold.load_kg == untold.load_moment_n_m == untold.arm_m == 0.0
+    worded = motion(load_kg="heavy")
+    assert worded.load_kg == 0.0
+
+
+def test_stribeck_speeds_lie_between_the_uncertain_and_half_the_fast():
+    speeds = [speed for speed, _ in EFFECTS["stribeck"].shapes(motion())]
+    assert min(speeds) == pytest.approx(0.12)
+    assert max(speeds) == pytest.approx(1.45)
+
+
+def test_orders_of_a_linear_joint_are_cycles_over_its_travel():
+    (first,), *_, (last,) = EFFECTS["position_periodic_friction"].shapes(motion("linear"))
+    assert (first, last) == pytest.approx((np.pi, 30 * np.pi))
+    assert EFFECTS["position_periodic_friction"].shapes(motion())[0] == (3.0,)
