@@ -41,12 +41,12 @@ def trial(
 ) -> None:
     """Show one trial: conditions, results, events; or all its samples as CSV."""
     from bench.recording_set import csv_chunks
-    from bench.service.trials import recording_of, represent
+    from bench.service.trials import represent
 
     with session_of(context).open_store() as store:
         found = store.trial(trial_id)
         if csv:
-            for chunk in csv_chunks(recording_of(store, found)):
+            for chunk in csv_chunks(store.recording(found.id)):
                 typer.echo(chunk, nl=False)
             return
         events = store.events(trial_id)

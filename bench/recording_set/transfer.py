@@ -60,10 +60,10 @@ def export_experiment(store: Store, experiment_id: int, path: Path) -> None:
 
 def _recordings(store: Store, trials: list[Trial]) -> Iterator[Recording]:
     for trial in trials:
-        conditions = dict(trial.conditions)
+        recording = store.recording(trial.id)
         if trial.outcome != "completed":
-            conditions |= {"outcome": trial.outcome, "reason": trial.reason}
-        yield Recording(trial.name, trial.kind, conditions, store.samples(trial.id), store.events(trial.id))
+            recording.conditions.update(outcome=trial.outcome, reason=trial.reason)
+        yield recording
 
 
 def _with_outcome(recording: Recording) -> tuple[Recording, str, str]:

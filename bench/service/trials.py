@@ -12,9 +12,7 @@ from bench.service.access import allow_read
 from bench.service.json_numbers import column, plain
 from bench.service.problems import problems
 from bench.service.services import StoreOf
-from bench.store import Store
 from bench.store.records import Trial as StoredTrial
-from compensator.lab.recording import Recording
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
@@ -78,11 +76,6 @@ def represent(trial: StoredTrial) -> dict[str, Any]:
     return {"trial_id": trial.id, **fields, **changed}
 
 
-def recording_of(store: Store, trial: StoredTrial) -> Recording:
-    """A stored trial as the recording that a recording set would hold."""
-    return Recording(trial.name, trial.kind, trial.conditions, store.samples(trial.id), store.events(trial.id))
-
-
 @router.get("", summary="Trials, filtered", responses=problems(422))
 def trials(
     store: StoreOf,
@@ -144,5 +137,5 @@ def csv(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
     found = store.trial(trial_id)
     headers = {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
     return StreamingResponse(
-        csv_chunks(recording_of(store, found)), media_type="text/csv; charset=utf-8", headers=headers
+        csv_chunks(store.recording(trial_id)), media_type="text/csv; charset=utf-8", headers=headers
     )

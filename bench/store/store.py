@@ -223,6 +223,15 @@ class Store:
             trial = trials.get(connection, trial_id)
             return samples.read(connection, trial, trial.channels if channels is None else channels)
 
+    def recording(self, trial_id: int) -> Recording:
+        """A trial as a recording set would hold it: its conditions, all its channels, its events.
+
+        Raises:
+            NotFoundError: no such trial.
+        """
+        trial = self.trial(trial_id)
+        return Recording(trial.name, trial.kind, dict(trial.conditions), self.samples(trial_id), self.events(trial_id))
+
     def samples_reduced(self, trial_id: int, channels: Sequence[str] | None, points: int) -> dict[str, FloatArray]:
         """As `samples`, always with time_s, reduced to the rows that a plot needs.
 

@@ -7,7 +7,7 @@ from bench.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
-from bench.study.material import Definition, Material, facts_of, load, read_recordings
+from bench.study.material import Definition, Material, facts_of, load
 from bench.study.models import keep_model
 from bench.study.selection import keep, split
 from compensator.lab.bandwidth import choose_cutoff_hz
@@ -49,7 +49,7 @@ def create_study(
     facts = _facts(store, experiment_ids)
     with lab_errors():
         effects = tuple(effect_named(effect).name for effect in base) if base else default_effects(facts)
-        recordings = read_recordings(store, tuple(trials))
+        recordings = [store.recording(trial.id) for trial in trials]
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
     definition = Definition(
         trial_ids=tuple(trial.id for trial in trials),

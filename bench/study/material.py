@@ -13,7 +13,6 @@ from bench.study.errors import StudyError, lab_errors
 from compensator.lab.dataset import Dataset, Processing, RowChoice, make_dataset
 from compensator.lab.facts import Facts
 from compensator.lab.fit import Fit, fit_model
-from compensator.lab.recording import Event, Recording
 from compensator.lab.regimes import BoolArray
 
 
@@ -113,20 +112,6 @@ def load(store: Store, study_id: int) -> Material:
     return Material(study_id, row.name, definition, trials, dataset)
 
 
-def read_recordings(store: Store, trials: tuple[Trial, ...]) -> list[Recording]:
-    """Trials of the store as the lab's recordings."""
-    return [
-        Recording(
-            trial.name,
-            trial.kind,
-            dict(trial.conditions),
-            store.samples(trial.id),
-            [Event(event.time_s, event.name, event.detail) for event in store.events(trial.id)],
-        )
-        for trial in trials
-    ]
-
-
 def model_of(store: Store, study_id: int, model_id: int | None) -> ModelRow:
     """A model of the study; the newest one if None.
 
@@ -156,7 +141,6 @@ class _Source:
 
 @lru_cache(maxsize=4)  # finished trials never change; a study asks for the same rows at every step
 def _dataset(source: _Source, definition: Definition) -> Dataset:
-    trials = tuple(source.store.trial(trial_id) for trial_id in source.trial_ids)
+    recordings = [source.store.recording(trial_id) for trial_id in source.trial_ids]
     with lab_errors():
-        recordings = read_recordings(source.store, trials)
         return make_dataset(recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows))
