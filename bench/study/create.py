@@ -1,13 +1,14 @@
 """Create a study, describe it, list studies."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from bench.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
-from bench.study.material import Definition, Material, facts_of, load
+from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models import keep_model
 from bench.study.selection import keep, split
 from compensator.lab.bandwidth import choose_cutoff_hz
@@ -48,7 +49,7 @@ def create_study(
     held = split(trials, hold_out)
     facts = _facts(store, experiment_ids)
     with lab_errors():
-        effects = tuple(effect_named(effect).name for effect in base) if base else default_effects(facts)
+        effects = _base_effects(base, facts)
         recordings = [store.recording(trial.id) for trial in trials]
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
     definition = Definition(
@@ -77,9 +78,10 @@ def list_studies(store: Store) -> list[dict[str, Any]]:
 
 
 def _create(store: Store, name: str, definition: Definition) -> dict[str, Any]:
-    study_id = store.create_study(name, definition.to_json())
-    material = load(store, study_id)
-    keep_model(store, material, None, material.fit(list(definition.base)))
+    draft = material_of(store, 0, name, definition)
+    fit = draft.fit(list(definition.base))  # before anything is kept: a study has a model from the start
+    material = replace(draft, study_id=store.create_study(name, definition.to_json()))
+    keep_model(store, material, None, fit)
     return _describe(store, material)
 
 
@@ -103,6 +105,15 @@ def _describe(store: Store, material: Material) -> dict[str, Any]:
         "models": [{"model_id": m.id, "parent_id": m.parent_id, "effects": m.effects} for m in models],
         "model_id": models[-1].id,
     }
+
+
+def _base_effects(base: Sequence[str] | None, facts: Facts) -> tuple[str, ...]:
+    if not base:
+        return default_effects(facts)
+    for effect in base:
+        if base.count(effect) > 1:
+            raise StudyError(f"{effect} stands twice in the base model {', '.join(base)}; name each effect once")
+    return tuple(effect_named(effect).name for effect in base)
 
 
 def _trials(store: Store, experiment_ids: Sequence[int]) -> list[Trial]:

@@ -106,10 +106,14 @@ def load(store: Store, study_id: int) -> Material:
         StudyError: the trials cannot be used.
     """
     row = store.study(study_id)
-    definition = Definition.from_json(row.definition)
+    return material_of(store, study_id, row.name, Definition.from_json(row.definition))
+
+
+def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:
+    """The material of a definition, whether it is kept already or not. Errors as `load`."""
     trials = tuple(store.trial(trial_id) for trial_id in definition.trial_ids)
     dataset = _dataset(_Source(store, definition.trial_ids), definition)
-    return Material(study_id, row.name, definition, trials, dataset)
+    return Material(study_id, name, definition, trials, dataset)
 
 
 def model_of(store: Store, study_id: int, model_id: int | None) -> ModelRow:
