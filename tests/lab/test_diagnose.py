@@ -1,6 +1,5 @@
 """What is missing: each effect of the first catalogue planted, nothing planted, and what no formula describes."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
