@@ -8,6 +8,7 @@ from drivers.errors import DriveConfigurationError, DriveFault, DriveStateError
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
 from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
+from sim_backend.overload import OverloadMeter
 from sim_backend.parameters import PlantParameters
 from sim_backend.plant import COARSEST_STEP_S, Plant
 
@@ -42,7 +43,7 @@ class SimulatedDrive:
         self._switch(Status.DISABLED)
         self._steps = 0
         self._duty_counts = parameters.supply.duty_counts
-        self._supply_v = parameters.supply.voltage_v
+        self._overload = OverloadMeter(parameters.overload)
         self._modes = {Mode.DUTY, Mode.CURRENT} if parameters.current_loop.present else {Mode.DUTY}
 
     # the contract --------------------------------------------------------------------------------
@@ -150,7 +151,7 @@ class SimulatedDrive:
         if not isfinite(value):
             raise DriveConfigurationError(self._device, f"{mode.value} demand {value}: a finite number is wanted")
         if mode is Mode.CURRENT:
-            return self._advance(CURRENT, value, nan)
+            return self._advance(CURRENT, self.plant.parameters.overload.limited(value), nan)
         if not -1.0 <= value <= 1.0:
             raise DriveConfigurationError(self._device, f"duty {value:g}: -1 .. 1 is allowed; limit the demand")
         duty = round(value * self._duty_counts) / self._duty_counts
@@ -186,8 +187,7 @@ class SimulatedDrive:
         stage, demand = self._held
         for cycle in range(round(duration_s / period_s)):
             if self._status in (Status.ENABLED, Status.QUICK_STOP) and cycle * period_s >= self._watchdog_s:
-                self._fault = _WATCHDOG_FAULT
-                self._switch(Status.FAULT)
+                self._trip(_WATCHDOG_FAULT)
                 stage, demand = self._held
             self.plant.advance(stage, demand, self._steps)
 
@@ -195,11 +195,20 @@ class SimulatedDrive:
 
     def _advance(self, stage: int, demand: float, duty: float) -> Sample:
         self._held = stage, demand
-        position_rad, velocity_rad_s, current_a, temperature_c = self.plant.advance(stage, demand, self._steps).tolist()
+        position_rad, velocity_rad_s, current_a, temperature_c, supply_v = self.plant.advance(
+            stage, demand, self._steps
+        ).tolist()
+        if self._overload.overloads(current_a, self._steps * self.plant.step_s):
+            self._trip(f"I2t overload, {current_a:.3g} A")
         return Sample(
             self.plant.time_s, 0.0, position_rad, velocity_rad_s, duty, current_a,
-            self._supply_v, temperature_c, self._status,
+            supply_v, temperature_c, self._status,
         )  # fmt: skip
+
+    def _trip(self, fault: str) -> None:
+        """Switch off because of a fault."""
+        self._fault = fault
+        self._switch(Status.FAULT)
 
     def _exchange_unpowered(self) -> Sample:
         if self._status is not Status.QUICK_STOP:

@@ -8,19 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_backend.bristle import bristle_energy
+from sim_backend.cogging import cogging_energy
 from sim_backend.contact import contact_energy
+from sim_backend.current_sensor import measured_current
 from sim_backend.gravity import arm_inertia, gravity_energy, moment_kg_m
 from sim_backend.jit import jitted_and_cached
 from sim_backend.obstacles import obstacles_energy
 from sim_backend.record import Records
-from sim_backend.sensing import counts, measured_current, radians_per_count
+from sim_backend.sensing import counts, radians_per_count
 from sim_backend.shaft import stiffness
 from sim_backend.spring import spring_energy
 from sim_backend.step import step
 
 Floats = NDArray[np.float64]
 # places in the measurement that the kernel hands out
-POSITION, VELOCITY, CURRENT, TEMPERATURE = range(4)
+POSITION, VELOCITY, CURRENT, TEMPERATURE, SUPPLY = range(5)
 
 
 def _advance_of(mechanisms: int) -> Callable[..., None]:
@@ -34,7 +36,8 @@ def _advance_of(mechanisms: int) -> Callable[..., None]:
             parameters: `record.pack(PlantParameters)`, shape (1,).
             states: `record.pack(state.State)`, shape (1,); advanced in place.
             history: last counts and currents, shape (n, 2), n > window + delay; a ring, advanced in place.
-            measured: filled with position [rad], velocity [rad/s], current [A], temperature [degC], shape (4,).
+            measured: filled with position [rad], velocity [rad/s], current [A], temperature [degC],
+                supply [V]; shape (5,).
             stage: state of the power stage, see motor.py.
             demand: duty or current [A], after the stage.
             steps: number of steps.
@@ -49,7 +52,7 @@ def _advance_of(mechanisms: int) -> Callable[..., None]:
         for _ in range(steps):
             step(plant, state, stage, demand, step_s)
             place = place + 1 if place + 1 < length else 0
-            history[place, 0] = counts(plant.encoder, ratio, state.rotor_rad)
+            history[place, 0] = counts(plant.encoder, plant.eccentricity, ratio, state.rotor_rad)
             history[place, 1] = state.current_a
         seen = (place - delay) % length
         gained = history[seen, 0] - history[(place - delay - window) % length, 0]
@@ -58,6 +61,7 @@ def _advance_of(mechanisms: int) -> Callable[..., None]:
         measured[VELOCITY] = gained * unit_rad / (window * step_s)
         measured[CURRENT] = measured_current(state, plant.current_sensor, history[seen, 1])
         measured[TEMPERATURE] = state.housing_c if plant.heat.present else np.nan
+        measured[SUPPLY] = state.supply_v
 
     return jitted_and_cached(advance)
 
@@ -72,23 +76,44 @@ def _fingerprint() -> int:
 
 # numba's cache knows when this file changes, not when a mechanism that it calls does;
 # the value of a closure variable is part of the cache's key
-advance = _advance_of(_fingerprint())
+_MECHANISMS = _fingerprint()
+advance = _advance_of(_MECHANISMS)
 
 
-@jitted_and_cached
-def stored_energy(parameters: Records, states: Records) -> float:
-    """Return kinetic, height, spring, tooth, wall, bristle and inductor energy [J]."""
-    plant, state = parameters[0], states[0]
-    rotor_kg_m2: float = plant.gear.ratio**2 * plant.motor.rotor_inertia_kg_m2
-    energy_j: float = (
-        0.5 * rotor_kg_m2 * state.rotor_rad_s**2
-        + 0.5 * arm_inertia(plant.arm, plant.load) * state.arm_rad_s**2
-        + gravity_energy(moment_kg_m(plant.arm, plant.load), plant.centre_of_mass, state.arm_rad)
-        + spring_energy(plant.spring, state.arm_rad)
-        + contact_energy(plant.gear, stiffness(plant.gear, plant.shaft), state.rotor_rad - state.arm_rad)
-        + obstacles_energy(plant, state.arm_rad)
-        + bristle_energy(plant.bristle, state.bristle_rad)
-        + bristle_energy(plant.arm_bristle, state.arm_bristle_rad)
-        + 0.5 * plant.motor.inductance_h * state.current_a**2
-    )
-    return energy_j
+def _stored_energy_of(mechanisms: int) -> Callable[[Records, Records], float]:
+    def stored_energy(parameters: Records, states: Records) -> float:
+        """Return kinetic, height, spring, tooth, wall, magnet, bristle and inductor energy [J]."""
+        mechanisms  # noqa: B018
+        plant, state = parameters[0], states[0]
+        ratio: float = plant.gear.ratio
+        energy_j: float = (
+            0.5 * ratio**2 * plant.motor.rotor_inertia_kg_m2 * state.rotor_rad_s**2
+            + 0.5 * arm_inertia(plant.arm, plant.load) * state.arm_rad_s**2
+            + gravity_energy(moment_kg_m(plant.arm, plant.load), plant.centre_of_mass, state.arm_rad)
+            + spring_energy(plant.spring, state.arm_rad)
+            + contact_energy(plant.gear, stiffness(plant.gear, plant.shaft), state.rotor_rad - state.arm_rad)
+            + obstacles_energy(plant, state.arm_rad)
+            + cogging_energy(plant.cogging, ratio * state.rotor_rad)
+            + bristle_energy(plant.bristle, state.bristle_rad)
+            + bristle_energy(plant.arm_bristle, state.arm_bristle_rad)
+            + 0.5 * plant.motor.inductance_h * state.current_a**2
+        )
+        return energy_j
+
+    return jitted_and_cached(stored_energy)
+
+
+stored_energy = _stored_energy_of(_MECHANISMS)
+
+
+def _standing_counts_of(mechanisms: int) -> Callable[[Records, Records], float]:
+    def standing_counts(parameters: Records, states: Records) -> float:
+        """Return the encoder's counts as the rotor stands."""
+        mechanisms  # noqa: B018
+        plant = parameters[0]
+        return counts(plant.encoder, plant.eccentricity, plant.gear.ratio, states[0].rotor_rad)
+
+    return jitted_and_cached(standing_counts)
+
+
+standing_counts = _standing_counts_of(_MECHANISMS)

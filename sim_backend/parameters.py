@@ -6,10 +6,14 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 from sim_backend.bristle import Bristle
+from sim_backend.cogging import Cogging
 from sim_backend.contact import Gear
 from sim_backend.coulomb_asymmetry import CoulombAsymmetry
+from sim_backend.current_sensor import CurrentSensor
+from sim_backend.dead_time import DeadTime
 from sim_backend.drag import Drag
 from sim_backend.dwell import Dwell
+from sim_backend.eccentricity import Eccentricity
 from sim_backend.end_stops import EndStops
 from sim_backend.errors import ParameterError
 from sim_backend.friction import Friction
@@ -18,11 +22,13 @@ from sim_backend.heat import Heat
 from sim_backend.load_friction import LoadFriction
 from sim_backend.lubricant import Lubricant
 from sim_backend.motor import CurrentLoop, Motor, Supply
+from sim_backend.overload import Overload
 from sim_backend.periodic_friction import PeriodicFriction
 from sim_backend.randomness import Scatter
-from sim_backend.sensing import CurrentSensor, Encoder, Latency
+from sim_backend.sensing import Encoder, Latency
 from sim_backend.shaft import Shaft
 from sim_backend.spring import Spring
+from sim_backend.thermal_drift import ThermalDrift
 from sim_backend.viscous_asymmetry import ViscousAsymmetry
 from sim_backend.wall import Wall
 
@@ -50,6 +56,7 @@ class PlantParameters:
     load_friction: LoadFriction = field(default_factory=LoadFriction)
     current_loop: CurrentLoop = field(default_factory=CurrentLoop)
     current_sensor: CurrentSensor = field(default_factory=CurrentSensor)
+    overload: Overload = field(default_factory=Overload)
     latency: Latency = field(default_factory=Latency)
     scatter: Scatter = field(default_factory=Scatter)
     shaft: Shaft = field(default_factory=Shaft)
@@ -64,10 +71,16 @@ class PlantParameters:
     spring: Spring = field(default_factory=Spring)
     centre_of_mass: CentreOfMass = field(default_factory=CentreOfMass)
     lubricant: Lubricant = field(default_factory=Lubricant)
+    cogging: Cogging = field(default_factory=Cogging)
+    dead_time: DeadTime = field(default_factory=DeadTime)
+    thermal_drift: ThermalDrift = field(default_factory=ThermalDrift)
+    eccentricity: Eccentricity = field(default_factory=Eccentricity)
 
     def __post_init__(self) -> None:
         if self.current_loop.present and not self.current_sensor.present:
             raise ParameterError("CurrentLoop.present = True: a loop needs CurrentSensor.present = True to close on")
+        if self.overload.present and not self.current_sensor.present:
+            raise ParameterError("Overload.present = True: I2t needs CurrentSensor.present = True to count")
         self.bristle.check(self.friction)
         self.arm_bristle.check(self.arm_friction)
 

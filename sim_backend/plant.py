@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
-from sim_backend.kernel import advance, stored_energy
+from sim_backend.kernel import advance, standing_counts, stored_energy
 from sim_backend.motor import OPEN
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
@@ -63,7 +63,8 @@ class Plant:
         self.parameters = parameters
         self._packed = pack(parameters)
         self._state = pack(at_rest(seed, parameters.heat.start_c))
-        self._measured = np.zeros(4)
+        self._state["supply_v"] = parameters.supply.voltage_v
+        self._measured = np.zeros(5)
         self._origin_s = 0.0
         self._origin_steps = 0
         self.step_s = step_s
@@ -97,8 +98,8 @@ class Plant:
             steps: number of integration steps.
 
         Returns:
-            position [rad], velocity [rad/s], current [A], temperature [degC] as the drive measures them; shape (4,),
-            overwritten by the next call.
+            position [rad], velocity [rad/s], current [A], temperature [degC], supply [V] as the drive measures them;
+            shape (5,), overwritten by the next call.
         """
         advance(
             self._packed, self._state, self._history, self._measured,
@@ -150,5 +151,4 @@ class Plant:
         """Fill the drive's memory with what it would see at rest here."""
         self._history = np.zeros((self._window + self._delay + 1, 2))
         self.advance(OPEN, 0.0, 0)
-        position = self._state["rotor_rad"][0] * self.parameters.gear.ratio
-        self._history[:, 0] = np.floor(position * self.parameters.encoder.counts_per_turn / (2.0 * np.pi))
+        self._history[:, 0] = standing_counts(self._packed, self._state)

@@ -1,12 +1,11 @@
-"""What the drive measures: position and speed by a motor-side encoder, current, and how late all that is."""
+"""What the drive measures of motion, by a motor-side encoder, and how late that is."""
 
 from dataclasses import dataclass
-from math import floor, nan, pi
+from math import floor, pi
 
 from sim_backend.component import Component, quantity
+from sim_backend.eccentricity import Eccentricity, seen_angle
 from sim_backend.jit import jitted
-from sim_backend.randomness import sensor_noise
-from sim_backend.state import State
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,16 +17,6 @@ class Encoder(Component):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CurrentSensor(Component):
-    """Motor current as measured: gain * current + offset + white noise. Absent, the current is NaN."""
-
-    present: bool = False
-    gain: float = quantity("1", above=0, default=1.0)
-    offset_a: float = quantity("A", default=0.0)
-    noise_a: float = quantity("A, standard deviation", at_least=0, default=0.0)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Latency(Component):
     """Delay of everything measured. The drive does not know of it, so the age in its samples does not tell."""
 
@@ -35,21 +24,12 @@ class Latency(Component):
 
 
 @jitted
-def counts(encoder: Encoder, ratio: float, rotor_rad: float) -> float:
+def counts(encoder: Encoder, eccentricity: Eccentricity, ratio: float, rotor_rad: float) -> float:
     """Return the whole counts at a rotor angle, given at the joint [rad]."""
-    return floor(rotor_rad * ratio * encoder.counts_per_turn / (2.0 * pi))
+    return floor(seen_angle(eccentricity, rotor_rad * ratio) * encoder.counts_per_turn / (2.0 * pi))
 
 
 @jitted
 def radians_per_count(encoder: Encoder, ratio: float) -> float:
     """Return the joint angle of one count [rad]."""
     return 2.0 * pi / (encoder.counts_per_turn * ratio)
-
-
-@jitted
-def measured_current(state: State, sensor: CurrentSensor, current_a: float) -> float:
-    """Return the current as the drive measures it [A]; NaN without a sensor."""
-    if not sensor.present:
-        return nan
-    noise_a = sensor.noise_a * sensor_noise(state) if sensor.noise_a > 0.0 else 0.0
-    return sensor.gain * current_a + sensor.offset_a + noise_a

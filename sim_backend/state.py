@@ -19,6 +19,7 @@ class State:
     rotor_mean_rad_s: float = 0.0  # mean over the last step
     arm_mean_rad_s: float = 0.0
     current_a: float = 0.0
+    supply_v: float = 0.0  # at the end of the last step
     contact_n_m: float = 0.0  # torque of the teeth on the arm, mean over the last step
     leant_n_m: float = 0.0  # torque of wall and end stops on the arm, mean over the last step
     bristle_rad: float = 0.0  # deflection of the drive side's bristles, at the motor shaft

@@ -9,12 +9,13 @@ never blow up, and smooth motion is second order in the step.
 from typing import NamedTuple
 
 from sim_backend.bristle import bend
+from sim_backend.cogging import cogging_torque
 from sim_backend.contact import contact_energy, flank, is_pull, penetration
 from sim_backend.dwell import aged
 from sim_backend.gravity import STANDARD_GRAVITY_M_S2, arm_inertia, gravity_torque, moment_kg_m
 from sim_backend.heat import warm
 from sim_backend.jit import jitted
-from sim_backend.motor import CurrentLine, current_line, electrical_energy
+from sim_backend.motor import CurrentLine, current_line, stage_loss, supply_voltage, winding_energy
 from sim_backend.obstacle import Push, push_torque
 from sim_backend.obstacles import obstacles_energy, obstacles_push
 from sim_backend.parameters import PlantParameters
@@ -24,6 +25,7 @@ from sim_backend.shaft import damping, stiffness
 from sim_backend.spring import spring_torque
 from sim_backend.state import State
 from sim_backend.stick_slip import Body, coupled_speeds, free_speeds
+from sim_backend.thermal_drift import Winding, drifted
 
 
 class Motion(NamedTuple):
@@ -38,10 +40,11 @@ class Motion(NamedTuple):
 def step(parameters: PlantParameters, state: State, stage: int, demand: float, step_s: float) -> None:
     """Advance the state by one step at a constant demand (duty or current [A], after the stage)."""
     ratio = parameters.gear.ratio
-    line = current_line(stage, demand, state.current_a, ratio * state.rotor_rad_s, parameters, step_s)
+    winding = _winding(parameters, state)
+    line = current_line(stage, demand, state.current_a, ratio * state.rotor_rad_s, winding, parameters, step_s)
     drive_friction = drive_side(parameters, state, _weight(parameters), step_s)
     arm_friction = arm_side(parameters, state, _weight(parameters), step_s)
-    rotor = _rotor(parameters, state, line, drive_friction, step_s)
+    rotor = _rotor(parameters, state, winding, line, drive_friction, step_s)
     arm = _arm(parameters, state, arm_friction, step_s)
     push = obstacles_push(parameters, state.arm_rad, step_s)
     leaning = _leaning(arm, push, state.arm_rad_s, step_s)
@@ -55,17 +58,18 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     current_a = line.constant_a - line.slope_a_s_rad * ratio * mean_r
 
     # where the energy went
-    supplied_j, electrical_j = electrical_energy(
-        stage, state.current_a, current_a, ratio * mean_r, parameters.motor, step_s
+    taken_j, copper_j = winding_energy(
+        stage, state.current_a, current_a, ratio * mean_r, winding, parameters.motor.inductance_h, step_s
     )
+    stage_j = stage_loss(line, current_a, parameters.supply, step_s)
     state.bristle_rad, friction_j = bend(parameters.bristle, drive_friction.bristle, state.bristle_rad, mean_r, step_s)
     state.arm_bristle_rad, arm_friction_j = bend(
         parameters.arm_bristle, arm_friction.bristle, state.arm_bristle_rad, mean_a, step_s
     )
     friction_j += _friction_loss(rotor, -motion.contact_n_m, motion.rotor_rad_s, mean_r, step_s)
     arm_friction_j += _friction_loss(leaning, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
-    state.supplied_j += supplied_j
-    state.electrical_loss_j += electrical_j
+    state.supplied_j += taken_j + stage_j
+    state.electrical_loss_j += copper_j + stage_j
     state.friction_loss_j += friction_j
     state.arm_friction_loss_j += arm_friction_j
     state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
@@ -78,7 +82,7 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.arm_rest_s = aged(parameters.arm_dwell, state.arm_rest_s, mean_a, step_s)
     wander(state, parameters.scatter, abs(step_s * mean_r))
     if parameters.heat.present:
-        warm(state, parameters.heat, electrical_j, friction_j, step_s)
+        warm(state, parameters.heat, copper_j, friction_j, step_s)
 
     state.rotor_rad += step_s * mean_r
     state.arm_rad += step_s * mean_a
@@ -89,17 +93,21 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.contact_n_m = motion.contact_n_m
     state.leant_n_m = push_torque(push, mean_a)
     state.current_a = current_a
+    state.supply_v = supply_voltage(line, current_a, parameters.supply)
     state.steps += 1
 
 
 @jitted
-def _rotor(parameters: PlantParameters, state: State, line: CurrentLine, friction: Resistance, step_s: float) -> Body:
-    """Return the rotor's share: motor torque, with the back-EMF as viscous friction, and the drive side's friction."""
+def _rotor(
+    parameters: PlantParameters, state: State, winding: Winding, line: CurrentLine, friction: Resistance, step_s: float
+) -> Body:
+    """Return the rotor's share: motor and cogging torque, the drive side's friction, and the back-EMF as viscous."""
     ratio, speed = parameters.gear.ratio, state.rotor_rad_s
-    strength = ratio * parameters.motor.torque_constant_n_m_a
+    strength = ratio * winding.torque_constant_n_m_a
     drag = friction.viscous_n_m_s_rad + strength * ratio * line.slope_a_s_rad + friction.bristle.slope_n_m_s_rad
     inertia = ratio * ratio * parameters.motor.rotor_inertia_kg_m2
     impulse = inertia * speed + step_s * (strength * line.constant_a - 0.5 * drag * speed - friction.bristle.known_n_m)
+    impulse += step_s * ratio * cogging_torque(parameters.cogging, ratio * (state.rotor_rad + 0.5 * step_s * speed))
     return Body(
         inertia + 0.5 * step_s * drag, impulse,
         step_s * friction.lower_n_m, step_s * friction.upper_n_m, friction.viscous_n_m_s_rad,
@@ -147,6 +155,15 @@ def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, ste
             return Motion(rotor_rad_s, arm_rad_s, contact_n_m)
     rotor_rad_s, arm_rad_s = free_speeds(rotor, arm)
     return Motion(rotor_rad_s, arm_rad_s, 0.0)
+
+
+@jitted
+def _winding(parameters: PlantParameters, state: State) -> Winding:
+    """Return the motor as its temperature has made it."""
+    motor = parameters.motor
+    return drifted(
+        parameters.thermal_drift, motor.resistance_ohm, motor.torque_constant_n_m_a, state.winding_c, state.housing_c
+    )
 
 
 @jitted

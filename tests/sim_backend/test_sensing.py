@@ -57,3 +57,24 @@ def test_measured_current_of_a_running_motor_is_what_eq_3_gives() -> None:
         measured = running.advance(VOLTAGE, duty, 3000)
         inferred = (SUPPLY * duty - K * RATIO * running.truth().rotor_rad_s) / RESISTANCE
         assert measured[2] == pytest.approx(inferred, abs=2e-3)
+
+
+def test_current_comes_in_whole_steps_of_the_converter() -> None:
+    held = plant(
+        friction={"coulomb_n_m": 9.0, "static_n_m": 9.0}, current_sensor={"present": True, "resolution_a": 0.04}
+    )
+    for duty, wanted in ((0.3, 3.0), (0.3019, 3.0), (0.3021, 3.04), (-0.3021, -3.04)):
+        assert held.advance(VOLTAGE, duty, 10)[2] == pytest.approx(wanted, rel=1e-12)
+
+
+def test_eccentric_encoder_errs_once_a_turn() -> None:
+    amplitude, phase = 0.05, 0.4
+    turned = plant(eccentricity={"amplitude_rad": amplitude, "phase_rad": phase})
+    errors = []
+    for step in range(40):
+        motor_rad = 2.0 * pi * step / 40.0
+        turned.place(motor_rad / RATIO, motor_rad / RATIO)
+        errors.append(float(turned.advance(VOLTAGE, 0.0, 0)[0]) * RATIO - motor_rad)
+        wanted = amplitude * np.sin(motor_rad - phase)
+        assert errors[-1] == pytest.approx(wanted, abs=1.01 * 2.0 * pi / 4096)
+    assert max(errors) - min(errors) == pytest.approx(2.0 * amplitude, rel=0.05)
