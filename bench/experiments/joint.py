@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError, ExperimentError
-from bench.experiments.profile import SetPoint, Trapezoid
+from bench.experiments.profile import Halt, SetPoint, Trapezoid
 from bench.loop import OFF, Action, Reading
 from bench.servo import PositionServo
 from compensator import zero_speed_search
@@ -57,6 +57,11 @@ class Joint:
         self._reading = yield Action(OFF)
         return self._reading
 
+    @property
+    def reading(self) -> Reading:
+        """The last one."""
+        return self._last()
+
     def follow(self, set_points: Iterable[SetPoint]) -> Part[list[Reading]]:
         """Track one set point per cycle; the readings, one for each."""
         readings = []
@@ -71,6 +76,21 @@ class Joint:
         profile = Trapezoid(start_rad, target_rad, speed_rad_s, self._motion.acceleration_rad_s2)
         cycles = ceil(profile.duration_s / self._period_s)
         yield from self.follow(profile.at((cycle + 1) * self._period_s) for cycle in range(cycles))
+
+    def push(self, command: Command) -> Part[Reading]:
+        """One cycle of a command of one's own; no position is asked for."""
+        self._command_a = command.value if command.mode is Mode.CURRENT else self._command_a
+        self._reading = yield Action(command)
+        return self._reading
+
+    def brake(self, acceleration_rad_s2: float) -> Part[None]:
+        """From any speed to rest, after `push`; the servo takes over from the current that flows."""
+        reading = self._last()
+        start_rad, speed_rad_s = reading.sample.position_rad, reading.velocity_rad_s
+        self._servo.reset(reading.current_a)
+        halt = Halt(start_rad, speed_rad_s, acceleration_rad_s2)
+        cycles = ceil(halt.duration_s / self._period_s)
+        yield from self.follow(halt.at((cycle + 1) * self._period_s) for cycle in range(cycles))
 
     def settle(self, target_rad: float) -> Part[Steady]:
         """Wait until the joint rests in the dead-band.

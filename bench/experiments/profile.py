@@ -42,3 +42,24 @@ class Trapezoid:
         else:
             way_rad, speed = self._peak * (time_s - 0.5 * self._ramp_s), self._peak
         return SetPoint(self._start_rad + self._sign * way_rad, self._sign * speed)
+
+
+class Halt:
+    """From a speed to rest.
+
+    Args:
+        start_rad: where braking begins.
+        speed_rad_s: with which it begins, either way.
+        acceleration_rad_s2: how hard; above 0.
+    """
+
+    def __init__(self, start_rad: float, speed_rad_s: float, acceleration_rad_s2: float) -> None:
+        self._start_rad, self._speed = start_rad, speed_rad_s
+        self._acceleration = copysign(acceleration_rad_s2, speed_rad_s)
+        self.duration_s = abs(speed_rad_s) / acceleration_rad_s2
+
+    def at(self, time_s: float) -> SetPoint:
+        """The set point at a time since braking began."""
+        time_s = min(time_s, self.duration_s)
+        way_rad = self._speed * time_s - 0.5 * self._acceleration * time_s**2
+        return SetPoint(self._start_rad + way_rad, self._speed - self._acceleration * time_s)

@@ -181,7 +181,7 @@ def test_malformed_parameters_are_named(name, parameters, message):
 def test_an_unknown_kind_names_those_there_are():
     with pytest.raises(UnknownKindError) as caught:
         find_kind("step")
-    assert str(caught.value) == "there is no experiment 'step'; known are steps, load-sweep, excitation"
+    assert str(caught.value) == "there is no experiment 'step'; known are steps, load-sweep, speed-sweep, excitation"
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
