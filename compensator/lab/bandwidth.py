@@ -12,8 +12,9 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt, welch
 
 from compensator.lab.effort import Effort
+from compensator.lab.errors import UnusableDataError
 from compensator.lab.facts import Facts
-from compensator.lab.processing import Signals, low_pass, make_signals
+from compensator.lab.processing import Signals, low_pass, make_signals, sample_rate_hz
 from compensator.lab.recording import FloatArray, Recording
 
 COHERENT = 0.5
@@ -30,8 +31,16 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
 
     Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the noise
     corner, and within 2 Hz and a fifth of the sample rate.
+
+    Raises:
+        UnusableDataError: a recording with fewer than four samples a second, or one that `make_signals` refuses.
     """
-    slowest_hz = min(1.0 / float(np.median(np.diff(r.channels["time_s"]))) for r in recordings)
+    slowest_hz, slowest = min((sample_rate_hz(r), r.name) for r in recordings)
+    if slowest_hz < 2.0 * LOWEST_HZ:
+        raise UnusableDataError(
+            f"recording '{slowest}' has {slowest_hz:.3g} samples a second; at least {2.0 * LOWEST_HZ:g} are needed "
+            "to see motion: check that time_s is in seconds, or record faster"
+        )
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
     highest_hz = 0.2 * slowest_hz
     wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)

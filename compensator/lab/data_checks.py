@@ -3,17 +3,18 @@
 import numpy as np
 
 from compensator.lab.fit import Fit
-from compensator.lab.validation import rms
+from compensator.lab.validation import relative_error, rms
 
 ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
 FEWEST_TRIALS_TO_COMPARE = 5
 SATURATED_SHARE = 0.2
+UNEXPLAINED = 0.8  # of the effort: a rigid joint with friction explains more, whatever it lacks
 DISSIPATIVE = ("inertia", "coulomb", "viscous")
 
 
 def data_problems(fit: Fit) -> list[str]:
     """Sentences, each naming the trial or channel, what was found, and what to do."""
-    return [*_wrong_sign(fit), *_odd_trials(fit), *_few_usable(fit)]
+    return [*_wrong_sign(fit), *_unexplained(fit), *_odd_trials(fit), *_few_usable(fit), *_same_samples(fit)]
 
 
 def _wrong_sign(fit: Fit) -> list[str]:
@@ -28,6 +29,16 @@ def _wrong_sign(fit: Fit) -> list[str]:
             "the other; check the sign of the effort channel and of position"
         ]
     return []
+
+
+def _unexplained(fit: Fit) -> list[str]:
+    error = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
+    if error < UNEXPLAINED or not set(DISSIPATIVE) <= set(fit.names):
+        return []
+    return [
+        f"inertia and friction explain next to nothing: the error is {error:.0%} of the effort; check that effort and "
+        "position are of the same joint and time, and their units"
+    ]
 
 
 def _odd_trials(fit: Fit) -> list[str]:
@@ -61,3 +72,16 @@ def _few_usable(fit: Fit) -> list[str]:
                 f"{share:.0%} of the rows are left out; record it with a lighter load or slower"
             )
     return found
+
+
+def _same_samples(fit: Fit) -> list[str]:
+    """Copies are not independent: a trial that judges its own copy proves nothing."""
+    names: dict[bytes, list[str]] = {}
+    for trial in fit.dataset.trials:
+        names.setdefault(trial.signals.effort.tobytes(), []).append(f"'{trial.signals.recording.name}'")
+    return [
+        f"trials {', '.join(same)} hold the same samples: held-out errors and intervals look better than they are; "
+        "keep one of them"
+        for same in names.values()
+        if len(same) > 1
+    ]

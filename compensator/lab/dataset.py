@@ -24,8 +24,10 @@ SLOW_SHARE = 0.02  # of the 95 % quantile of speed: below, the direction of moti
 NOISE_FACTOR = 3.0  # slow is at least this many standard deviations of the velocity noise
 TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so that it stays differentiable
 ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
+NUMERIC_CONDITIONS = ("load_kg", "arm_m")
 BLOCK_S = 2.0  # rows closer than this are not independent
 FEWEST_ROWS = 40
+CONSTANT = 1e-9  # of its largest value: what changes less does not change
 FLANK_SHARE = 0.1  # of the sliding rows that must be left when those near a crossing of the free play are dropped
 
 
@@ -191,6 +193,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     """
     if not recordings:
         raise UnusableDataError("no recordings: choose at least one trial")
+    _check_conditions(recordings)
     effort = choose_effort(recordings, facts)
     cutoff = processing.cutoff_hz or choose_cutoff_hz(recordings, effort, facts)
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
@@ -200,8 +203,14 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     speed = np.abs(np.concatenate([s.velocity for s in signals]))[usable]
     position = np.concatenate([s.position for s in signals])[usable]
     fast, span = float(np.quantile(speed, 0.95)), float(np.ptp(position))
-    if not span > 0.0:
+    if not span > CONSTANT * float(np.abs(position).max()):
         raise UnusableDataError("the joint does not move in any trial; record trials with motion in both directions")
+    measured = np.concatenate([s.effort for s in signals])[usable]
+    if not float(np.ptp(measured)) > CONSTANT * float(np.abs(measured).max()):
+        raise UnusableDataError(
+            f"{' x '.join(effort.channels)} is {measured[0]:.3g} {effort.unit} all the time; check the channel's "
+            "mapping, or choose trials in which it is measured"
+        )
     noise = max(_velocity_noise(s, facts, cutoff) for s in signals)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     trials = tuple(_make_trial(s, facts, cutoff, noise, slow, fast, span) for s in signals)
@@ -216,6 +225,18 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
             f"{FEWEST_ROWS} are needed: record longer motion"
         )
     return dataset
+
+
+def _check_conditions(recordings: Sequence[Recording]) -> None:
+    """Raise where a load or a length is told, but not as a number: it would count as none."""
+    for recording in recordings:
+        for name in NUMERIC_CONDITIONS:
+            value = recording.conditions.get(name, 0.0)
+            if not isinstance(value, int | float) or not np.isfinite(value):
+                raise UnusableDataError(
+                    f"recording '{recording.name}': condition {name} is '{value}', wanted is a number; "
+                    "correct it, or leave it out where it is not known"
+                )
 
 
 def _make_trial(

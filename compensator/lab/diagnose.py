@@ -75,7 +75,7 @@ class _Answer:
 def _answer(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> _Answer:
     best_of_each = _best_shapes(named)
     if not best_of_each:
-        return _Answer("nothing", "", 1.0, [], None, [])
+        return _Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
     candidates = examine(fit, gathered, best_of_each[:EXAMINED])
     best = next(item for item in best_of_each if item.block.name == candidates[0].effect.name)
     verdict, driver = _verdict(fit, gathered, named, generic, best, candidates[0])

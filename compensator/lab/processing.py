@@ -67,6 +67,20 @@ def _sections(cutoff_hz: float, rate_hz: float) -> FloatArray:
     return sections
 
 
+def sample_rate_hz(recording: Recording) -> float:
+    """Median rate of a recording.
+
+    Raises:
+        UnusableDataError: it has fewer than two samples.
+    """
+    time = recording.channels["time_s"]
+    if len(time) < 2:
+        raise UnusableDataError(
+            f"recording '{recording.name}' has {len(time)} sample(s); record longer, or leave it out"
+        )
+    return 1.0 / float(np.median(np.diff(time)))
+
+
 def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: float) -> Signals:
     """Resample, filter and differentiate one recording.
 
@@ -80,8 +94,12 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
             f"recording '{recording.name}': channel {position_name} is missing, found "
             f"{', '.join(sorted(recording.channels))}; a {facts.joint} joint needs its position"
         )
-    period = float(np.median(np.diff(raw_time))) if len(raw_time) > 1 else np.inf
-    rate = 1.0 / period
+    if not np.isfinite(recording.channels[position_name]).any():
+        raise UnusableDataError(
+            f"recording '{recording.name}': {position_name} has no finite sample; leave the trial out"
+        )
+    rate = sample_rate_hz(recording)
+    period = 1.0 / rate
     time = _uniform(raw_time, period)
     shortest = int(np.ceil(2 * EDGE_PERIODS * rate / cutoff_hz)) + 6 * FILTER_ORDER
     if len(time) < shortest:
