@@ -1,10 +1,13 @@
 """/bench: what stands there and what it is doing. /stop: stops it. /token: whether a token is the right one."""
 
+import asyncio
+from contextlib import suppress
 from importlib.metadata import version
 from typing import Any
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter, Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.requests import ClientDisconnect
 
 from bench.drive_factory import is_simulated
 from bench.limits import Limits
@@ -16,6 +19,9 @@ from bench.service.status import Status, status_of
 from drivers.contract import Description
 
 router = APIRouter(tags=["bench"])
+NO_REASON = "stopped over REST"
+LONGEST_REASON = 4096  # bytes of the body
+REASON_WAIT_S = 0.05  # what a slow body is given; a whole one has arrived with its head
 
 
 class DriveDescription(BaseModel):
@@ -93,16 +99,32 @@ def bench(runner: RunnerOf) -> Bench:
     summary="Stop the joint and power it off",
     dependencies=[Depends(require_token)],
     responses=problems(401, 403),
+    openapi_extra={"requestBody": {"content": {"application/json": {"schema": Stop.model_json_schema()}}}},
 )
-async def stop(runner: RunnerOf, body: Stop | None = None) -> Stopped:
-    """Any holder of a token, always. The control loop honours it within one cycle; the record says who and why."""
+async def stop(runner: RunnerOf, request: Request) -> Stopped:
+    """Any holder of a token, always. The control loop honours it within one cycle; the record says who and why.
+
+    The body may be left out. One that cannot be read stops the joint all the same.
+    """
     was_running = runner.status().outcome == "running"
-    reason = body.reason if body and body.reason else "stopped over REST"
-    runner.stop(reason)
+    runner.stop(await _reason(request))
     detail = (
         "Stop accepted: the joint is being powered off." if was_running else "Nothing was running; the joint is off."
     )
     return Stopped(detail=detail, was_running=was_running)
+
+
+async def _reason(request: Request) -> str:
+    """Why, as the body says; no body, however wrong or slow, may hold up a stop."""
+    body = b""
+    with suppress(ValueError, ClientDisconnect, TimeoutError):
+        async with asyncio.timeout(REASON_WAIT_S):
+            async for part in request.stream():
+                body += part
+                if len(body) > LONGEST_REASON:
+                    break
+        return Stop.model_validate_json(body).reason or NO_REASON
+    return NO_REASON
 
 
 @router.get("/token", summary="Check a token", dependencies=[Depends(require_token)], responses=problems(401))
