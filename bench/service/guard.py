@@ -1,6 +1,6 @@
 """Before and after every request: no foreign web page may move the machine, nothing foreign runs in ours."""
 
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -53,13 +53,13 @@ class Guard:
     def _refusal(self, method: str, headers: Headers) -> tuple[int, str] | None:
         host = headers.get("host", "")
         # a foreign name that was made to resolve to this machine (DNS rebinding) shows in Host
-        if (urlsplit(f"//{host}").hostname or "") not in self._hosts:
+        if _parts(f"//{host}").hostname not in self._hosts:
             allowed = ", ".join(sorted(self._hosts))
             return 421, f"Host is '{host}'; this service answers to {allowed}. Add a name with --allow-host"
         if method in SAFE_METHODS:
             return None
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and _parts(origin).netloc != host:
             return 403, f"Origin is '{origin}'; a page from another origin than '{host}' may not change the bench"
         if headers.get("sec-fetch-site", "same-origin") not in {"same-origin", "none"}:
             return (
@@ -67,3 +67,11 @@ class Guard:
                 f"the request comes from another site ({headers['sec-fetch-site']}); use the page of this service",
             )
         return None
+
+
+def _parts(address: str) -> SplitResult:
+    """The parts of an address; all empty where it is none."""
+    try:
+        return urlsplit(address)
+    except ValueError:  # such as "http://["
+        return SplitResult("", "", "", "", "")

@@ -1,5 +1,6 @@
 """Errors as problem+json (RFC 9457): what went wrong, where, what is allowed, and what to do next."""
 
+import json
 from collections.abc import Sequence
 from http import HTTPStatus
 from typing import Any
@@ -17,6 +18,16 @@ from compensator.errors import CompensatorError
 from drivers.errors import DriveError
 
 MEDIA_TYPE = "application/problem+json"
+
+
+class ProblemResponse(JSONResponse):
+    """JSON in ASCII alone: a problem quotes what was sent, also what cannot be encoded (a lone surrogate)."""
+
+    media_type = MEDIA_TYPE
+
+    def render(self, content: Any) -> bytes:
+        """The body."""
+        return json.dumps(content, allow_nan=False, separators=(",", ":")).encode("ascii")
 
 
 class FieldProblem(BaseModel):
@@ -81,7 +92,7 @@ def problem_response(
     """The one way in which this service says no."""
     title = HTTPStatus(status).phrase
     body = Problem(title=title, status=status, detail=detail, kind=kind, errors=list(errors))
-    return JSONResponse(jsonable_encoder(body), status_code=status, media_type=MEDIA_TYPE, headers=headers)
+    return ProblemResponse(jsonable_encoder(body), status_code=status, headers=headers)
 
 
 def status_of(error: Exception) -> int:
@@ -141,6 +152,8 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     async def invalid_request(_request: Request, error: RequestValidationError) -> JSONResponse:
+        if (no_json := _no_json(error)) is not None:
+            return problem_response(422, no_json, kind="ValidationError")
         return _invalid(field_problems(error))
 
     @app.exception_handler(ValidationError)
@@ -156,6 +169,14 @@ def install(app: FastAPI) -> None:
     async def http(_request: Request, error: HTTPException) -> JSONResponse:
         headers = dict(error.headers) if error.headers else None
         return problem_response(error.status_code, str(error.detail), headers=headers)
+
+
+def _no_json(error: RequestValidationError) -> str | None:
+    """What is wrong with a body that is no JSON; None where it is."""
+    for detail in error.errors():
+        if detail["type"] == "json_invalid":
+            return f"the body is no JSON: {detail['ctx']['error']}, at character {detail['loc'][-1]}"
+    return None
 
 
 def _invalid(errors: list[FieldProblem]) -> JSONResponse:

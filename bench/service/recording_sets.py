@@ -17,6 +17,7 @@ from bench.service.services import StoreOf
 from bench.store import Store
 
 MOST_BYTES = 2 * 1024**3
+LONGEST_FILE_NAME = 200  # bytes
 router = APIRouter(prefix="/recording-sets", tags=["recording sets"], dependencies=[Depends(require_token)])
 ZIP_BODY = {
     "requestBody": {
@@ -58,9 +59,14 @@ async def import_set(
     if kind not in {"application/zip", "application/x-zip-compressed", "application/octet-stream"}:
         raise HTTPException(415, f"Content-Type is '{kind}'; wanted is application/zip")
     with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
-        path = Path(folder) / f"{name}.zip"  # errors name the set as its sender does
+        path = Path(folder) / f"{_shortened(name)}.zip"  # errors name the set as its sender does
         await _receive(request.stream(), path)
         return await in_worker(request, _import, store, path, name)
+
+
+def _shortened(name: str) -> str:
+    """A name that fits in a file system: they count bytes, and 255 of them at most."""
+    return name.encode()[:LONGEST_FILE_NAME].decode(errors="ignore")
 
 
 async def _receive(chunks: AsyncIterator[bytes], path: Path) -> None:

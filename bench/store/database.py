@@ -66,6 +66,8 @@ class Database:
     def _explained(self) -> Iterator[None]:
         try:
             yield
+        except (OverflowError, UnicodeEncodeError) as error:  # a number or text that SQLite cannot hold
+            raise StoreValueError(f"store '{self.path}': {error}") from error
         except StatementError as error:
             if isinstance(error.orig, (TypeError, UnicodeEncodeError)):
                 raise StoreValueError(f"store '{self.path}': {error.orig}") from error

@@ -1,0 +1,71 @@
+"""Requests that no well-meaning program sends: answered as problems, and STOP works all the same."""
+
+import socket
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.service.running_service import TOKEN
+
+LONE_SURROGATE = b'"\\ud800"'
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [
+        ("/experiments", b'{"kind": ' + LONE_SURROGATE + b"}"),
+        ("/experiments", b'{"kind": "steps", "note": ' + LONE_SURROGATE + b"}"),
+        ("/experiments", b'{"kind": "steps", "parameters": {' + LONE_SURROGATE + b": 1}}"),
+        ("/experiments", b'{"kind": "steps", "parameters": {"load_kg": NaN}}'),
+        ("/experiments", b'{"kind": "steps", "parameters": {"load_kg": 1e999}}'),
+        ("/studies", b'{"name": ' + LONE_SURROGATE + b', "experiment_ids": [1]}'),
+        ("/studies", b'{"name": "x", "experiment_ids": [99999999999999999999]}'),
+    ],
+)
+def test_what_cannot_be_kept_is_refused(idle, path, body):
+    answer = idle.client.post(path, content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code == 422, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert idle.runner.status().outcome != "running"
+
+
+def test_a_number_beyond_the_database_is_a_problem(service):
+    assert service.stranger.get("/experiments/99999999999999999999").status_code == 422
+
+
+def test_a_body_that_is_no_json_is_told_where(service):
+    answer = service.client.post("/experiments", content=b"[", headers={"Content-Type": "application/json"})
+    assert "the body is no JSON: Expecting value, at character 1" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("body", [b"[", b'{"reason": 5}', b'{"reason": "\\ud800"}', b"\xff", b"x" * 100_000])
+def test_stop_works_whatever_its_body_is(idle, body):
+    idle.start("steps", pace="real-time", repeats=3)
+    answer = idle.client.post("/stop", content=body, headers={"Content-Type": "application/json"})
+    assert answer.json()["was_running"] is True
+    assert idle.runner.wait(5.0)
+    assert idle.runner.status().outcome == "stopped"
+
+
+def test_stop_does_not_wait_for_a_body_that_never_comes(idle):
+    idle.start("steps", pace="real-time", repeats=3)
+    address = urlsplit(idle.url)
+    head = (
+        f"POST /api/v1/stop HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {TOKEN}\r\nContent-Length: 9\r\n\r\n"
+    )
+    with socket.create_connection((address.hostname, address.port)) as connection:
+        connection.sendall(head.encode())
+        assert idle.runner.wait(5.0)
+    assert idle.runner.status().outcome == "stopped"
+
+
+def test_addresses_that_cannot_be_parsed_are_refused(service):
+    assert service.stranger.get("/bench", headers={"Host": "["}).status_code == 421
+    assert service.client.post("/stop", headers={"Origin": "http://["}).status_code == 403
+
+
+def test_a_name_longer_than_file_systems_allow_names_the_problem_of_the_set(service):
+    headers = {"Content-Type": "application/zip"}
+    answer = service.client.post("/recording-sets", params={"name": "😀" * 100}, content=b"no zip", headers=headers)
+    assert answer.status_code == 422
+    assert "is no zip" in answer.json()["detail"]
