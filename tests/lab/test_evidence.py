@@ -25,7 +25,7 @@ def problem(seed: int, planted: float = 0.0) -> tuple[list[Base], list[Block]]:
 
 
 def test_false_alarms_on_autocorrelated_noise_are_as_rare_as_they_say():
-    sets = 150
+    sets = 100
     p_values = np.array([screen(*problem(seed), STRETCH, seed).p_value for seed in range(sets)])
     assert np.sum(p_values <= 0.01) <= binom.ppf(0.995, sets, 0.01)
     assert np.sum(p_values <= 0.5) >= binom.ppf(0.005, sets, 0.5)  # nor does it never alarm
