@@ -86,12 +86,13 @@ def _stored_energy_of(mechanisms: int) -> Callable[[Records, Records], float]:
         mechanisms  # noqa: B018
         plant, state = parameters[0], states[0]
         ratio: float = plant.gear.ratio
+        twist_rad: float = state.rotor_rad - state.arm_rad - state.clutch_rad
         energy_j: float = (
             0.5 * ratio**2 * plant.motor.rotor_inertia_kg_m2 * state.rotor_rad_s**2
             + 0.5 * arm_inertia(plant.arm, plant.load) * state.arm_rad_s**2
             + gravity_energy(moment_kg_m(plant.arm, plant.load), plant.centre_of_mass, state.arm_rad)
             + spring_energy(plant.spring, state.arm_rad)
-            + contact_energy(plant.gear, stiffness(plant.gear, plant.shaft), state.rotor_rad - state.arm_rad)
+            + contact_energy(plant.gear, stiffness(plant.gear, plant.shaft), twist_rad)
             + obstacles_energy(plant, state.arm_rad)
             + cogging_energy(plant.cogging, ratio * state.rotor_rad)
             + bristle_energy(plant.bristle, state.bristle_rad)

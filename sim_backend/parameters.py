@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 from sim_backend.bristle import Bristle
+from sim_backend.clutch import Clutch
 from sim_backend.cogging import Cogging
 from sim_backend.contact import Gear
 from sim_backend.coulomb_asymmetry import CoulombAsymmetry
@@ -25,6 +26,7 @@ from sim_backend.motor import CurrentLoop, Motor, Supply
 from sim_backend.overload import Overload
 from sim_backend.periodic_friction import PeriodicFriction
 from sim_backend.randomness import Scatter
+from sim_backend.run_in import RunIn
 from sim_backend.sensing import Encoder, Latency
 from sim_backend.shaft import Shaft
 from sim_backend.spring import Spring
@@ -60,6 +62,7 @@ class PlantParameters:
     latency: Latency = field(default_factory=Latency)
     scatter: Scatter = field(default_factory=Scatter)
     shaft: Shaft = field(default_factory=Shaft)
+    clutch: Clutch = field(default_factory=Clutch)
     end_stops: EndStops = field(default_factory=EndStops)
     wall: Wall = field(default_factory=Wall)
     heat: Heat = field(default_factory=Heat)
@@ -68,6 +71,7 @@ class PlantParameters:
     coulomb_asymmetry: CoulombAsymmetry = field(default_factory=CoulombAsymmetry)
     drag: Drag = field(default_factory=Drag)
     periodic_friction: PeriodicFriction = field(default_factory=PeriodicFriction)
+    run_in: RunIn = field(default_factory=RunIn)
     spring: Spring = field(default_factory=Spring)
     centre_of_mass: CentreOfMass = field(default_factory=CentreOfMass)
     lubricant: Lubricant = field(default_factory=Lubricant)

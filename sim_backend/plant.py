@@ -1,10 +1,12 @@
 """The plant: parameters, state and the compiled kernel behind four calls."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_backend.clutch import Clutch
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
 from sim_backend.kernel import advance, standing_counts, stored_energy
@@ -31,6 +33,7 @@ class Truth:
     arm_rad_s: float
     current_a: float
     contact_n_m: float
+    clutch_rad: float
     leant_n_m: float
     bristle_rad: float
     arm_bristle_rad: float
@@ -109,18 +112,28 @@ class Plant:
 
     def hang(self, load: Load) -> None:
         """Hang a load on the arm and put the arm at rest at angle 0, in the middle of the free play."""
-        self.parameters = replace(self.parameters, load=load)
-        self._packed = pack(self.parameters)
+        self._change(load=load)
         self.place(0.0, 0.0)
+
+    def drop_load(self) -> None:
+        """Let the load fall off: weight and inertia are gone, and with them their energy; the arm moves on."""
+        self._change(load=Load())
+
+    def loosen_clutch(self, limit_n_m: float) -> None:
+        """Let the clutch slip at a torque [N m]; 0 is rigid again."""
+        self._change(clutch=Clutch(limit_n_m=limit_n_m))
+
+    def _change(self, **components: Any) -> None:
+        self.parameters = replace(self.parameters, **components)
+        self._packed = pack(self.parameters)
 
     def place(self, rotor_rad: float, arm_rad: float, rotor_rad_s: float = 0.0, arm_rad_s: float = 0.0) -> None:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
         placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "rotor_mean_rad_s": rotor_rad_s}
         placed |= {"arm_rad": arm_rad, "arm_rad_s": arm_rad_s, "arm_mean_rad_s": arm_rad_s}
-        forgotten = (
-            "current_a", "contact_n_m", "leant_n_m", "bristle_rad", "arm_bristle_rad", "slid", "rest_s", "arm_rest_s"
-        )  # fmt: skip
-        placed |= dict.fromkeys(forgotten, 0.0)
+        forgotten = ("current_a", "contact_n_m", "leant_n_m", "clutch_rad", "slid")
+        bristles = ("bristle_rad", "arm_bristle_rad", "rest_s", "arm_rest_s")
+        placed |= dict.fromkeys(forgotten + bristles, 0.0)
         for name, value in placed.items():
             self._state[name] = value
         self._forget()

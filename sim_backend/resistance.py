@@ -12,6 +12,7 @@ from sim_backend.load_friction import mesh_loss
 from sim_backend.lubricant import viscosity_scale
 from sim_backend.parameters import PlantParameters
 from sim_backend.periodic_friction import periodic_scale
+from sim_backend.run_in import run_in_scale
 from sim_backend.state import State
 from sim_backend.viscous_asymmetry import viscous_scale
 
@@ -41,6 +42,7 @@ def drive_side(parameters: PlantParameters, state: State, weight_n: float, step_
     static_factor = state.static_factor * rest_scale(parameters.dwell, state.rest_s)
     dry_n_m = dry_friction(friction, speed_rad_s, weight_n, static_factor, state.coulomb_factor)
     dry_n_m *= ratio * periodic_scale(parameters.periodic_friction, state.rotor_rad)
+    dry_n_m *= run_in_scale(parameters.run_in, state.travelled_rad)
     lower_n_m = dry_n_m * dry_scale(parameters.coulomb_asymmetry, -1.0)
     upper_n_m = dry_n_m * dry_scale(parameters.coulomb_asymmetry, 1.0)
     lower_n_m += mesh_loss(parameters.load_friction, state.contact_n_m, -1.0)

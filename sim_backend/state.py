@@ -21,6 +21,7 @@ class State:
     current_a: float = 0.0
     supply_v: float = 0.0  # at the end of the last step
     contact_n_m: float = 0.0  # torque of the teeth on the arm, mean over the last step
+    clutch_rad: float = 0.0  # angle that the clutch has slipped
     leant_n_m: float = 0.0  # torque of wall and end stops on the arm, mean over the last step
     bristle_rad: float = 0.0  # deflection of the drive side's bristles, at the motor shaft
     arm_bristle_rad: float = 0.0
@@ -29,6 +30,7 @@ class State:
     arm_rest_s: float = 0.0
     static_factor: float = 1.0  # this stop's static friction over the nominal one
     coulomb_factor: float = 1.0  # Coulomb friction here over the nominal one
+    travelled_rad: float = 0.0  # way of the motor since the plant was made
     wandered_rad: float = 0.0  # way since that was last drawn
     winding_c: float = 25.0
     housing_c: float = 25.0

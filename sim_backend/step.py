@@ -9,6 +9,7 @@ never blow up, and smooth motion is second order in the step.
 from typing import NamedTuple
 
 from sim_backend.bristle import bend
+from sim_backend.clutch import carried, slipped
 from sim_backend.cogging import cogging_torque
 from sim_backend.contact import contact_energy, flank, is_pull, penetration
 from sim_backend.dwell import aged
@@ -29,11 +30,12 @@ from sim_backend.thermal_drift import Winding, drifted
 
 
 class Motion(NamedTuple):
-    """What comes of a step: speeds at its end [rad/s], and the torque of the teeth on the arm during it [N m]."""
+    """What comes of a step: speeds at its end [rad/s], the torque of the teeth on the arm during it [N m], slip."""
 
     rotor_rad_s: float
     arm_rad_s: float
     contact_n_m: float
+    clutch_slips: bool
 
 
 @jitted
@@ -72,7 +74,10 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.electrical_loss_j += copper_j + stage_j
     state.friction_loss_j += friction_j
     state.arm_friction_loss_j += arm_friction_j
-    state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
+    if motion.clutch_slips:
+        state.contact_loss_j += _slip_clutch(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
+    else:
+        state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
     state.leant_loss_j += _leant_loss(parameters, state.arm_rad, push, mean_a, step_s)
 
     # what friction and temperature remember
@@ -80,6 +85,7 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
         state.static_factor = draw_static_factor(state, parameters.scatter)
     state.rest_s = aged(parameters.dwell, state.rest_s, ratio * mean_r, step_s)
     state.arm_rest_s = aged(parameters.arm_dwell, state.arm_rest_s, mean_a, step_s)
+    state.travelled_rad += step_s * ratio * abs(mean_r)
     wander(state, parameters.scatter, abs(step_s * mean_r))
     if parameters.heat.present:
         warm(state, parameters.heat, copper_j, friction_j, step_s)
@@ -142,7 +148,7 @@ def _leaning(arm: Body, push: Push, speed_rad_s: float, step_s: float) -> Body:
 def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, step_s: float) -> Motion:
     """Return the motion: through the teeth where they touch and push, each body on its own where they do not."""
     gear, shaft = parameters.gear, parameters.shaft
-    twist_rad = state.rotor_rad - state.arm_rad
+    twist_rad = state.rotor_rad - state.arm_rad - state.clutch_rad
     side = flank(gear, twist_rad)
     if side != 0.0:
         # spring and damper at mid-step: a known part, and one that follows the new speeds
@@ -151,10 +157,21 @@ def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, ste
         known_n_m = stiffness(gear, shaft) * penetration(gear, side, twist_rad) + rate * slip_rad_s
         rotor_rad_s, arm_rad_s = coupled_speeds(rotor, arm, step_s * rate, step_s * known_n_m, state.arm_rad_s)
         contact_n_m = known_n_m + rate * (rotor_rad_s - arm_rad_s)
+        carried_n_m = carried(parameters.clutch, contact_n_m)
+        if carried_n_m != contact_n_m:
+            rotor_rad_s, arm_rad_s = free_speeds(
+                _pushed(rotor, -step_s * carried_n_m), _pushed(arm, step_s * carried_n_m)
+            )
+            return Motion(rotor_rad_s, arm_rad_s, carried_n_m, True)
         if not is_pull(gear, side, contact_n_m):
-            return Motion(rotor_rad_s, arm_rad_s, contact_n_m)
+            return Motion(rotor_rad_s, arm_rad_s, contact_n_m, False)
     rotor_rad_s, arm_rad_s = free_speeds(rotor, arm)
-    return Motion(rotor_rad_s, arm_rad_s, 0.0)
+    return Motion(rotor_rad_s, arm_rad_s, 0.0, False)
+
+
+@jitted
+def _pushed(body: Body, impulse: float) -> Body:
+    return Body(body.diagonal, body.impulse + impulse, body.lower, body.upper, body.viscous)
 
 
 @jitted
@@ -195,12 +212,25 @@ def _contact_loss(
     """Return what the teeth took [J]: damping while they push; what is left in the spring when they let go."""
     if contact_n_m != 0.0:
         return step_s * damping(parameters.gear, parameters.shaft) * slip_rad_s * slip_rad_s
-    twist_rad = state.rotor_rad - state.arm_rad
+    twist_rad = state.rotor_rad - state.arm_rad - state.clutch_rad
     if flank(parameters.gear, twist_rad) == 0.0:
         return 0.0
     rigidity = stiffness(parameters.gear, parameters.shaft)
     left_j = contact_energy(parameters.gear, rigidity, twist_rad)
     return left_j - contact_energy(parameters.gear, rigidity, twist_rad + step_s * slip_rad_s)
+
+
+@jitted
+def _slip_clutch(
+    parameters: PlantParameters, state: State, contact_n_m: float, slip_rad_s: float, step_s: float
+) -> float:
+    """Move the clutch on to where the teeth carry its limit; return what teeth and clutch took [J]."""
+    gear, rigidity = parameters.gear, stiffness(parameters.gear, parameters.shaft)
+    apart_rad = state.rotor_rad - state.arm_rad
+    before_j = contact_energy(gear, rigidity, apart_rad - state.clutch_rad)
+    apart_rad += step_s * slip_rad_s
+    state.clutch_rad = slipped(gear, rigidity, contact_n_m, apart_rad)
+    return step_s * contact_n_m * slip_rad_s + before_j - contact_energy(gear, rigidity, apart_rad - state.clutch_rad)
 
 
 @jitted

@@ -23,6 +23,8 @@ EVERYTHING = {
     "heat": {"present": True},
     "bristle": {"stiffness_n_m_rad": 2.0, "damping_n_m_s_rad": 4e-3, "elastic_fraction": 0.3},
     "arm_bristle": {"stiffness_n_m_rad": 5.0, "damping_n_m_s_rad": 0.02},
+    "run_in": {"fraction": 0.5},
+    "clutch": {"limit_n_m": 0.6},
     "shaft": {"compliance_rad_n_m": 1e-3},
     "wall": {"present": True, "angle_rad": 1.0, "stiffness_n_m_rad": 3000.0, "damping_n_m_s_rad": 1.0},
     "end_stops": {"present": True, "lower_rad": -2.0, "upper_rad": 1.0005, "damping_n_m_s_rad": 0.0},
