@@ -11,3 +11,11 @@ class ModelParameterError(CompensatorError, ValueError):
 
 class NoEstimateError(CompensatorError, RuntimeError):
     """Raised when an estimate is asked of a search that has none; the message carries the search's reason."""
+
+
+class CalibrationError(CompensatorError, ValueError):
+    """Raised when measured points cannot give the parameters asked for (too few, one direction only, no low speed)."""
+
+
+class LookupRangeError(CompensatorError, ValueError):
+    """Raised when a look-up is asked too far outside what it was calibrated on."""

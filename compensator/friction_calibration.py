@@ -1,0 +1,105 @@
+"""General Kinetic Friction from steady points of a balanced joint (paper, sections 2.2, 3.2.1, Figs 2, 3).
+
+    I = sgn(w) (Fc + (Fs - Fc) exp(-|w/vs|^ds) + b |w|) + offset        (2)
+
+Robust bounded regression: soft-L1 loss, its scale from the median absolute residual. The offset is what differs between
+the directions (an arm not quite balanced, a current sensor's zero, unequal Coulomb friction); in one direction alone it
+could not be told from Coulomb friction. It is no part of the curve.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.stats import t as student_t
+
+from compensator import motor
+from compensator.calibration_points import check_points
+from compensator.curve_regression import Solution, solve
+from compensator.interval import CONFIDENCE, Interval
+from compensator.kinetic_friction import KineticFriction
+from compensator.motor import MotorConstants
+
+NOT_TOLD = "not determined: static friction is not told from Coulomb friction"
+NOT_COVERED = "below the lowest speed measured: extrapolated"
+AT_BOUND = "held by its physical bound"
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionFit:
+    """One friction curve and how sure it is.
+
+    Attributes:
+        curve: eq. (2).
+        parameters: 95 % interval of each of its parameters, and of `offset_a`, by name.
+        scatter_a: standard deviation of the points about the curve, outliers aside [A].
+        points: number of them.
+    """
+
+    curve: KineticFriction
+    parameters: dict[str, Interval]
+    scatter_a: float
+    points: int
+
+
+def fit(speed_rad_s: ArrayLike, current_a: ArrayLike, stribeck: bool = True) -> FrictionFit:
+    """Fit one curve to the steady points of one load.
+
+    Args:
+        speed_rad_s: steady speeds, shape (n,), both signs, none 0; of the motor shaft if a look-up is to give duties.
+        current_a: motor current at each, shape (n,).
+        stribeck: False leaves out static friction and the Stribeck shape (Fs = Fc): for points without low speeds.
+
+    Raises:
+        CalibrationError: too few points, not finite, at rest, one direction only, or (with `stribeck`) no low speeds.
+    """
+    speed, current = check_points(speed_rad_s, current_a, stribeck)
+    solution = solve(speed, current, stribeck)
+    quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, len(speed) - len(solution.p)))
+    parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
+    curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name != "offset_a"})
+    return FrictionFit(curve, parameters, solution.scatter_a, len(speed))
+
+
+def fit_duty(
+    speed_rad_s: ArrayLike, duty: ArrayLike, supply_v: float, constants: MotorConstants, stribeck: bool = True
+) -> FrictionFit:
+    """As `fit`, from duties [1] at a supply [V]: eq. (3) takes the back-EMF out of them. Speeds of the motor shaft."""
+    speed, duties = np.asarray(speed_rad_s, dtype=np.float64), np.asarray(duty, dtype=np.float64)
+    return fit(speed, motor.current_a(constants, duties, speed, supply_v), stribeck)
+
+
+def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dict[str, Interval]:
+    """Intervals of the parameters by name, in the order of `KineticFriction`, the offset last."""
+    coulomb_a, rise_a, log_speed, log_shape, viscous, offset_a = solution.p
+    width = quantile * np.sqrt(np.diag(solution.covariance))
+    static_width = quantile * np.sqrt(np.sum(solution.covariance[:2, :2]))
+    told = bool(solution.free[1]) and rise_a > width[1]
+    return {
+        "coulomb_a": _linear(coulomb_a, width[0], solution.free[0]),
+        "static_a": _linear(coulomb_a + rise_a, static_width, True)
+        if told
+        else Interval(float(coulomb_a + rise_a), note=NOT_TOLD),
+        "stribeck_speed_rad_s": _logarithmic(log_speed, width[2], solution.free[2], told, slowest_rad_s),
+        "shape": _logarithmic(log_shape, width[3], solution.free[3], told),
+        "viscous_a_s_rad": _linear(viscous, width[4], solution.free[4]),
+        "offset_a": Interval(float(offset_a), float(offset_a - width[5]), float(offset_a + width[5])),
+    }
+
+
+def _linear(value: float, width: float, free: bool) -> Interval:
+    """Of a parameter that is never below 0."""
+    if not free:
+        return Interval(float(value), note=AT_BOUND)
+    return Interval(float(value), max(float(value - width), 0.0), float(value + width))
+
+
+def _logarithmic(log_value: float, width: float, free: bool, told: bool, lowest: float = 0.0) -> Interval:
+    """Of a parameter that is fitted by its logarithm, since its errors are ratios."""
+    value = float(np.exp(log_value))
+    if not told:
+        return Interval(value, note=NOT_TOLD)
+    if not free:
+        return Interval(value, note=AT_BOUND)
+    note = NOT_COVERED if value < lowest else ""
+    return Interval(value, float(np.exp(log_value - width)), float(np.exp(log_value + width)), note)
