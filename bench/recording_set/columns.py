@@ -1,5 +1,6 @@
 """Which column of a CSV becomes which channel."""
 
+import json
 from dataclasses import dataclass
 
 from bench.recording_set.mapping import Column, Mapping
@@ -57,11 +58,14 @@ def _check_known(table: Table, mapping: Mapping) -> None:
     if not unknown:
         return
     first = unknown[0]
+    sign = next((sign for sign in ";\t|" if sign in first), None)
+    if len(table.header) == 1 and sign is not None:
+        entry = json.dumps(sign)
+        message = f"is the only column; is the delimiter another sign? Then say so in a mapping: delimiter = {entry}"
+        raise table.error(message, 1, first)
     parts = ["is no known channel", *filter(None, [suggestion(first)])]
     if len(unknown) > 1:
         parts.append(f"Not known either: {', '.join(unknown[1:])}")
-    if len(table.header) == 1 and any(sign in first for sign in ";\t|"):
-        parts.append('Is the delimiter another sign? Then say so in a mapping: delimiter = ";"')
     parts.append(f"Known: {', '.join([*CHANNELS, EVENT_COLUMN])}. Map or ignore the column in a mapping file")
     raise table.error(". ".join(parts), 1, first)
 

@@ -1,9 +1,11 @@
 """Read a recording set: a folder, a zip, or a single CSV."""
 
+import zipfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.recording_set import known_conditions
 from bench.recording_set.container import Container, check_name, open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping
@@ -43,6 +45,8 @@ def read_recording_set(path: Path, mapping: Mapping | None = None, rig: Rig | No
 def _read_rig(container: Container) -> Rig:
     if not container.has(RIG_FILE):
         message = 'is not there; write one with at least: name = "...", or name a rig file of your own'
+        if container.path.is_file() and not zipfile.is_zipfile(container.path):
+            raise RecordingSetError(container.path.name, "a single CSV has no rig; name one with --rig rig.toml")
         raise RecordingSetError(place(container, RIG_FILE), message)
     with container.open(RIG_FILE) as file:
         return parse_toml(file.read(MOST_BYTES + 1), Rig, place(container, RIG_FILE))
@@ -69,12 +73,16 @@ def _mapped(mapping: Mapping) -> list[TrialEntry]:
         raise RecordingSetError(source, f"'{twice[0]}' is listed twice; wanted each trial once")
     for trial in mapping.trials:
         check_name(trial.file, source)
+        for name, value in trial.conditions.items():
+            if problem := known_conditions.problem(name, value):
+                raise RecordingSetError(f"{source}, file '{trial.file}'", problem, column=name)
     return [TrialEntry(trial.file, name_of(trial.file), trial.kind, dict(trial.conditions)) for trial in mapping.trials]
 
 
 def _table(container: Container, entry: TrialEntry, mapping: Mapping) -> Table:
     if not container.has(entry.file):
-        there = ", ".join(file for file in container.files()[:10] if file.lower().endswith(".csv"))
+        tables = [file for file in container.files() if file.lower().endswith(".csv") and file != TRIALS_FILE]
+        there = ", ".join(tables[:10])
         message = f"'{entry.file}' is not in the set; wanted one of its files (such as {there})"
         source = "the mapping's [[trials]]" if entry.line is None else place(container, TRIALS_FILE)
         raise RecordingSetError(source, message, entry.line, "file")

@@ -33,6 +33,8 @@ def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatA
         time_s = columns["time_s"]
         _check_time(chunk, last_s, time_s, time.source)
         last_s = time_s[-1] if len(time_s) else last_s
+        for use in uses:
+            _check_finite(chunk, columns[use.channel], use.source)
         if event_index is not None:
             events += _events(rows, event_index, time_s)
         for channel, values in columns.items():
@@ -70,6 +72,13 @@ def _events(rows: Sequence[Row], index: int, time_s: FloatArray) -> Iterator[Eve
     for row, cells in enumerate(rows):
         if cells[index]:
             yield from event_cells.decode(cells[index], float(time_s[row]))
+
+
+def _check_finite(chunk: Chunk, values: FloatArray, column: str) -> None:
+    infinite = np.flatnonzero(np.isinf(values))
+    if len(infinite):
+        row = int(infinite[0])
+        raise chunk.error(f"found {values[row]}; wanted a finite number, or nothing where it is not known", row, column)
 
 
 def _check_time(chunk: Chunk, last_s: float, time_s: FloatArray, column: str) -> None:

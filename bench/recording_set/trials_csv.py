@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import IO
 
-from bench.recording_set import values
+from bench.recording_set import known_conditions, values
 from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Column, Mapping
@@ -98,10 +98,16 @@ def _entry(table: Table, line: int, cells: Row, places: dict[str, tuple[int, Col
     for name, (_, column) in places.items():
         value = values.parse(text[name], mapping.decimal)
         if name not in RESERVED and name not in mapping.ignore and value is not None:
-            conditions[name] = _converted(table, line, value, column)
+            conditions[name] = _checked(table, line, name, _converted(table, line, value, column), column)
     name = text.get("name") or name_of(file)
     rows = _rows(table, line, values.parse(text.get("rows", "")))
     return TrialEntry(file, name, text.get("kind", DEFAULT_KIND), conditions, rows, line)
+
+
+def _checked(table: Table, line: int, name: str, value: Condition, column: Column) -> Condition:
+    if problem := known_conditions.problem(name, value):
+        raise RecordingSetError(table.place, problem, line, column.source)
+    return value
 
 
 def _converted(table: Table, line: int, value: Condition, column: Column) -> Condition:

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.recording_set import RecordingSetError, read_recording_set
+from bench.recording_set import Mapping, RecordingSetError, read_recording_set
+from bench.recording_set.mapping import Column, MappedTrial
 from tests.recording_set.examples import GOOD, write_set
 
 # what is wrong: the CSV, and what the message must say
@@ -23,6 +24,8 @@ BAD_CSV: dict[str, tuple[str | bytes, str]] = {
     "a number with groups": ("time_s,duty\n0,1\n1,1_000\n", "line 3, column 'duty': found '1_000'"),
     "time unknown": ("time_s,duty\n0,1\n,1\n", "line 3, column 'time_s': found nan; wanted a finite time"),
     "time infinite": ("time_s,duty\n0,1\ninf,1\n", "line 3, column 'time_s': found inf; wanted a finite time"),
+    "number infinite": ("time_s,duty\n0,1\n1,inf\n", "line 3, column 'duty': found inf; wanted a finite number"),
+    "number beyond float64": ("time_s,duty\n0,1\n1,-1e999\n", "line 3, column 'duty': found -inf; wanted a finite"),
     "time backwards": (
         "time_s,duty\n0,1\n1,1\n0.5,1\n",
         "line 4, column 'time_s': time runs backwards: found 0.5 s after 1.0 s; wanted a time that rises",
@@ -52,7 +55,7 @@ BAD_CSV: dict[str, tuple[str | bytes, str]] = {
     "UTF-16": (GOOD.encode("utf-16"), "line 1: found byte 0xFF, which is not UTF-8"),
     "other delimiter": (
         "time_s;duty\n0;1\n1;1\n",
-        'Is the delimiter another sign? Then say so in a mapping: delimiter = ";"',
+        'is the delimiter another sign? Then say so in a mapping: delimiter = ";"',
     ),
     "not a table": (b"\x00\x01\x02PNG\n\x00\n", "is no known channel"),
 }
@@ -98,6 +101,17 @@ BAD_TRIALS: dict[str, tuple[str, str]] = {
     "absolute": ("file\n/etc/passwd\n", "line 2, column 'file': the file name '/etc/passwd' leads out of the set"),
     "rows wrong": ("file,rows\nrun.csv,4\n", "run.csv: has 3 rows; trials.csv, line 2, says 4. Is it cut off?"),
     "rows no number": ("file,rows\nrun.csv,many\n", "line 2, column 'rows': found 'many'; wanted the number of rows"),
+    "text for a load": (
+        "file,load_kg\nrun.csv,heavy\n",
+        "line 2, column 'load_kg': found 'heavy'; wanted a number of 0 or more [kg]",
+    ),
+    "load not a number": ("file,load_kg\nrun.csv,nan\n", "line 2, column 'load_kg': found 'nan'; wanted a number"),
+    "negative load": ("file,load_kg\nrun.csv,-0.1\n", "line 2, column 'load_kg': found -0.1; wanted a number of 0"),
+    "load in grams": (
+        "file,load_g\nrun.csv,100\n",
+        "column 'load_g': is not in SI; load_kg is known. Convert with a mapping: trials_columns.load_kg = {",
+    ),
+    "text for a flag": ("file,balanced\nrun.csv,no\n", "column 'balanced': found 'no'; wanted true or false"),
     "ragged": ("file,kind\nrun.csv\n", "trials.csv, line 2: found 1 cells; wanted 2"),
     "empty name": ("file,kind\n,a\n", "line 2, column 'file': the file name '' leads out of the set"),
 }
@@ -155,3 +169,23 @@ def test_a_set_without_tables_is_explained(tmp_path: Path) -> None:
         read_recording_set(write_set(tmp_path / "set", {}))
     with pytest.raises(RecordingSetError, match="there is no such folder or file"):
         read_recording_set(tmp_path / "gone")
+
+
+def test_a_single_table_asks_for_a_rig(tmp_path: Path) -> None:
+    folder = write_set(tmp_path / "set", {"run.csv": GOOD})
+    with pytest.raises(RecordingSetError, match=r"run.csv: a single CSV has no rig; name one with --rig"):
+        read_recording_set(folder / "run.csv")
+
+
+def test_a_load_of_the_mapping_is_checked_too(tmp_path: Path) -> None:
+    folder = write_set(tmp_path / "set", {"run.csv": GOOD})
+    mapping = Mapping(trials=[MappedTrial(file="run.csv", conditions={"load_kg": "heavy"})])
+    with pytest.raises(RecordingSetError, match=r"file 'run.csv', column 'load_kg': found 'heavy'; wanted a number"):
+        read_recording_set(folder, mapping)
+
+
+def test_a_load_in_grams_comes_in_through_the_mapping_that_the_message_names(tmp_path: Path) -> None:
+    folder = write_set(tmp_path / "set", {"run.csv": GOOD, "trials.csv": "file,load_g\nrun.csv,100\n"})
+    mapping = Mapping(trials_columns={"load_kg": Column(source="load_g", scale=0.001)})
+    (recording,) = read_recording_set(folder, mapping).recordings
+    assert recording.conditions == {"load_kg": pytest.approx(0.1)}

@@ -166,7 +166,7 @@ UNFIT_TRIALS: dict[str, tuple[str, str]] = {
     ),
     "name taken": ('[trials_columns]\ntag = "load_g"\n', "column 'tag': is a column, and is mapped from 'load_g' too"),
     "text scaled": (
-        '[trials_columns]\nx = { from = "tag", scale = 2 }\n',
+        '[trials_columns]\nload_kg = { from = "load_g", scale = 0.001 }\nx = { from = "tag", scale = 2 }\n',
         "line 2, column 'tag': found 'x'; wanted a number",
     ),
     "listed twice over": ('[[trials]]\nfile = "run.csv"\n', "is there, and the mapping lists trials too"),

@@ -38,7 +38,8 @@ KEYS = st.text(st.characters(codec="utf-8"), max_size=8).map(lambda text: f"k{te
 def recordings(draw: st.DrawFn, name: str) -> Recording:
     time_s = draw(st.lists(st.floats(-1e9, 1e9), min_size=2, max_size=12, unique=True).map(sorted))
     others = draw(st.lists(st.sampled_from([key for key in CHANNELS if key != "time_s"]), min_size=1, unique=True))
-    numbers = st.lists(st.floats(), min_size=len(time_s), max_size=len(time_s))
+    # NaN is not measured; infinite is nothing that a sensor gives, and is refused
+    numbers = st.lists(st.floats(allow_infinity=False), min_size=len(time_s), max_size=len(time_s))
     channels = {"time_s": np.array(time_s)} | {key: np.array(draw(numbers)) for key in others}
     for values in channels.values():
         values[np.isnan(values)] = np.nan  # one NaN: CSV has no payloads
