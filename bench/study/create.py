@@ -79,6 +79,11 @@ def list_studies(store: Store) -> list[dict[str, Any]]:
 
 def _create(store: Store, name: str, definition: Definition) -> dict[str, Any]:
     draft = material_of(store, 0, name, definition)
+    if any(definition.held_out) and not (draft.dataset.counted & ~draft.training).any():
+        raise StudyError(
+            f"the trials of hold-out {', '.join(definition.hold_out)} have no row that counts ({definition.rows}); "
+            "hold out trials in which the joint moves, or count more rows"
+        )
     fit = draft.fit(list(definition.base))  # before anything is kept: a study has a model from the start
     material = replace(draft, study_id=store.create_study(name, definition.to_json()))
     keep_model(store, material, None, fit)

@@ -14,7 +14,14 @@ DISSIPATIVE = ("inertia", "coulomb", "viscous")
 
 def data_problems(fit: Fit) -> list[str]:
     """Sentences, each naming the trial or channel, what was found, and what to do."""
-    return [*_wrong_sign(fit), *_unexplained(fit), *_odd_trials(fit), *_few_usable(fit), *_same_samples(fit)]
+    return [
+        *_wrong_sign(fit),
+        *_unexplained(fit),
+        *_odd_trials(fit),
+        *_few_usable(fit),
+        *_unused(fit),
+        *_same_samples(fit),
+    ]
 
 
 def _wrong_sign(fit: Fit) -> list[str]:
@@ -72,6 +79,17 @@ def _few_usable(fit: Fit) -> list[str]:
                 f"{share:.0%} of the rows are left out; record it with a lighter load or slower"
             )
     return found
+
+
+def _unused(fit: Fit) -> list[str]:
+    dataset = fit.dataset
+    used = set(np.unique(dataset.trial_index[dataset.counted]).tolist())
+    return [
+        f"trial '{trial.signals.recording.name}' has no row that counts ({dataset.rows}) and is not used; leave it "
+        "out, or record motion in it"
+        for index, trial in enumerate(dataset.trials)
+        if index not in used
+    ]
 
 
 def _same_samples(fit: Fit) -> list[str]:
