@@ -1,11 +1,15 @@
 """Which trials a study uses, which judge, and what it says when none fit."""
 
+import math
+
 import pytest
 
 from bench.rig import Rig
+from bench.service.json_numbers import plain
+from bench.service.study_models import Comparison
 from bench.store import Store
 from bench.store.errors import NotFoundError
-from bench.study import create_study, describe, list_studies
+from bench.study import compare, create_study, describe, diagnose, list_studies
 from bench.study.errors import StudyError
 from bench.study.material import facts_of, load
 from tests.lab.synthetic import plans, recordings
@@ -88,6 +92,21 @@ def test_what_is_refused(store, experiment_id, arguments, words):
     with pytest.raises(StudyError, match=words):
         create_study(store, "a", [experiment_id], **arguments)
     assert len(store.studies()) == before  # nothing half-made is left
+
+
+def test_held_out_trials_at_rest_judge_nothing(store):
+    made = recordings(trials=plans((0.0, 0.2)), seed=1)
+    made[1].channels["position_rad"][:] = 0.3
+    rig = RIG.model_dump(mode="json", exclude_none=True)
+    number = store.add_imported("import", {}, {}, rig, [(one, "completed", "") for one in made])
+    with pytest.raises(StudyError, match="hold-out trial=load-0g-1-1 have no row that counts"):
+        create_study(store, "a", [number], hold_out=["trial=load-0g-1-1"], cutoff_hz=6.0)
+    study = create_study(store, "a", [number], cutoff_hz=6.0)
+    compared = compare(store, study["study_id"])
+    assert math.isnan(compared["trials"][1]["relative"])
+    assert Comparison.model_validate(plain(compared)).trials[1].relative is None
+    problems = diagnose(store, study["study_id"])["data_problems"]
+    assert any("'load-0g-1-1' has no row that counts (sliding) and is not used" in problem for problem in problems)
 
 
 def test_where_keeps_some_trials(store, experiment_id):
