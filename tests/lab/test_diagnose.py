@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from compensator.lab import diagnose as diagnose_module
 from compensator.lab.catalogue import default_effects
 from compensator.lab.dataset import Processing, make_dataset
 from compensator.lab.diagnose import diagnose
@@ -126,6 +127,15 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
     assert driver in found.sentence
     assert found.p_value <= 0.01
     assert f"p = {found.p_value:.3g}" in found.sentence
+
+
+@pytest.mark.parametrize(("p_value", "verdict"), [(0.01, "missing"), (0.011, "nothing")])
+def test_nothing_is_named_while_the_whole_search_may_be_luck(monkeypatch, p_value, verdict):
+    screen = diagnose_module.screen
+    monkeypatch.setattr(diagnose_module, "screen", lambda *given: replace(screen(*given), p_value=p_value))
+    found = diagnosis_of(recordings(Joint(extra=PLANTED["weight_friction"]), trials=plans((0.0, 0.25)), seed=3))
+    assert found.verdict == verdict
+    assert f"p = {p_value:g}" in found.sentence
 
 
 def test_constant_temperature_is_left_out_with_its_reason():
