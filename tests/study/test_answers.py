@@ -202,6 +202,15 @@ def test_a_model_is_fitted_again_as_it_was(store, story, study):
     assert plain(again) == plain(story["compare"])
 
 
+def test_a_model_keeps_the_shapes_it_was_fitted_at(store, study):
+    model = store.model(study["model_id"])
+    result = {**model.result, "shapes": {**model.result["shapes"], "stribeck": [0.5, 1.5]}}
+    other = store.add_model(study["study_id"], model.id, model.effects, result)
+    found = {one["name"]: one["value"] for one in compare(store, study["study_id"], other)["parameters"]}
+    assert (found["Stribeck speed"], found["Stribeck exponent"]) == (0.5, 1.5)
+    store.remove_model(other)
+
+
 def test_the_last_effect_cannot_be_dropped(store, experiment_id):
     study = create_study(store, "joint", [experiment_id], base=["gravity"], cutoff_hz=6.0)
     with pytest.raises(StudyError, match="the model has no effects; add at least one"):
