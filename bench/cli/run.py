@@ -1,5 +1,6 @@
 """`friction-bench run KIND`: one experiment, in this process; the options come from the kind's parameters."""
 
+from dataclasses import replace
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +15,7 @@ from bench.cli.watch import watch
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.experiments.kind import ExperimentKind
+    from bench.runner import RunnerStatus
     from bench.store import Experiment
 
 
@@ -105,7 +107,14 @@ def _carry_out(
                 watch(runner, quiet)
         finally:
             runner.close()
-        return store.experiment(experiment_id), received.exit_code
+        return _as_it_ended(store.experiment(experiment_id), runner.status()), received.exit_code
+
+
+def _as_it_ended(found: "Experiment", status: "RunnerStatus") -> "Experiment":
+    """The record; where it could not be closed, on a full disk, the ending that it lacks."""
+    if found.outcome != "running":
+        return found
+    return replace(found, outcome=status.outcome, reason=status.reason)
 
 
 def _report(found: "Experiment", as_json: bool) -> None:

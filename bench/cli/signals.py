@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM during a run: the joint is stopped, the record is closed, then the program ends."""
+"""Ctrl-C, SIGTERM and SIGHUP during a run: the joint is stopped, the record is closed, then the program ends."""
 
 import signal
 from collections.abc import Iterator
@@ -12,8 +12,16 @@ from bench.cli.exit_codes import ExitCode
 if TYPE_CHECKING:
     from bench.runner import Runner
 
-_CODES = {signal.SIGINT: ExitCode.INTERRUPTED, signal.SIGTERM: ExitCode.TERMINATED}
-_NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
+_CODES = {
+    signal.SIGINT: ExitCode.INTERRUPTED,
+    signal.SIGTERM: ExitCode.TERMINATED,
+    signal.SIGHUP: ExitCode.TERMINATED,
+}
+_NAMES = {
+    signal.SIGINT: "Ctrl-C at the terminal",
+    signal.SIGTERM: "SIGTERM at the terminal",
+    signal.SIGHUP: "the terminal was closed",
+}
 
 
 @dataclass
@@ -31,9 +39,11 @@ def stopping_on_signals(runner: "Runner") -> Iterator[Received]:
     def stop(number: int, _frame: FrameType | None) -> None:
         if received.exit_code is None:
             received.exit_code = _CODES[signal.Signals(number)]
-        runner.stop(f"{_NAMES[signal.Signals(number)]} at the terminal")
+        runner.stop(_NAMES[signal.Signals(number)])
 
-    before = {number: signal.signal(number, stop) for number in _CODES}
+    # `nohup` has SIGHUP ignored, and means it
+    wanted = [number for number in _CODES if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, stop) for number in wanted}
     try:
         yield received
     finally:

@@ -1,5 +1,6 @@
 """The process that serves: address, token, and an end that stops the joint first."""
 
+import signal
 import socket
 from collections.abc import Callable
 from types import FrameType
@@ -84,6 +85,8 @@ def serve_bench(configuration: BenchConfiguration, address: Address, say: Callab
         port = listener.getsockname()[1]
         for line in _welcome(configuration, address.host, port, token):
             say(line)
+        if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # `nohup` has it ignored, and means it
+            signal.signal(signal.SIGHUP, server.handle_exit)  # uvicorn would let it kill the process
         server.run(sockets=[listener])
 
 

@@ -10,6 +10,7 @@ import time
 import pytest
 
 from bench.store import Store
+from bench.store.errors import StoreFullError
 
 
 def test_a_run_and_what_is_listed_afterwards(command):
@@ -89,7 +90,9 @@ def test_the_store_is_chosen_by_option_and_by_environment(command, monkeypatch, 
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-@pytest.mark.parametrize(("number", "times", "code"), [(signal.SIGINT, 2, 130), (signal.SIGTERM, 1, 143)])
+@pytest.mark.parametrize(
+    ("number", "times", "code"), [(signal.SIGINT, 2, 130), (signal.SIGTERM, 1, 143), (signal.SIGHUP, 1, 143)]
+)
 def test_a_signal_stops_the_joint_and_is_recorded(tmp_path, number, times, code):
     words = [sys.executable, "-m", "bench.cli", "run", "steps", "--pace", "real-time"]
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -104,5 +107,16 @@ def test_a_signal_stops_the_joint_and_is_recorded(tmp_path, number, times, code)
         [experiment] = store.experiments()
         [trial] = store.trials(experiment.id)
     assert experiment.outcome == trial.outcome == "stopped"
-    assert ("SIGTERM" if number == signal.SIGTERM else "Ctrl-C") in experiment.reason
+    names = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM", signal.SIGHUP: "the terminal was closed"}
+    assert names[number] in experiment.reason
     assert trial.rows > 20
+
+
+def test_a_run_whose_record_cannot_be_closed_says_why_all_the_same(command, monkeypatch):
+    def full(*_args, **_kwargs):
+        raise StoreFullError("the disk is full")
+
+    monkeypatch.setattr(Store, "finish_experiment", full)
+    result = command("run", "steps", "--repeats", "1")
+    assert result.exit_code == 1
+    assert "experiment 1: failed: the record could not be closed: the disk is full" in result.output

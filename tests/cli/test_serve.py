@@ -72,7 +72,7 @@ def test_status_and_stop_from_another_process(served, command, tmp_path):
     assert "needs a token" in refused.stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
     process, url, token = served
     _wait_until_answering(url)
