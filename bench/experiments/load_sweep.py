@@ -11,7 +11,7 @@ from bench.experiments.at_rest import MOVES_S, RIGHT_ANGLE_RAD, SEARCH_S, measur
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.reflected_load import reflected_load_kg
-from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.quantities import quantity
 
 PAPER_LOADS_KG = tuple(round(0.01 * step, 2) for step in range(11))
@@ -49,6 +49,8 @@ def _refuse(parameters: LoadSweepParameters, configuration: BenchConfiguration) 
     margin_rad = configuration.search.excursion_rad
     refuse_angles("an angle of angles_rad", [0.0, *parameters.angles_rad], margin_rad, configuration)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
+    farthest_rad = max(map(abs, parameters.angles_rad))
+    refuse_slow_move("motion.speed_rad_s", configuration.motion.speed_rad_s, farthest_rad, configuration)
     refuse_currents(configuration)
     reflected_load_kg(0.0, RIGHT_ANGLE_RAD, configuration.rig)
 

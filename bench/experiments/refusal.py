@@ -1,16 +1,23 @@
 """Checks of what is asked against the limits of the bench, before anything moves."""
 
 from collections.abc import Iterable
+from math import pi, radians
 
 from bench.configuration import BenchConfiguration
 from bench.errors import LimitError, quantity_message
+from bench.experiments.profile import Trapezoid
+
+LONGEST_MOVE_S = 600.0
 
 
 def refuse_load(name: str, load_kg: float, configuration: BenchConfiguration) -> None:
     """Raise `LimitError` for a load heavier than the bench carries."""
     limit_kg = configuration.limits.load_kg
     if load_kg > limit_kg:
-        raise LimitError(quantity_message(name, load_kg, f"at most {limit_kg:g}", "kg", "Hang a lighter load"))
+        step = "Hang a lighter load"
+        if load_kg >= 1.0 and load_kg * 1e-3 <= limit_kg:
+            step = f"Are grams meant? {load_kg:g} g are {load_kg * 1e-3:g} kg"
+        raise LimitError(quantity_message(name, load_kg, f"at most {limit_kg:g}", "kg", step))
 
 
 def refuse_angles(name: str, angles_rad: Iterable[float], margin_rad: float, configuration: BenchConfiguration) -> None:
@@ -20,7 +27,10 @@ def refuse_angles(name: str, angles_rad: Iterable[float], margin_rad: float, con
     for angle_rad in angles_rad:
         if not low_rad <= angle_rad <= high_rad:
             allowed = f"{low_rad:.4g} .. {high_rad:.4g} (the limits less a margin of {margin_rad:.4g} rad)"
-            raise LimitError(quantity_message(name, angle_rad, allowed, "rad"))
+            meant_rad = radians(angle_rad)
+            degrees_meant = abs(angle_rad) > 2.0 * pi and low_rad <= meant_rad <= high_rad
+            step = f"Are degrees meant? {angle_rad:g} degrees are {meant_rad:.4g} rad" if degrees_meant else ""
+            raise LimitError(quantity_message(name, angle_rad, allowed, "rad", step))
 
 
 def refuse_speed(name: str, speed_rad_s: float, configuration: BenchConfiguration) -> None:
@@ -28,6 +38,16 @@ def refuse_speed(name: str, speed_rad_s: float, configuration: BenchConfiguratio
     limit_rad_s = configuration.limits.speed_rad_s
     if speed_rad_s > limit_rad_s:
         raise LimitError(quantity_message(name, speed_rad_s, f"at most {limit_rad_s:g}", "rad/s"))
+
+
+def refuse_slow_move(name: str, speed_rad_s: float, way_rad: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for a speed at which a move would seem to have no end."""
+    duration_s = Trapezoid(0.0, way_rad, speed_rad_s, configuration.motion.acceleration_rad_s2).duration_s
+    if duration_s > LONGEST_MOVE_S:
+        raise LimitError(
+            f"{name} is {speed_rad_s:g} rad/s: a move of {way_rad:.4g} rad would take {duration_s:.4g} s; "
+            f"allowed is at most {LONGEST_MOVE_S:g} s. Choose a higher speed or acceleration"
+        )
 
 
 def refuse_currents(configuration: BenchConfiguration) -> None:

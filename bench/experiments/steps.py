@@ -11,7 +11,7 @@ from bench.experiments.at_rest import MOVES_S, RIGHT_ANGLE_RAD, SEARCH_S, measur
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.reflected_load import reflected_load_kg
-from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.quantities import quantity
 
 GOLDEN_SECTION = (sqrt(5.0) - 1.0) / 2.0
@@ -73,6 +73,8 @@ def _refuse(parameters: StepsParameters, configuration: BenchConfiguration) -> N
     refuse_angles("angle_rad", [0.0, parameters.angle_rad], configuration.search.excursion_rad, configuration)
     refuse_speed("fastest_rad_s", parameters.fastest_rad_s, configuration)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
+    refuse_slow_move("slowest_rad_s", parameters.slowest_rad_s, parameters.angle_rad, configuration)
+    refuse_slow_move("motion.speed_rad_s", configuration.motion.speed_rad_s, parameters.angle_rad, configuration)
     refuse_currents(configuration)
     reflected_load_kg(0.0, parameters.angle_rad, configuration.rig)
 

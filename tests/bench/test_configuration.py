@@ -109,3 +109,10 @@ def test_an_impossible_plant_is_refused(changes, message):
 )
 def test_the_unit_of_a_name_is_its_longest_ending(name, unit):
     assert unit_of(name) == unit
+
+
+def test_a_gain_without_bounds_is_refused():
+    with pytest.raises(ConfigurationError, match=r"servo.proportional_a_rad: found inf; should be a finite number"):
+        parse_configuration(
+            {"name": "x", "rig": {"name": "x"}, "servo": {"proportional_a_rad": float("inf")}}, "bench.toml"
+        )

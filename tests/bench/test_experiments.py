@@ -1,5 +1,6 @@
 """The kinds of experiment, on the simulated bench of the paper."""
 
+import re
 from math import pi
 
 import numpy as np
@@ -140,7 +141,29 @@ REFUSED = [
     ("excitation", {"amplitude_rad": 3.0}, "amplitude_rad is -3 rad; allowed is -2.1 .. 2.1"),
     ("excitation", {"speed_rad_s": 20.0}, "speed_rad_s is 20 rad/s; allowed is at most 8 rad/s"),
     ("excitation", {"loads_kg": [0.11]}, "a load of loads_kg is 0.11 kg"),
+    ("steps", {"slowest_rad_s": 1e-300}, "slowest_rad_s is 1e-300 rad/s: a move of 1.571 rad would take 1.571e+300 s"),
 ]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "hint"),
+    [
+        ({"load_kg": 100}, "Are grams meant? 100 g are 0.1 kg"),
+        ({"angle_rad": 90}, "Are degrees meant? 90 degrees are 1.571 rad"),
+    ],
+)
+def test_a_value_in_another_unit_is_recognised(parameters, hint):
+    kind = find_kind("steps")
+    with pytest.raises(LimitError, match=re.escape(hint)):
+        kind.refuse(parse_parameters(kind, parameters), CONFIGURATION)
+
+
+def test_a_configured_motion_without_end_is_refused():
+    motion = CONFIGURATION.motion.model_copy(update={"acceleration_rad_s2": 1e-9})
+    for name in ("steps", "load-sweep"):
+        kind = find_kind(name)
+        with pytest.raises(LimitError, match="allowed is at most 600 s"):
+            kind.refuse(parse_parameters(kind, {}), CONFIGURATION.model_copy(update={"motion": motion}))
 
 
 @pytest.mark.parametrize(("name", "parameters", "message"), REFUSED)
