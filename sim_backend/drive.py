@@ -1,17 +1,21 @@
 """The simulated drive: the drive contract on a plant, in virtual time."""
 
-from importlib.metadata import version
-from math import ceil, isfinite, nan, pi
+from collections.abc import Iterable
+from math import ceil, isfinite, nan
 
 from drivers.contract import Command, Description, Mode, Sample, Status
-from drivers.errors import DriveConfigurationError, DriveFault, DriveStateError
+from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
+from sim_backend.description import describe
 from sim_backend.errors import ParameterError
+from sim_backend.fault_play import FaultPlay
+from sim_backend.faults import Fault, FaultScript, SamplesLost, TorqueDisabled
 from sim_backend.gravity import Load
 from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
 from sim_backend.overload import OverloadMeter
 from sim_backend.parameters import PlantParameters
 from sim_backend.plant import COARSEST_STEP_S, Plant
 
+_TORQUE_DISABLED = "safe torque off is active; close its circuit, then enable"
 _WATCHDOG_FAULT = "watchdog: no command in time"
 
 
@@ -26,14 +30,16 @@ class SimulatedDrive:
         seed: of the plant's own randomness; the same seed and commands give the same samples, bit for bit.
         device: name used in messages.
         watchdog_s: time without a command after which the drive switches itself off [s].
+        faults: what goes wrong, and when in the drive's time.
 
     Raises:
-        ParameterError: the plant cannot be integrated.
+        ParameterError: the plant cannot be integrated, or two faults of a kind overlap.
     """
 
     def __init__(
-        self, parameters: PlantParameters, seed: int = 0, device: str = "sim", watchdog_s: float = 0.1
-    ) -> None:
+        self, parameters: PlantParameters, seed: int = 0, device: str = "sim", watchdog_s: float = 0.1,
+        faults: Iterable[Fault] = (),
+    ) -> None:  # fmt: skip
         self.plant = Plant(parameters, seed)
         self._seed = seed
         self._device = device
@@ -42,6 +48,9 @@ class SimulatedDrive:
         self._fault = ""
         self._switch(Status.DISABLED)
         self._steps = 0
+        self._silent_cycles = 0
+        self._script = FaultScript(faults)
+        self._play = FaultPlay(self._script, self.plant)
         self._duty_counts = parameters.supply.duty_counts
         self._overload = OverloadMeter(parameters.overload)
         self._modes = {Mode.DUTY, Mode.CURRENT} if parameters.current_loop.present else {Mode.DUTY}
@@ -50,30 +59,7 @@ class SimulatedDrive:
 
     def describe(self) -> Description:
         """Identity and capabilities."""
-        parameters = self.plant.parameters
-        measured = {"time_s", "position_rad", "velocity_rad_s", "duty", "supply_v"}
-        if parameters.current_sensor.present:
-            measured.add("current_a")
-        if parameters.heat.present:
-            measured.add("temperature_c")
-        count_rad = 2.0 * pi / (parameters.encoder.counts_per_turn * parameters.gear.ratio)
-        return Description(
-            device=self._device,
-            vendor="friction-bench",
-            product="simulated joint",
-            firmware=version("friction-bench"),
-            serial=f"seed {self._seed}",
-            simulated=True,
-            modes=frozenset(self._modes),
-            measured=frozenset(measured),
-            resolution={
-                "position_rad": count_rad,
-                "velocity_rad_s": count_rad / parameters.encoder.speed_window_s,
-                "duty": 1.0 / self._duty_counts,
-            },
-            max_rate_hz=1.0 / COARSEST_STEP_S,
-            watchdog_s=self._watchdog_s,
-        )
+        return describe(self._device, self.plant.parameters, self._seed, self._modes, self._watchdog_s)
 
     def open(self, period_s: float) -> None:
         """Connect. The power stage stays off.
@@ -103,7 +89,7 @@ class SimulatedDrive:
 
         Raises:
             DriveConfigurationError: the drive does not have the mode.
-            DriveStateError: the drive is not open, has a fault, or is stopping.
+            DriveStateError: the drive is not open, has a fault, is stopping, or its torque is disabled.
         """
         self._require_open("enable")
         if mode not in self._modes:
@@ -111,6 +97,9 @@ class SimulatedDrive:
             raise DriveConfigurationError(self._device, f"mode '{mode.value}' is not one of its modes ({names})")
         if self._status in (Status.FAULT, Status.QUICK_STOP):
             raise DriveStateError(self._device, f"cannot be enabled in state {self._state_text()}; {self._next_step()}")
+        if self._script.holding(TorqueDisabled, self.plant.time_s):
+            raise DriveStateError(self._device, f"cannot be enabled: {_TORQUE_DISABLED}")
+        self._silent_cycles = 0
         self._switch(Status.ENABLED, mode)
 
     def disable(self) -> None:
@@ -126,9 +115,16 @@ class SimulatedDrive:
             self._switch(Status.QUICK_STOP)
 
     def clear_fault(self) -> None:
-        """Acknowledge a fault. The drive is left disabled."""
+        """Acknowledge a fault. The drive is left disabled.
+
+        Raises:
+            DriveFault: the cause is still there.
+        """
         self._require_open("clear_fault")
         if self._status is Status.FAULT:
+            trip = self._script.trip(self.plant.time_s)
+            if trip:
+                raise DriveFault(self._device, f"cannot be cleared: {trip.cause()}; remove the cause, then clear it")
             self._fault = ""
             self._switch(Status.DISABLED)
 
@@ -139,8 +135,12 @@ class SimulatedDrive:
             DriveFault: the drive has switched itself off, and motion was commanded.
             DriveStateError: the drive is not open, or motion was commanded in a mode that is not enabled.
             DriveConfigurationError: the command is not finite, or a duty is outside -1 .. 1.
+            DriveConnectionError: the script loses this cycle's command and sample; time has passed all the same.
         """
         mode, value = command
+        if self._script:
+            self._lose_sample()
+        self._silent_cycles = 0
         if mode is Mode.OFF:
             self._require_open("exchange")
             if self._status is Status.ENABLED:
@@ -183,27 +183,60 @@ class SimulatedDrive:
             duration_s: simulated time [s], in whole periods.
         """
         self._require_open("idle")
-        period_s = self._steps * self.plant.step_s
-        stage, demand = self._held
-        for cycle in range(round(duration_s / period_s)):
-            if self._status in (Status.ENABLED, Status.QUICK_STOP) and cycle * period_s >= self._watchdog_s:
-                self._trip(_WATCHDOG_FAULT)
-                stage, demand = self._held
-            self.plant.advance(stage, demand, self._steps)
+        for _ in range(round(duration_s / (self._steps * self.plant.step_s))):
+            self._pass_period()
 
     # the inside ---------------------------------------------------------------------------------------
 
     def _advance(self, stage: int, demand: float, duty: float) -> Sample:
         self._held = stage, demand
+        if self._script and self._meet_faults():
+            stage, demand, duty = OPEN, 0.0, 0.0
         position_rad, velocity_rad_s, current_a, temperature_c, supply_v = self.plant.advance(
             stage, demand, self._steps
         ).tolist()
         if self._overload.overloads(current_a, self._steps * self.plant.step_s):
             self._trip(f"I2t overload, {current_a:.3g} A")
-        return Sample(
+        sample = Sample(
             self.plant.time_s, 0.0, position_rad, velocity_rad_s, duty, current_a,
             supply_v, temperature_c, self._status,
         )  # fmt: skip
+        return self._play.falsify(sample) if self._script else sample
+
+    def _meet_faults(self) -> bool:
+        """Do what the script wants of plant and power stage now; tell whether the stage has gone off."""
+        self._play.work_on_plant()
+        powered = self._status in (Status.ENABLED, Status.QUICK_STOP)
+        trip = self._script.trip(self.plant.time_s)
+        if trip and self._status is not Status.FAULT:
+            self._trip(trip.cause())
+        elif powered and self._script.holding(TorqueDisabled, self.plant.time_s):
+            self._switch(Status.DISABLED)
+        return powered and self._status not in (Status.ENABLED, Status.QUICK_STOP)
+
+    def _lose_sample(self) -> None:
+        """Let a period pass without a host, where the script loses what is sent.
+
+        Raises:
+            DriveConnectionError: it does.
+        """
+        if self._open and self._script.holding(SamplesLost, self.plant.time_s):
+            time_s = self.plant.time_s
+            self._pass_period()
+            raise DriveConnectionError(
+                self._device, f"no answer to the command of {time_s:.4f} s; check the cable, then connect again"
+            )
+
+    def _pass_period(self) -> None:
+        """Let a period pass under the last command, until the watchdog acts."""
+        silent_s = self._silent_cycles * self._steps * self.plant.step_s
+        if self._status in (Status.ENABLED, Status.QUICK_STOP) and silent_s >= self._watchdog_s:
+            self._trip(_WATCHDOG_FAULT)
+        stage, demand = self._held
+        if self._script and self._meet_faults():
+            stage, demand = self._held
+        self.plant.advance(stage, demand, self._steps)
+        self._silent_cycles += 1
 
     def _trip(self, fault: str) -> None:
         """Switch off because of a fault."""
@@ -214,7 +247,7 @@ class SimulatedDrive:
         if self._status is not Status.QUICK_STOP:
             return self._advance(OPEN, 0.0, 0.0)
         sample = self._advance(BRAKE, 0.0, 0.0)
-        if sample.velocity_rad_s == 0.0:
+        if sample.velocity_rad_s == 0.0 and self._status is Status.QUICK_STOP:
             self._switch(Status.DISABLED)
         return sample
 
@@ -249,4 +282,6 @@ class SimulatedDrive:
             return "find the cause, then clear the fault"
         if self._status is Status.QUICK_STOP:
             return "exchange OFF commands until it stands"
+        if self._script.holding(TorqueDisabled, self.plant.time_s):
+            return _TORQUE_DISABLED
         return f"enable {mode.value} mode first"

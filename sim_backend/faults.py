@@ -1,0 +1,145 @@
+"""What may go wrong on a bench, scripted in the drive's own time."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from sim_backend.component import Component, quantity
+from sim_backend.errors import ParameterError
+
+FOR_GOOD_S = 1e12
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fault(Component):
+    """Something that is wrong from a time on, for a while or for good."""
+
+    start_s: float = quantity("s, the drive's time", at_least=0)
+    duration_s: float = quantity("s", above=0, default=FOR_GOOD_S)
+
+    def holds(self, time_s: float) -> bool:
+        """Tell whether it is wrong at a time."""
+        # a drive's time is a sum of periods: half a nanosecond is rounding
+        return -5e-10 <= time_s - self.start_s < self.duration_s - 5e-10
+
+
+class EncoderStuck(Fault):
+    """The encoder shows the position of the start, whatever the motor does."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EncoderJump(Fault):
+    """The encoder has lost counts: every position is off by so much, and the speed is wrong while that is news."""
+
+    jump_rad: float = quantity("rad at the joint")
+
+
+class SamplesLost(Fault):
+    """Neither command nor sample gets through. The drive goes on with the last command until its watchdog acts."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SamplesLate(Fault):
+    """What the drive measures arrives late; the age in the sample says so."""
+
+    age_s: float = quantity("s", above=0, at_most=1)
+
+
+class Trip(Fault, ABC):
+    """The drive switches itself off, and cannot be cleared while the cause is there."""
+
+    @abstractmethod
+    def cause(self) -> str:
+        """Say what the drive reports."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverTemperature(Trip):
+    """The drive is too hot, and says how hot where it measures that."""
+
+    temperature_c: float = quantity("degC", above=0, default=95.0)
+
+    def cause(self) -> str:
+        """Say what the drive reports."""
+        return f"over-temperature, {self.temperature_c:g} degC"
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverCurrent(Trip):
+    """The stage has seen a current spike: a short, a jammed motor."""
+
+    current_a: float = quantity("A", above=0, default=20.0)
+
+    def cause(self) -> str:
+        """Say what the drive reports."""
+        return f"over-current, {self.current_a:g} A"
+
+
+class SupplyLost(Trip):
+    """The supply of the power stage is gone; the drive's logic lives on."""
+
+    def cause(self) -> str:
+        """Say what the drive reports."""
+        return "under-voltage, 0 V at the power stage"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveFailed(Trip):
+    """Any other fault of the drive's own."""
+
+    text: str = "internal fault"
+
+    def cause(self) -> str:
+        """Say what the drive reports."""
+        return self.text
+
+
+class TorqueDisabled(Fault):
+    """Somebody has opened the safe-torque-off circuit: no fault, and no power."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClutchSlips(Fault):
+    """The coupling between transmission and arm holds no more than this."""
+
+    limit_n_m: float = quantity("N m", above=0)
+
+
+class LoadFalls(Fault):
+    """The load falls off the arm. It does not come back by itself."""
+
+
+Kind = TypeVar("Kind", bound=Fault)
+
+
+class FaultScript:
+    """The faults of a run, in any order. Two of a kind may not overlap.
+
+    Raises:
+        ParameterError: two of a kind overlap.
+    """
+
+    def __init__(self, faults: Iterable[Fault] = ()) -> None:
+        self._faults = sorted(faults, key=lambda fault: fault.start_s)
+        for place, fault in enumerate(self._faults):
+            for other in self._faults[place + 1 :]:
+                if type(other) is type(fault) and fault.holds(other.start_s):
+                    raise ParameterError(
+                        f"{type(fault).__name__}.start_s = {other.start_s:g} [s]: the one of {fault.start_s:g} s is "
+                        f"not over before {fault.start_s + fault.duration_s:g} s; one of a kind at a time"
+                    )
+
+    def __bool__(self) -> bool:
+        return bool(self._faults)
+
+    def holding(self, kind: type[Kind], time_s: float) -> Kind | None:
+        """Return the fault of a kind that is there at a time, or None."""
+        for fault in self._faults:
+            if isinstance(fault, kind) and fault.holds(time_s):
+                return fault
+        return None
+
+    def trip(self, time_s: float) -> Trip | None:
+        """Return what switches the drive off at a time, or None."""
+        return next((fault for fault in self._faults if isinstance(fault, Trip) and fault.holds(time_s)), None)
