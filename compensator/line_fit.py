@@ -1,0 +1,68 @@
+"""Ordinary least squares of a few coefficients, with 95 % intervals of them and of their quotients."""
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+from scipy.stats import t as student_t
+
+from compensator.interval import CONFIDENCE, Interval
+from compensator.kinetic_friction import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A linear relation: coefficients, their covariance, Student's t, standard deviation of the residuals.
+
+    `told` is False where columns rise and fall together: they share out their effect in any way.
+    """
+
+    told: bool
+    values: FloatArray
+    covariance: FloatArray
+    quantile: float
+    residual: float
+
+    def coefficient(self, index: int) -> Interval:
+        """A coefficient."""
+        return self._interval(float(self.values[index]), np.eye(len(self.values))[index])
+
+    def inverse(self) -> Interval:
+        """1 / the first coefficient."""
+        if self.values[0] == 0.0:
+            return Interval(inf, -inf, inf)
+        gradient = np.zeros(len(self.values))
+        gradient[0] = -1.0 / self.values[0] ** 2
+        return self._interval(1.0 / float(self.values[0]), gradient)
+
+    def ratio(self, index: int) -> Interval:
+        """- a coefficient / the first one."""
+        if self.values[0] == 0.0:
+            return Interval(inf, -inf, inf)
+        gradient = np.zeros(len(self.values))
+        gradient[index] = -1.0 / self.values[0]
+        gradient[0] = self.values[index] / self.values[0] ** 2
+        return self._interval(-float(self.values[index] / self.values[0]), gradient)
+
+    def _interval(self, value: float, gradient: FloatArray) -> Interval:
+        half = self.quantile * float(np.sqrt(gradient @ self.covariance @ gradient)) if self.told else inf
+        return Interval(value, value - half, value + half)
+
+
+def fit_line(columns: FloatArray, response: FloatArray) -> Line:
+    """Least squares.
+
+    Args:
+        columns: shape (n, k), n above k.
+        response: shape (n,); the noise is its.
+    """
+    freedom = columns.shape[0] - columns.shape[1]
+    scales = np.max(np.abs(columns), axis=0)
+    scales[scales == 0.0] = 1.0
+    values, _, rank, _ = np.linalg.lstsq(columns / scales, response, rcond=1e-9)
+    residual = float(np.sqrt(np.sum((response - columns / scales @ values) ** 2) / freedom))
+    told = bool(rank == columns.shape[1])
+    gram = columns.T @ columns / np.outer(scales, scales)
+    covariance = residual**2 * (np.linalg.inv(gram) if told else gram) / np.outer(scales, scales)
+    quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, freedom))
+    return Line(told, values / scales, covariance, quantile, residual)
