@@ -69,7 +69,8 @@ def write_trials_csv(file: IO[str], entries: Sequence[TrialEntry]) -> None:
     lines = [["file", *named, "kind", *keys, "rows"]]
     for entry in entries:
         conditions = [values.write(entry.conditions.get(key)) for key in keys]
-        lines.append([entry.file, *(entry.name for _ in named), entry.kind, *conditions, str(entry.rows)])
+        names = [values.shield(entry.name) for _ in named]
+        lines.append([entry.file, *names, values.shield(entry.kind), *conditions, str(entry.rows)])
     file.writelines(",".join(map(quoted, line)) + "\n" for line in lines)
 
 
@@ -99,9 +100,9 @@ def _entry(table: Table, line: int, cells: Row, places: dict[str, tuple[int, Col
         value = values.parse(text[name], mapping.decimal)
         if name not in RESERVED and name not in mapping.ignore and value is not None:
             conditions[name] = _checked(table, line, name, _converted(table, line, value, column), column)
-    name = text.get("name") or name_of(file)
+    name = values.unshield(text.get("name", "")) or name_of(file)
     rows = _rows(table, line, values.parse(text.get("rows", "")))
-    return TrialEntry(file, name, text.get("kind", DEFAULT_KIND), conditions, rows, line)
+    return TrialEntry(file, name, values.unshield(text.get("kind", DEFAULT_KIND)), conditions, rows, line)
 
 
 def _checked(table: Table, line: int, name: str, value: Condition, column: Column) -> Condition:

@@ -1,7 +1,7 @@
 """Conditions as text: numbers, true and false, and text that stays text.
 
 Text that would be read as something else ("12", "true", "") is written with an apostrophe before it,
-as spreadsheets do.
+as spreadsheets do. So is text that a spreadsheet would run as a formula ("=1+1"), wherever it came from.
 """
 
 import math
@@ -11,13 +11,14 @@ from compensator.lab.recording import Condition
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FLAGS = {"true": True, "false": False}
+_FORMULA_SIGNS = ("=", "+", "-", "@")
 
 
 def parse(cell: str, decimal: str = ".") -> Condition | None:
     """The condition of a cell; None where it is empty, that is, not known."""
     if cell.startswith("'"):
         bare = cell.lstrip("'")
-        return cell if _plain(bare, decimal) == bare else cell[1:]
+        return cell if _plain(bare, decimal) == bare and not _is_formula(bare) else cell[1:]
     return _plain(cell, decimal)
 
 
@@ -28,8 +29,22 @@ def write(value: Condition | None) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return value if parse(value) == value else f"'{value}"
+        return shield(value) if parse(value) == value else f"'{value}"
     return repr(float(value))
+
+
+def shield(text: str) -> str:
+    """The cell of a text that is always text, such as a name: with an apostrophe before what may be a formula."""
+    return f"'{text}" if _is_formula(text.lstrip("'")) else text
+
+
+def unshield(cell: str) -> str:
+    """The text that `shield` made the cell from."""
+    return cell[1:] if cell.startswith("'") and _is_formula(cell.lstrip("'")) else cell
+
+
+def _is_formula(text: str) -> bool:
+    return text.lstrip().startswith(_FORMULA_SIGNS)
 
 
 def _plain(cell: str, decimal: str) -> Condition | None:

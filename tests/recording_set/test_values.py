@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.recording_set.values import parse, write
+from bench.recording_set.values import parse, shield, unshield, write
 from compensator.lab.recording import Condition
 
 CONDITIONS = st.one_of(
@@ -51,3 +51,21 @@ def test_cells_are_read_as_a_person_would(cell: str, expected: Condition | None)
 @pytest.mark.parametrize(("cell", "expected"), [("0,49", 0.49), ("1.5", "1.5"), ("1.000,5", "1.000,5")])
 def test_a_decimal_comma_is_read_where_it_is_announced(cell: str, expected: Condition) -> None:
     assert parse(cell, ",") == expected
+
+
+FORMULAS = st.builds(
+    "{}{}{}{}".format, st.sampled_from(["", "'", "''"]), st.sampled_from(["", " "]), st.sampled_from("=+-@"), st.text()
+)
+
+
+@given(FORMULAS)
+def test_no_text_is_written_as_a_formula(text: str) -> None:
+    assert write(text).startswith("'")
+    assert shield(text).startswith("'")
+    assert parse(write(text)) == text
+    assert unshield(shield(text)) == text
+
+
+@given(st.text())
+def test_names_read_back_as_themselves(text: str) -> None:
+    assert unshield(shield(text)) == text
