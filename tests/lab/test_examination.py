@@ -1,0 +1,25 @@
+"""When a candidate counts as confirmed."""
+
+import pytest
+
+from compensator.lab.catalogue import effect_named
+from compensator.lab.diagnosis import Candidate
+from compensator.lab.examination import is_confirmed
+from compensator.lab.gain import Gain
+
+
+@pytest.mark.parametrize(
+    ("score", "p_value", "gain", "low", "confirmed"),
+    [
+        (5.0, 0.001, 0.2, 0.1, True),
+        (-1.0, 0.001, 0.2, 0.1, False),  # does not pay for its parameters
+        (5.0, 0.02, 0.2, 0.1, False),  # may be luck
+        (50.0, 0.02, 0.2, 0.1, True),  # few stretches hold the evidence, but it is very strong
+        (50.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain
+        (50.0, 0.001, 0.0005, 0.0001, False),  # a gain of no use
+    ],
+)
+def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, confirmed):
+    gained = Gain(gain, low, 2.0 * gain)
+    candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, True, None)
+    assert is_confirmed(candidate) == confirmed
