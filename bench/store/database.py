@@ -35,6 +35,7 @@ class Database:
         self.busy_timeout_s = busy_timeout_s
         self._engine = sqlite.create(self.path, busy_timeout_s)
         self._writer = threading.Lock()
+        self._inode: int | None = None
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
@@ -54,6 +55,7 @@ class Database:
             with self._explained(), self._engine.connect() as connection:
                 connection = connection.execution_options(**{sqlite.WRITES: True})
                 with connection.begin():
+                    self._check_file()
                     yield connection
         finally:
             self._writer.release()
@@ -61,6 +63,19 @@ class Database:
     def close(self) -> None:
         """Close all connections. Safe to call twice."""
         self._engine.dispose()
+
+    def _check_file(self) -> None:
+        """Refuse to write into a file that is not there any more: SQLite would, and every row would be lost."""
+        try:
+            found = self.path.stat().st_ino
+        except FileNotFoundError:
+            found = None
+        self._inode = self._inode or found
+        if found is None or found != self._inode:
+            raise StoreFileError(
+                f"store '{self.path}' was deleted, moved or replaced while it was in use; nothing more can be kept. "
+                "Put the file back if you can, and start this program again"
+            )
 
     @contextmanager
     def _explained(self) -> Iterator[None]:

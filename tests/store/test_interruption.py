@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 
 from bench.store import Store
+from bench.store.errors import StoreFileError
 from tests.store.examples import begin, begin_trial, rows
 
 # writes blocks of 25 rows for ever and says after each which rows are committed
 WRITER = """
 import sys
 from bench.store import Store
+from bench.store.errors import StoreFileError
 from tests.store.examples import begin, begin_trial, rows
 store = Store.open(sys.argv[1])
 writer = begin_trial(store, begin(store), load_kg=0.1)
@@ -111,3 +113,14 @@ def test_what_ended_stays_as_it_ended(url: str, outcome: str) -> None:
         store.finish_experiment(experiment_id, outcome)
     with Store.open(url) as store:
         assert store.experiment(experiment_id).outcome == outcome
+
+
+@pytest.mark.parametrize("replaced", [False, True])
+def test_nothing_is_written_into_a_database_that_was_taken_away(store: Store, tmp_path: Path, replaced: bool) -> None:
+    writer = begin_trial(store, begin(store))
+    writer.append(rows(0, 25))
+    (tmp_path / "bench.sqlite").rename(tmp_path / "elsewhere.sqlite")
+    if replaced:
+        (tmp_path / "bench.sqlite").touch()
+    with pytest.raises(StoreFileError, match="was deleted, moved or replaced while it was in use"):
+        writer.append(rows(25, 25))
