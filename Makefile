@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo serve test check format clean help
+.PHONY: demo serve test benchmark check format clean help
 
 help:            ## this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
@@ -24,6 +24,10 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 
 test: $(STAMP)   ## the tests
 	$(BIN)/pytest
+
+benchmark: $(STAMP) ## steps a second of plant and drive, and their ratio to MuJoCo's
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
+	$(BIN)/python -m tests.sim_backend.rates
 
 check: $(STAMP)  ## style, types and walls
 	$(BIN)/ruff check .

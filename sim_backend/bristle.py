@@ -89,10 +89,7 @@ def bristle_line(
         bent = way * deflection_rad * stiffness / max(limit_n_m, 1e-12)
         bent += 0.5 * step_s * rate * (1.0 - plastic_share(bristle.elastic_fraction, bent) * bent)
         rate *= plastic_share(bristle.elastic_fraction, bent)
-    relative = speed_rad_s / friction.stribeck_rad_s
-    damping = bristle.damping_n_m_s_rad
-    if damping > 0.0:
-        damping *= exp(-relative * relative)
+    damping = _fading(bristle.damping_n_m_s_rad, speed_rad_s / friction.stribeck_rad_s)
     lost, first, second = _decay(rate * step_s)
     known_n_m = (stiffness * first - damping * lost / step_s) * deflection_rad
     slope = stiffness * step_s * second + damping * first
@@ -136,6 +133,13 @@ def is_slipping(bristle: Bristle, deflection_rad: float, speed_rad_s: float, lim
     if deflection_rad * speed_rad_s <= 0.0:
         return False
     return bristle.stiffness_n_m_rad * abs(deflection_rad) >= 0.9 * limit_n_m
+
+
+@jitted
+def _fading(damping: float, relative: float) -> float:
+    """Return the micro-damping at a speed over the Stribeck speed; 0 where nothing of it is left."""
+    power = relative * relative
+    return damping * exp(-power) if power < 40.0 else 0.0
 
 
 @jitted

@@ -164,7 +164,7 @@ def test_torque_disable_is_no_fault_and_lasts_until_its_circuit_is_closed() -> N
 
 def test_fault_ends_a_quick_stop() -> None:
     # the stuck encoder makes the drive believe in the same cycle that it stands
-    drive = _drive(DriveFailed(start_s=0.5), EncoderStuck(start_s=0.5))
+    drive = _drive(DriveFailed(start_s=0.5, duration_s=PERIOD_S), EncoderStuck(start_s=0.502))
     _run(drive, 0.49)
     drive.quick_stop()
     statuses = [drive.exchange(OFF).status for _ in range(200)]
