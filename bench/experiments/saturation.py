@@ -2,9 +2,9 @@
 
 A joint that turns freely nears its steady speed w_s with a time constant T:  dw/dt = (w_s - w) / T. Travel may end
 long before that: T can be a second, in which the joint turns 6 rad. So the steady speed is not waited for but sought:
-each stroke is run up to another speed, and what it shows tells how much speed is still to come. From two strokes
+each stroke is run up to another speed, and what it shows tells how much speed is still to come. From strokes
 
-    that pass at different speeds:   T dw/dt, with T = -(change of w) / (change of dw/dt)
+    that pass at different speeds:   where the line of dw/dt over w, of slope -1/T, comes to 0
     that arrive at the same speed:   that is it, whatever the run-up was; w_s is the fixed point of run-up -> speed
 
 The speed is saturated where what is still to come is a small share of it.
@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 FIRST_TIME_CONSTANT_S = 0.5  # until two strokes have shown it
 LEAST_CHANGE = 0.1  # of the run-up: strokes closer than that do not tell whether they arrived
 ARRIVED = 0.1  # of a difference in run-up: with less of it left, strokes have arrived
-APART = 0.05  # of the speed: strokes closer than that do not show a time constant
+APART = 0.03  # of the speed: strokes closer than that do not show a time constant
+NEAR = 0.6  # of the speed: strokes further off lie on another part of the friction curve
 CLOSE = 1.5  # a stroke that stalls and one that does not are told apart no further than this ratio
 LEAST_READINGS = 8  # of a window
 
@@ -64,26 +65,35 @@ def motion_of(time_s: NDArray[np.float64], position_rad: NDArray[np.float64]) ->
 
 
 def time_constant_s(strokes: list[Stroke]) -> float:
-    """T, from the last stroke and the one nearest to it in speed that is far enough away; NaN where none shows it."""
-    last = strokes[-1]
-    least_rad_s = APART * last.speed_rad_s
-    others = [one for one in strokes[:-1] if not one.stalled and abs(one.speed_rad_s - last.speed_rad_s) > least_rad_s]
-    if last.stalled or not others:
+    """T, from a line of acceleration over speed through the strokes near the last one; NaN where they show none."""
+    near = _near(strokes)
+    speeds, accelerations = np.array([(one.speed_rad_s, one.acceleration_rad_s2) for one in near]).reshape(-1, 2).T
+    if len(near) < 2 or np.ptp(speeds) <= APART * strokes[-1].speed_rad_s:
         return nan
-    other = min(others, key=lambda one: abs(one.speed_rad_s - last.speed_rad_s))
-    slope = (last.acceleration_rad_s2 - other.acceleration_rad_s2) / (last.speed_rad_s - other.speed_rad_s)
+    slope = float(np.polyfit(speeds, accelerations, 1)[0])
     return -1.0 / slope if slope < 0.0 else nan
+
+
+def _near(strokes: list[Stroke]) -> list[Stroke]:
+    last_rad_s = strokes[-1].speed_rad_s
+    return [one for one in strokes if not one.stalled and abs(one.speed_rad_s - last_rad_s) <= NEAR * last_rad_s]
 
 
 def remaining_rad_s(strokes: list[Stroke]) -> float:
     """Speed still to come after the last stroke; negative where the joint is slowing down, NaN where not known."""
     last = strokes[-1]
     others = [one for one in strokes[:-1] if not one.stalled and _share(one, last) < ARRIVED]
-    if not last.stalled and others:
+    if last.stalled:
+        return nan
+    hardly_changing = abs(last.acceleration_rad_s2) * FIRST_TIME_CONSTANT_S <= APART * last.speed_rad_s
+    if others and hardly_changing:
         other = others[-1]
         share = _share(other, last)
         return share / (1.0 - share) * (last.speed_rad_s - last.run_up_rad_s)
-    return last.acceleration_rad_s2 * time_constant_s(strokes)
+    # the line's, not the last stroke's: teeth that part while it is measured falsify one stroke, not all of them
+    near = _near(strokes)
+    mean_speed, mean_acceleration = np.mean([(one.speed_rad_s, one.acceleration_rad_s2) for one in near], axis=0)
+    return float(mean_speed + mean_acceleration * time_constant_s(strokes)) - last.speed_rad_s
 
 
 def next_run_up(strokes: list[Stroke], tolerance: float, top_speed_rad_s: float) -> Ending | float:

@@ -83,3 +83,14 @@ def test_motion_by_hand():
     speed, acceleration = motion_of(time_s, 1.0 + 3.0 * (time_s - time_s.mean()) + 0.25 * (time_s - time_s.mean()) ** 2)
     assert speed == pytest.approx(3.0)
     assert acceleration == pytest.approx(0.5)
+
+
+def test_one_falsified_stroke_does_not_look_saturated():
+    # the third should show 0.9 rad/s2; the last two alone would give a time constant of 0.14 s and 0.04 rad/s to come
+    strokes = [Stroke(3.0, 3.0, 2.0), Stroke(4.0, 4.0, 1.0), Stroke(4.1, 4.1, 0.3)]
+    assert next_run_up(strokes, 0.02, TOP_RAD_S) is not Ending.SATURATED
+
+
+def test_strokes_that_meet_by_chance_while_accelerating_have_not_arrived():
+    strokes = [Stroke(3.1, 2.46, -0.3), Stroke(2.4, 2.445, 0.3)]
+    assert next_run_up(strokes, 0.02, TOP_RAD_S) is not Ending.SATURATED
