@@ -1,7 +1,10 @@
 """Errors of the model lab. Each message says what was found, what is wanted and which trial would supply it."""
 
 
-class LabError(Exception):
+from compensator.errors import CompensatorError
+
+
+class LabError(CompensatorError):
     """Base of the lab's errors."""
 
 
