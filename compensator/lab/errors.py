@@ -1,6 +1,5 @@
 """Errors of the model lab. Each message says what was found, what is wanted and which trial would supply it."""
 
-
 from compensator.errors import CompensatorError
 
 
