@@ -61,8 +61,8 @@ def test_a_failure_is_raised_and_the_thread_ends():
     assert threading.active_count() == threads
 
 
-@pytest.mark.parametrize(("patience_s", "longest_s"), [(0.0, 0.02), (0.05, 0.5)])
-def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience_s, longest_s):
+@pytest.mark.parametrize("patience_s", [0.0, 0.05])
+def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience_s):
     monkeypatch.setattr(Recorder, "BACKLOG", 2)
     monkeypatch.setattr(Recorder, "BLOCK_ROWS", 1)
     release = threading.Event()
@@ -75,7 +75,7 @@ def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience
     began_s = time.monotonic()
     with pytest.raises(RecordingError, match="2 blocks are waiting"):
         fill(recorder)
-    assert patience_s <= time.monotonic() - began_s < longest_s
+    assert patience_s <= time.monotonic() - began_s < 1.0
     monkeypatch.setattr(Recorder, "LAST_PATIENCE_S", 0.05)
     with pytest.raises(RecordingError, match="has not taken"):
         recorder.close()
