@@ -84,11 +84,12 @@ def _few_usable(fit: Fit) -> list[str]:
 def _unused(fit: Fit) -> list[str]:
     dataset = fit.dataset
     used = set(np.unique(dataset.trial_index[dataset.counted]).tolist())
+    idle = [f"'{t.signals.recording.name}'" for index, t in enumerate(dataset.trials) if index not in used]
+    if not idle:
+        return []
     return [
-        f"trial '{trial.signals.recording.name}' has no row that counts ({dataset.rows}) and is not used; leave it "
-        "out, or record motion in it"
-        for index, trial in enumerate(dataset.trials)
-        if index not in used
+        f"not used, since no row of theirs counts ({dataset.rows}): {', '.join(idle)}; the joint rests, reverses or "
+        "crosses its free play all the time: record slower or longer motion in one direction"
     ]
 
 
