@@ -12,6 +12,7 @@ from sim_backend.cogging import cogging_energy
 from sim_backend.contact import contact_energy
 from sim_backend.current_sensor import measured_current
 from sim_backend.gravity import arm_inertia, gravity_energy, moment_kg_m
+from sim_backend.hose import Bend, hose_energy
 from sim_backend.jit import jitted_and_cached
 from sim_backend.obstacles import obstacles_energy
 from sim_backend.record import Records
@@ -97,6 +98,7 @@ def _stored_energy_of(mechanisms: int) -> Callable[[Records, Records], float]:
             + cogging_energy(plant.cogging, ratio * state.rotor_rad)
             + bristle_energy(plant.bristle, state.bristle_rad)
             + bristle_energy(plant.arm_bristle, state.arm_bristle_rad)
+            + hose_energy(plant.hose, Bend(state.hose_first_rad, state.hose_second_rad, state.hose_third_rad))
             + 0.5 * plant.motor.inductance_h * state.current_a**2
         )
         return energy_j

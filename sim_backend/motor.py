@@ -90,8 +90,8 @@ class CurrentLine(NamedTuple):
 
 @jitted
 def current_line(
-    stage: int, demand: float, before_a: float, speed_rad_s: float, winding: Winding, parameters: Electrics,
-    step_s: float,
+    stage: int, demand: float, before_a: float, speed_rad_s: float, winding: Winding, supply_v: float,
+    parameters: Electrics, step_s: float,
 ) -> CurrentLine:  # fmt: skip
     """Return the current over the coming step. Backward Euler in the inductance.
 
@@ -101,6 +101,7 @@ def current_line(
         before_a: current at the start of the step [A].
         speed_rad_s: motor speed at the start of the step [rad/s].
         winding: the motor at its temperature.
+        supply_v: of the supply at this moment, without load [V].
         parameters: of the plant.
         step_s: length of the step [s].
     """
@@ -110,16 +111,16 @@ def current_line(
     duty, lost_v = 0.0, 0.0
     if stage == VOLTAGE:
         duty = demand
-        lost_v = lost_voltage(parameters.dead_time, supply.voltage_v)
+        lost_v = lost_voltage(parameters.dead_time, supply_v)
     elif stage == CURRENT:
         target_a = (demand - parameters.current_sensor.offset_a) / parameters.current_sensor.gain
         wanted_a = before_a + (target_a - before_a) * step_s / (step_s + parameters.current_loop.time_constant_s)
         needed_v = winding.torque_constant_n_m_a * speed_rad_s + reactance_ohm * (wanted_a - before_a)
         needed_v += winding.resistance_ohm * wanted_a
-        if abs(needed_v) <= supply.voltage_v - supply.source_resistance_ohm * abs(wanted_a):
-            return CurrentLine(wanted_a, 0.0, needed_v / supply.voltage_v, 0.0)
+        if abs(needed_v) <= supply_v - supply.source_resistance_ohm * abs(wanted_a):
+            return CurrentLine(wanted_a, 0.0, needed_v / supply_v, 0.0)
         duty = 1.0 if needed_v > 0.0 else -1.0
-    voltage_v = duty * supply.voltage_v
+    voltage_v = duty * supply_v
     if lost_v > 0.0:
         driving_v = voltage_v + reactance_ohm * before_a - winding.torque_constant_n_m_a * speed_rad_s
         if abs(driving_v) <= lost_v:

@@ -18,8 +18,10 @@ from sim_backend.eccentricity import Eccentricity
 from sim_backend.end_stops import EndStops
 from sim_backend.errors import ParameterError
 from sim_backend.friction import Friction
+from sim_backend.friction_jump import FrictionJump
 from sim_backend.gravity import Arm, CentreOfMass, Load
 from sim_backend.heat import Heat
+from sim_backend.hose import Hose
 from sim_backend.load_friction import LoadFriction
 from sim_backend.lubricant import Lubricant
 from sim_backend.motor import CurrentLoop, Motor, Supply
@@ -30,6 +32,7 @@ from sim_backend.run_in import RunIn
 from sim_backend.sensing import Encoder, Latency
 from sim_backend.shaft import Shaft
 from sim_backend.spring import Spring
+from sim_backend.supply_ripple import SupplyRipple
 from sim_backend.thermal_drift import ThermalDrift
 from sim_backend.viscous_asymmetry import ViscousAsymmetry
 from sim_backend.wall import Wall
@@ -79,6 +82,9 @@ class PlantParameters:
     dead_time: DeadTime = field(default_factory=DeadTime)
     thermal_drift: ThermalDrift = field(default_factory=ThermalDrift)
     eccentricity: Eccentricity = field(default_factory=Eccentricity)
+    hose: Hose = field(default_factory=Hose)
+    friction_jump: FrictionJump = field(default_factory=FrictionJump)
+    supply_ripple: SupplyRipple = field(default_factory=SupplyRipple)
 
     def __post_init__(self) -> None:
         if self.current_loop.present and not self.current_sensor.present:

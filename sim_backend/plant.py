@@ -133,7 +133,8 @@ class Plant:
         placed |= {"arm_rad": arm_rad, "arm_rad_s": arm_rad_s, "arm_mean_rad_s": arm_rad_s}
         forgotten = ("current_a", "contact_n_m", "leant_n_m", "clutch_rad", "slid")
         bristles = ("bristle_rad", "arm_bristle_rad", "rest_s", "arm_rest_s")
-        placed |= dict.fromkeys(forgotten + bristles, 0.0)
+        hose = ("hose_first_rad", "hose_second_rad", "hose_third_rad")
+        placed |= dict.fromkeys(forgotten + bristles + hose, 0.0)
         for name, value in placed.items():
             self._state[name] = value
         self._forget()

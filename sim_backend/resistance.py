@@ -7,6 +7,7 @@ from sim_backend.coulomb_asymmetry import dry_scale
 from sim_backend.drag import drag_slope
 from sim_backend.dwell import rest_scale
 from sim_backend.friction import dry_friction
+from sim_backend.friction_jump import jump_scale
 from sim_backend.jit import jitted
 from sim_backend.load_friction import mesh_loss
 from sim_backend.lubricant import viscosity_scale
@@ -43,6 +44,7 @@ def drive_side(parameters: PlantParameters, state: State, weight_n: float, step_
     dry_n_m = dry_friction(friction, speed_rad_s, weight_n, static_factor, state.coulomb_factor)
     dry_n_m *= ratio * periodic_scale(parameters.periodic_friction, state.rotor_rad)
     dry_n_m *= run_in_scale(parameters.run_in, state.travelled_rad)
+    dry_n_m *= jump_scale(parameters.friction_jump, state)
     lower_n_m = dry_n_m * dry_scale(parameters.coulomb_asymmetry, -1.0)
     upper_n_m = dry_n_m * dry_scale(parameters.coulomb_asymmetry, 1.0)
     lower_n_m += mesh_loss(parameters.load_friction, state.contact_n_m, -1.0)

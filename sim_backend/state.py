@@ -26,6 +26,11 @@ class State:
     bristle_rad: float = 0.0  # deflection of the drive side's bristles, at the motor shaft
     arm_bristle_rad: float = 0.0
     slid: bool = False  # the drive side's bristles have slipped since the motion last turned
+    hose_first_rad: float = 0.0  # bend of the hose's strands
+    hose_second_rad: float = 0.0
+    hose_third_rad: float = 0.0
+    jumped: bool = False  # dry friction has jumped to its other value
+    ripple_turns: float = 0.0  # phase of the supply's ripple
     rest_s: float = 0.0  # age of the drive side's contact
     arm_rest_s: float = 0.0
     static_factor: float = 1.0  # this stop's static friction over the nominal one

@@ -13,8 +13,10 @@ from sim_backend.clutch import carried, slipped
 from sim_backend.cogging import cogging_torque
 from sim_backend.contact import contact_energy, flank, is_pull, penetration
 from sim_backend.dwell import aged
+from sim_backend.friction_jump import flip
 from sim_backend.gravity import STANDARD_GRAVITY_M_S2, arm_inertia, gravity_torque, moment_kg_m
 from sim_backend.heat import warm
+from sim_backend.hose import Bend, bent, hose_energy, hose_torque
 from sim_backend.jit import jitted
 from sim_backend.motor import CurrentLine, current_line, stage_loss, supply_voltage, winding_energy
 from sim_backend.obstacle import Push, push_torque
@@ -26,6 +28,7 @@ from sim_backend.shaft import damping, stiffness
 from sim_backend.spring import spring_torque
 from sim_backend.state import State
 from sim_backend.stick_slip import Body, coupled_speeds, free_speeds
+from sim_backend.supply_ripple import ripple_scale, turned
 from sim_backend.thermal_drift import Winding, drifted
 
 
@@ -43,7 +46,10 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     """Advance the state by one step at a constant demand (duty or current [A], after the stage)."""
     ratio = parameters.gear.ratio
     winding = _winding(parameters, state)
-    line = current_line(stage, demand, state.current_a, ratio * state.rotor_rad_s, winding, parameters, step_s)
+    supply_v = parameters.supply.voltage_v * ripple_scale(parameters.supply_ripple, state.ripple_turns)
+    line = current_line(
+        stage, demand, state.current_a, ratio * state.rotor_rad_s, winding, supply_v, parameters, step_s
+    )
     drive_friction = drive_side(parameters, state, _weight(parameters), step_s)
     arm_friction = arm_side(parameters, state, _weight(parameters), step_s)
     rotor = _rotor(parameters, state, winding, line, drive_friction, step_s)
@@ -73,7 +79,7 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.supplied_j += taken_j + stage_j
     state.electrical_loss_j += copper_j + stage_j
     state.friction_loss_j += friction_j
-    state.arm_friction_loss_j += arm_friction_j
+    state.arm_friction_loss_j += arm_friction_j + _drag_hose(parameters, state, mean_a, step_s)
     if motion.clutch_slips:
         state.contact_loss_j += _slip_clutch(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
     else:
@@ -87,6 +93,8 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.arm_rest_s = aged(parameters.arm_dwell, state.arm_rest_s, mean_a, step_s)
     state.travelled_rad += step_s * ratio * abs(mean_r)
     wander(state, parameters.scatter, abs(step_s * mean_r))
+    flip(parameters.friction_jump, state, step_s)
+    state.ripple_turns = turned(parameters.supply_ripple, state.ripple_turns, step_s)
     if parameters.heat.present:
         warm(state, parameters.heat, copper_j, friction_j, step_s)
 
@@ -127,6 +135,7 @@ def _arm(parameters: PlantParameters, state: State, friction: Resistance, step_s
     middle_rad = state.arm_rad + 0.5 * step_s * speed
     pull = gravity_torque(moment_kg_m(parameters.arm, parameters.load), parameters.centre_of_mass, middle_rad)
     pull += spring_torque(parameters.spring, middle_rad)
+    pull += hose_torque(parameters.hose, bent(parameters.hose, _bend(state), 0.5 * step_s * speed))
     pull -= friction.bristle.known_n_m
     drag = friction.viscous_n_m_s_rad + friction.bristle.slope_n_m_s_rad
     inertia = arm_inertia(parameters.arm, parameters.load)
@@ -172,6 +181,24 @@ def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, ste
 @jitted
 def _pushed(body: Body, impulse: float) -> Body:
     return Body(body.diagonal, body.impulse + impulse, body.lower, body.upper, body.viscous)
+
+
+@jitted
+def _bend(state: State) -> Bend:
+    """Return how far the hose is bent."""
+    return Bend(state.hose_first_rad, state.hose_second_rad, state.hose_third_rad)
+
+
+@jitted
+def _drag_hose(parameters: PlantParameters, state: State, mean_rad_s: float, step_s: float) -> float:
+    """Bend the hose on by a step at a mean speed; return what it took for good [J]."""
+    hose, before = parameters.hose, _bend(state)
+    if hose.stiffness_n_m_rad == 0.0:
+        return 0.0
+    after = bent(hose, before, step_s * mean_rad_s)
+    pulled_n_m = hose_torque(hose, bent(hose, before, 0.5 * step_s * state.arm_rad_s))
+    state.hose_first_rad, state.hose_second_rad, state.hose_third_rad = after
+    return -pulled_n_m * step_s * mean_rad_s + hose_energy(hose, before) - hose_energy(hose, after)
 
 
 @jitted

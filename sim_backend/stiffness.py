@@ -44,6 +44,7 @@ def stiffest(parameters: PlantParameters) -> Iterator[Stiff]:
     softened = 1.0 + parameters.shaft.compliance_rad_n_m * gear.stiffness_n_m_rad
     yield Stiff("Gear.stiffness_n_m_rad", gear.stiffness_n_m_rad / softened, reduced)
     yield Stiff("bristle.stiffness_n_m_rad", parameters.bristle.stiffness_n_m_rad, rotor_kg_m2)
+    yield Stiff("hose.stiffness_n_m_rad", parameters.hose.stiffness_n_m_rad, arm_kg_m2)
     yield Stiff("arm_bristle.stiffness_n_m_rad", parameters.arm_bristle.stiffness_n_m_rad, arm_kg_m2)
     # an arm that is found inside a surface is given the energy of that depth: (step times frequency)^2 / 3 of its own
     for name, surface in (("wall", parameters.wall), ("end_stops", parameters.end_stops)):
