@@ -3,10 +3,12 @@
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field, ValidationError
 
+from bench.drives.settings import DriveSettings
+from bench.drives.simulated import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from bench.limits import Limits
 from bench.quantities import quantity
@@ -16,15 +18,6 @@ from bench.validation import problems
 
 PRESETS = resources.files("bench") / "presets"
 DEFAULT_PRESET = "paper"
-
-
-class SimulatedDriveSettings(Section):
-    """A drive and a joint in software."""
-
-    kind: Literal["sim"] = "sim"
-    preset: str = quantity("paper", "", "Plant that is simulated")
-    seed: int = quantity(1, "", "Seed of the plant's scatter and noise; the same seed gives the same samples", ge=0)
-    plant: dict[str, Any] = Field(default_factory=dict, description="Plant parameters that differ from the preset")
 
 
 class ControlSettings(Section):
@@ -67,7 +60,7 @@ class BenchConfiguration(Section):
 
     name: str = Field(description="Name of the bench")
     rig: Rig
-    drive: SimulatedDriveSettings = SimulatedDriveSettings()
+    drive: DriveSettings = SimulatedDriveSettings()
     control: ControlSettings = ControlSettings()
     limits: Limits = Limits()
     motion: MotionSettings = MotionSettings()

@@ -1,11 +1,16 @@
 """The drive that the configuration names, and who hangs its load. The only file that knows the simulation."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
-from bench.configuration import BenchConfiguration, SimulatedDriveSettings
+from bench.configuration import BenchConfiguration
+from bench.drives.simulated import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from bench.technician import SimulatedTechnician, Technician
 from drivers.contract import Drive
+
+Ask = Callable[[str], bool]
+"""Shows a sentence to the person at the bench; returns True when it is done, False when the person gives up."""
 
 
 class Equipment(NamedTuple):
@@ -15,13 +20,28 @@ class Equipment(NamedTuple):
     technician: Technician
 
 
-def make_equipment(configuration: BenchConfiguration) -> Equipment:
+def nobody(sentence: str) -> bool:
+    """An `Ask` where no person is at hand.
+
+    Raises:
+        ConfigurationError: always.
+    """
+    raise ConfigurationError(f"a person is needed, and there is none to ask: {sentence}")
+
+
+def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equipment:  # noqa: ARG001
     """The drive, not yet open, and the technician.
+
+    Args:
+        configuration: of the bench.
+        ask: asks the person at a real drive.
 
     Raises:
         ConfigurationError: the simulated plant is unknown or impossible.
     """
-    return _simulated(configuration.drive)
+    match configuration.drive:
+        case SimulatedDriveSettings() as settings:
+            return _simulated(settings)
 
 
 def is_simulated(configuration: BenchConfiguration) -> bool:
@@ -29,8 +49,17 @@ def is_simulated(configuration: BenchConfiguration) -> bool:
     return configuration.drive.kind == "sim"
 
 
+def seed_of(configuration: BenchConfiguration) -> int | None:
+    """Seed of a simulated drive; None for a real one."""
+    match configuration.drive:
+        case SimulatedDriveSettings(seed=seed):
+            return seed
+
+
+# each imports what it needs by itself: a bench needs neither the libraries nor the compiler of another kind
+
+
 def _simulated(settings: SimulatedDriveSettings) -> Equipment:
-    # imported here: a bench with a real drive needs neither the physics nor its compiler
     from sim_backend.drive import SimulatedDrive
     from sim_backend.errors import ParameterError
     from sim_backend.parameters import PlantParameters

@@ -42,6 +42,10 @@ class BusyError(BenchError, RuntimeError):
     """Raised when an experiment is started while another one runs."""
 
 
+class PromptError(BenchError, RuntimeError):
+    """Raised when a question is answered that is not the one asked now."""
+
+
 class UnknownKindError(BenchError, KeyError):
     """Raised when an experiment kind is asked for that is not in the registry."""
 

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.drive_factory import Equipment
+from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.live import LiveBuffer
 from bench.loop import RECORDED, ControlLoop, Outcome, OutcomeName, Reading
 from bench.recorder import Sink
 from bench.store import Store
+from bench.technician import Technician
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +66,10 @@ class ExperimentRun:
             self._stop_reason = reason or self._stop_reason
             self._stop.set()
 
+    def is_stopped(self) -> bool:
+        """Whether it has been asked to stop."""
+        return self._stop.is_set()
+
     def end(self, outcome: OutcomeName, reason: str) -> None:
         """Say how it ended; the outcome last, so that who sees it sees the reason too."""
         self.reason = reason
@@ -113,16 +119,25 @@ class ExperimentRun:
     def _run_trials(self, prepared: Prepared, store: Store, live: LiveBuffer) -> tuple[OutcomeName, str]:
         for index, plan in enumerate(prepared.plans):
             self.trial_index = index
-            if self._stop.is_set():
-                return "stopped", self._stop_reason
             try:
-                prepared.equipment.technician.hang_load(plan.load_kg, plan.balanced)
+                if not self._hang_load(plan, prepared.equipment.technician):
+                    return "stopped", self._stop_reason
                 outcome = self._run_trial(plan, prepared.loop, store, live)
             except Exception as error:
                 return "failed", f"trial '{plan.name}': {str(error) or type(error).__name__}"
             if outcome.outcome != "completed":
                 return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
         return "completed", ""
+
+    def _hang_load(self, plan: TrialPlan, technician: Technician) -> bool:
+        """Have the load hung, with the power off; False where a stop came before it hung."""
+        if not self.is_stopped():
+            try:
+                technician.hang_load(plan.load_kg, plan.balanced)
+            except ExperimentError:
+                if not self.is_stopped():
+                    raise
+        return not self.is_stopped()
 
     def _run_trial(self, plan: TrialPlan, loop: ControlLoop, store: Store, live: LiveBuffer) -> Outcome:
         writer = store.begin_trial(self._id(), plan.name, self.request.kind, plan.conditions, RECORDED)

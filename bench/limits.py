@@ -8,7 +8,7 @@ from pydantic import model_validator
 from bench.errors import LimitTrip, quantity_message
 from bench.quantities import quantity
 from bench.rig import Section
-from drivers.contract import Sample
+from drivers.contract import ALL_NEW, Sample
 
 
 class Limits(Section):
@@ -21,6 +21,9 @@ class Limits(Section):
     temperature_c: float = quantity(80.0, "degC", "Highest drive temperature", gt=0)
     tracking_error_rad: float = quantity(0.5, "rad", "Largest position error", gt=0)
     sample_age_s: float = quantity(0.1, "s", "Oldest sample that still counts", gt=0)
+    slow_sample_age_s: float = quantity(
+        2.0, "s", "Oldest supply voltage, temperature or state of the drive that still counts", gt=0
+    )
     load_kg: float = quantity(0.1, "kg", "Heaviest load on the arm", ge=0)
 
     @model_validator(mode="after")
@@ -60,6 +63,7 @@ class Guard:
             limits.temperature_c,
             limits.tracking_error_rad,
             limits.sample_age_s,
+            limits.slow_sample_age_s,
         )
 
     def check(self, sample: Sample, velocity_rad_s: float, current_a: float, target_rad: float) -> None:
@@ -74,7 +78,7 @@ class Guard:
         Raises:
             LimitTrip: naming the quantity, its value, the limit and the unit.
         """
-        low, high, speed, current, temperature, error, age = self._bounds
+        low, high, speed, current, temperature, error, age, slow_age = self._bounds
         position_rad = sample.position_rad
         # written so that NaN passes, except for the position and the age
         if (
@@ -84,6 +88,7 @@ class Guard:
             and not sample.temperature_c > temperature
             and not (target_rad - position_rad > error or target_rad - position_rad < -error)
             and sample.age_s <= age
+            and (sample.ages is ALL_NEW or _slow_age_s(sample) <= slow_age)
         ):
             return
         violation = next(self._violations(sample, velocity_rad_s, current_a, target_rad))
@@ -104,7 +109,16 @@ class Guard:
             yield Violation("temperature", sample.temperature_c, f"at most {limits.temperature_c:g}", "degC")
         if abs(error_rad) > limits.tracking_error_rad:
             yield Violation("tracking error", error_rad, _either_way(limits.tracking_error_rad), "rad")
-        yield Violation("age of the sample", sample.age_s, f"at most {limits.sample_age_s:g}", "s")
+        if not sample.age_s <= limits.sample_age_s:
+            yield Violation("age of the sample", sample.age_s, f"at most {limits.sample_age_s:g}", "s")
+        allowed = f"at most {limits.slow_sample_age_s:g}"
+        yield Violation("age of supply voltage, temperature or state", _slow_age_s(sample), allowed, "s")
+
+
+def _slow_age_s(sample: Sample) -> float:
+    """Age of the oldest of what may be asked for less often than once per cycle [s]."""
+    ages = sample.ages
+    return max(ages.supply_s, ages.temperature_s, ages.status_s)
 
 
 def _either_way(limit: float) -> str:

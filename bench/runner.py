@@ -4,19 +4,21 @@ import threading
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from bench.clock import VirtualClock, WallClock
+from bench.clock import Clock, VirtualClock, WallClock
 from bench.configuration import BenchConfiguration
-from bench.drive_factory import is_simulated, make_equipment
+from bench.drive_factory import is_simulated, make_equipment, seed_of
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiment_run import ExperimentRun, Prepared, Request
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
 from bench.limits import Guard, Limits
 from bench.live import LiveBuffer, LiveRows
 from bench.loop import RECORDED, ControlLoop, OutcomeName, Reading
+from bench.prompt import Prompt, PromptDesk
 from bench.provenance import provenance
-from bench.servo import current_servo
+from bench.servo import check_modes, current_servo
 from bench.store import Store
-from drivers.contract import Description
+from bench.timing import check_timing
+from drivers.contract import Description, Drive
 from drivers.errors import DriveError
 
 Pace = Literal["real-time", "fast"]
@@ -38,6 +40,7 @@ class RunnerStatus:
         reading: the last one.
         description: the drive, once it has been opened.
         limits: of the bench.
+        prompt: what the person at the bench is asked to do before it goes on; the power is off meanwhile.
     """
 
     experiment_id: int | None
@@ -50,6 +53,7 @@ class RunnerStatus:
     reading: Reading | None
     description: Description | None
     limits: Limits
+    prompt: Prompt | None = None
 
 
 class Runner:
@@ -68,6 +72,7 @@ class Runner:
         self._run: ExperimentRun | None = None
         self._description: Description | None = None
         self._live = LiveBuffer(RECORDED)
+        self._desk = PromptDesk()
         self._closed = False
 
     def start(
@@ -111,8 +116,16 @@ class Runner:
         outcome, reason = run.outcome, run.reason
         return RunnerStatus(
             run.experiment_id, run.request.kind, outcome, reason if outcome != "running" else "", run.trial_index,
-            run.trial_count, run.progress, run.reading, description, limits,
+            run.trial_count, run.progress, run.reading, description, limits, self._desk.pending,
         )  # fmt: skip
+
+    def answer(self, prompt_number: int) -> None:
+        """Go on: the person has done what prompt `prompt_number` asked for.
+
+        Raises:
+            PromptError: nothing is asked, or something else.
+        """
+        self._desk.answer(prompt_number)
 
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
         """Rows of the running trial after the one of a number, as they are recorded; at most the newest `limit`."""
@@ -150,7 +163,7 @@ class Runner:
 
     def _launch(self, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None) -> int:
         try:
-            prepared = self._prepare(run.request, kind, pace)
+            prepared = self._prepare(run, kind, pace)
         except (BenchError, DriveError) as error:
             # failed starts are on record too
             run.experiment_id = self._begin(run.request, run.request.parameters)
@@ -168,21 +181,32 @@ class Runner:
         self._thread.start()
         return run.experiment_id
 
-    def _prepare(self, request: Request, kind: ExperimentKind, pace: Pace | None) -> Prepared:
+    def _prepare(self, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None) -> Prepared:
         """Check everything that can be checked before motion, and open the drive."""
         configuration = self.configuration
         clock = WallClock() if self._is_real_time(pace) else VirtualClock()
-        parameters = parse_parameters(kind, request.parameters)
+        parameters = parse_parameters(kind, run.request.parameters)
         kind.refuse(parameters, configuration)
         plans = kind.plan(parameters, configuration)
         duration_s = kind.duration_s(parameters, configuration)
-        servo = current_servo(configuration.rig)
-        equipment = make_equipment(configuration)
-        period_s = configuration.control.period_s
-        equipment.drive.open(period_s)
-        self._description = equipment.drive.describe()
-        loop = ControlLoop(equipment.drive, clock, Guard(configuration.limits), period_s, servo)
+        equipment = make_equipment(configuration, lambda sentence: self._desk.ask(sentence, run.is_stopped))
+        self._description = None
+        try:
+            loop = self._open(equipment.drive, clock)
+        except BaseException:
+            equipment.drive.close()
+            raise
         return Prepared(kind, parameters, plans, duration_s, equipment, loop)
+
+    def _open(self, drive: Drive, clock: Clock) -> ControlLoop:
+        """Open a drive, and refuse it where it does not fit the configuration."""
+        configuration, period_s = self.configuration, self.configuration.control.period_s
+        drive.open(period_s)
+        self._description = description = drive.describe()
+        check_timing(description, period_s)
+        check_modes(configuration.servo, description)
+        servo = current_servo(configuration.rig)
+        return ControlLoop(drive, clock, Guard(configuration.limits), period_s, servo)
 
     def _is_real_time(self, pace: Pace | None) -> bool:
         simulated = is_simulated(self.configuration)
@@ -193,12 +217,13 @@ class Runner:
         return pace == "real-time" or not simulated
 
     def _begin(self, request: Request, parameters: dict[str, Any]) -> int:
-        configuration, simulated = self.configuration, is_simulated(self.configuration)
+        configuration, drive = self.configuration, self._description
+        simulated = is_simulated(configuration) if drive is None else drive.simulated
         return self._store.begin_experiment(
             request.kind,
             parameters,
             "simulated" if simulated else "real",
-            provenance(configuration, self._description, configuration.drive.seed if simulated else None),
+            provenance(configuration, drive, seed_of(configuration)),
             configuration.rig.model_dump(mode="json", exclude_none=True),
             request.operator,
             request.note,

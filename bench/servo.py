@@ -1,18 +1,22 @@
 """The position servo, and the current servo of drives without a current mode."""
 
 from math import isnan
+from typing import Literal
 
 from bench.errors import ConfigurationError
 from bench.quantities import quantity
 from bench.rig import Rig, Section
 from compensator import motor
 from compensator.motor import MotorConstants
-from drivers.contract import Sample
+from drivers.contract import Description, Mode, Sample
 
 
 class ServoSettings(Section):
     """Gains of the position servo; its output is motor current."""
 
+    closed_by: Literal["bench", "drive"] = quantity(
+        "bench", "", "Who closes the position loop; 'drive': by its own gains, where it has a position mode"
+    )
     proportional_a_rad: float = quantity(35.0, "A/rad", "Current per position error", ge=0)
     integral_a_rad_s: float = quantity(200.0, "A/(rad s)", "Current per integrated error", ge=0)
     derivative_a_s_rad: float = quantity(0.6, "A s/rad", "Current per speed error", ge=0)
@@ -100,3 +104,17 @@ def current_servo(rig: Rig) -> CurrentServo | None:
     """The current servo of a rig; None where it lacks what eq. (3) needs, as drives with a current mode can do."""
     known = (rig.motor.resistance_ohm, rig.motor.back_emf_v_s_rad, rig.gear.ratio)
     return None if None in known else CurrentServo(rig)
+
+
+def check_modes(settings: ServoSettings, drive: Description) -> None:
+    """Refuse a position loop that the drive does not close.
+
+    Raises:
+        ConfigurationError: naming the modes that it has.
+    """
+    if settings.closed_by == "drive" and Mode.POSITION not in drive.modes:
+        names = ", ".join(sorted(mode.value for mode in drive.modes))
+        raise ConfigurationError(
+            f"servo.closed_by is 'drive', and drive '{drive.device}' has no position mode (it has {names}); "
+            "set servo.closed_by = 'bench'"
+        )

@@ -51,7 +51,13 @@ class PersonTechnician:
         """
         if self._hung == (load_kg, balanced):
             return
-        how = "balanced, half of it on each side of the axis" if balanced else "at the tip of the arm"
-        if not self._ask(f"Hang {load_kg * 1000:g} g {how}, and stand clear."):
+        if not self._ask(_request(load_kg, balanced)):
             raise ExperimentError(f"the load of {load_kg * 1000:g} g was not hung; start again when it can be")
         self._hung = (load_kg, balanced)
+
+
+def _request(load_kg: float, balanced: bool) -> str:
+    if load_kg == 0.0:
+        return "Take every load off the arm, and stand clear."
+    how = "balanced, half of it on each side of the axis" if balanced else "at the tip of the arm"
+    return f"Hang {load_kg * 1000:g} g {how}, and stand clear."

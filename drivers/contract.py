@@ -3,6 +3,10 @@
 One exchange per control cycle: a command goes in, a sample comes out. Everything is SI and
 is seen from the joint: the position is measured on the motor side, before the backlash, and
 divided by the gear ratio. A quantity that the drive does not measure is NaN, never 0.
+
+A drive is used by one thread at a time. While it is disabled any time may pass between two
+calls: a person hangs a load, and the watchdog must not mind. While it is enabled it stops by
+itself where no command comes for `Description.watchdog_s`.
 """
 
 from dataclasses import dataclass
@@ -35,12 +39,31 @@ class Command(NamedTuple):
     value: float = 0.0
 
 
+class Ages(NamedTuple):
+    """How old each quantity of a sample is at its `time_s` [s]; 0 where it is not measured.
+
+    Drives on a slow line ask for what changes slowly less often than once per cycle.
+    """
+
+    position_s: float = 0.0
+    velocity_s: float = 0.0
+    duty_s: float = 0.0
+    current_s: float = 0.0
+    supply_s: float = 0.0
+    temperature_s: float = 0.0
+    status_s: float = 0.0
+
+
+ALL_NEW = Ages()
+
+
 class Sample(NamedTuple):
     """One cycle's measurement, SI, joint side.
 
     Attributes:
-        time_s: the drive's own time stamp of the sample [s], monotonic, arbitrary origin.
-        age_s: time since the oldest quantity in the sample was measured [s].
+        time_s: when the position was measured [s], by the drive's own clock where it tells the time, else the
+            host's; monotonic, arbitrary origin.
+        age_s: age of the oldest of position, velocity, duty and current [s]: what the control loop acts on.
         position_rad: motor-side position / gear ratio [rad]; 0 is vertically down.
         velocity_rad_s: motor-side speed / gear ratio [rad/s].
         duty: PWM duty applied, -1 .. 1.
@@ -48,6 +71,7 @@ class Sample(NamedTuple):
         supply_v: supply voltage [V].
         temperature_c: temperature that the drive reports [deg C].
         status: state of the power stage.
+        ages: of each quantity.
     """
 
     time_s: float
@@ -59,6 +83,7 @@ class Sample(NamedTuple):
     supply_v: float
     temperature_c: float
     status: Status
+    ages: Ages = ALL_NEW
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +93,13 @@ class Description:
     Attributes:
         device: the name used in messages.
         vendor, product, firmware, serial: identity; empty where the drive does not tell.
-        simulated: True where no hardware is behind it.
+        simulated: True where no hardware is behind it, by what the device says of itself.
         modes: the modes that the drive closes itself.
         measured: the names of the `Sample` fields that are measured (others are NaN).
         resolution: smallest step of a quantity, by `Sample` field name, in its unit.
         max_rate_hz: highest cycle rate that the drive sustains [Hz].
         watchdog_s: time after the last command at which the drive stops by itself [s].
+        longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
     """
 
     device: str
@@ -87,6 +113,8 @@ class Description:
     resolution: dict[str, float]
     max_rate_hz: float
     watchdog_s: float
+    longest_call_s: float = 0.0
+    longest_open_s: float = 0.0
 
 
 class Drive(Protocol):
@@ -100,13 +128,23 @@ class Drive(Protocol):
 
         Args:
             period_s: control period at which `exchange` will be called [s].
+
+        Raises:
+            DriveConnectionError: the port is not there, or nothing answers on it.
+            DriveConfigurationError: what answers is not the drive that was configured.
+            WatchdogError: the watchdog cannot be set.
         """
 
     def close(self) -> None:
         """Power off and disconnect. Safe to call twice, and from any state."""
 
     def enable(self, mode: Mode) -> None:
-        """Power the stage for a mode, with zero demand."""
+        """Power the stage for a mode, with zero demand; in POSITION that is the present position.
+
+        Raises:
+            DriveConfigurationError: the drive does not have the mode.
+            DriveStateError: it is not open, has a fault, or does not switch on.
+        """
 
     def disable(self) -> None:
         """Power off. Safe to call in any state of an open drive."""
@@ -121,6 +159,8 @@ class Drive(Protocol):
         """Send one command and return the sample of this cycle.
 
         Raises:
-            DriveFault: the drive has switched itself off.
+            DriveFault: the drive has switched itself off, or its watchdog has.
+            DriveStateError: motion was commanded in a mode that is not enabled.
+            DriveConfigurationError: the command is not finite or outside the drive's range; nothing was sent.
             DriveConnectionError: no valid answer within the time limit.
         """

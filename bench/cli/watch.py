@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 from bench.cli.output import console, say
+from bench.cli.prompt import attend
 
 if TYPE_CHECKING:
     from bench.runner import Runner, RunnerStatus
@@ -20,7 +21,8 @@ def watch(runner: "Runner", quiet: bool) -> None:
         quiet: show nothing.
     """
     if quiet:
-        runner.wait()
+        while not runner.wait(_POLL_S):
+            attend(runner)
     elif console().is_terminal:
         _bar(runner)
     else:
@@ -35,6 +37,10 @@ def _bar(runner: "Runner") -> None:
         while not ended:
             ended = runner.wait(_POLL_S)
             status = runner.status()
+            if status.prompt is not None:
+                progress.stop()  # it draws over what is asked
+                attend(runner)
+                progress.start()
             progress.update(task, description=_sentence(status), completed=status.progress)
 
 
@@ -47,6 +53,7 @@ def _lines(runner: "Runner") -> None:
         if sentence != shown:
             say(sentence)
         shown = sentence
+        attend(runner)
 
 
 def _sentence(status: "RunnerStatus") -> str:

@@ -145,12 +145,18 @@ class Joint:
         load_current_a: float = nan,
         event: tuple[str, str] | None = None,
     ) -> Part[Reading]:
-        reading = self._last()
+        command = self._servo_command(self._last(), target_rad, velocity_rad_s)
+        self._reading = yield Action(command, target_rad, load_current_a, event)
+        return self._reading
+
+    def _servo_command(self, reading: Reading, target_rad: float, velocity_rad_s: float) -> Command:
+        if self._servo.settings.closed_by == "drive":
+            self._command_a = reading.current_a  # what the drive's own servo makes flow
+            return Command(Mode.POSITION, target_rad)
         self._command_a = self._servo.current_a(
             target_rad, reading.sample.position_rad, reading.velocity_rad_s, velocity_rad_s
         )
-        self._reading = yield Action(Command(Mode.CURRENT, self._command_a), target_rad, load_current_a, event)
-        return self._reading
+        return Command(Mode.CURRENT, self._command_a)
 
     def _last(self) -> Reading:
         if self._reading is None:

@@ -1,4 +1,7 @@
-"""/bench: what stands there and what it is doing. /stop: stops it. /token: whether a token is the right one."""
+"""/bench: what stands there and what it is doing. /stop: stops it. /continue: the person at the bench is done.
+
+/token: whether a token is the right one.
+"""
 
 import asyncio
 from contextlib import suppress
@@ -72,8 +75,15 @@ class Stopped(BaseModel):
     was_running: bool
 
 
+class Continue(BaseModel):
+    """Which prompt is answered."""
+
+    model_config = ConfigDict(extra="forbid")
+    prompt: int = Field(ge=1, description="`number` of the prompt in the status", examples=[1])
+
+
 class Accepted(BaseModel):
-    """The token is the right one."""
+    """It is accepted: the token, or the answer."""
 
     accepted: bool = True
 
@@ -125,6 +135,18 @@ async def _reason(request: Request) -> str:
                     break
         return Stop.model_validate_json(body).reason or NO_REASON
     return NO_REASON
+
+
+@router.post(
+    "/continue",
+    summary="The person at the bench has done what was asked: the joint will move",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 403, 409, 422),
+)
+async def go_on(runner: RunnerOf, body: Continue) -> Accepted:
+    """409 where that prompt is not the one that is open now: an answer that comes late moves nothing."""
+    runner.answer(body.prompt)
+    return Accepted()
 
 
 @router.get("/token", summary="Check a token", dependencies=[Depends(require_token)], responses=problems(401))

@@ -87,7 +87,7 @@ async def _events(request: Request, runner: Runner, after_row: int, limit: int) 
             after_row = found.last_row
             yield _event("rows", rows_of(found).model_dump_json(), after_row)
         status = status_of(runner.status(), simulated)
-        key = json.dumps([status["state"], status["run"] and {**status["run"], "progress": 0}])
+        key = json.dumps([status["state"], status["prompt"], status["run"] and {**status["run"], "progress": 0}])
         if key != shown or period % STATUS_EVERY == 0:
             shown = key
             yield _event("status", json.dumps(status))

@@ -34,6 +34,13 @@ class ReadingNow(BaseModel):
     power: str = Field(description="state of the power stage: disabled, enabled, quick_stop or fault")
 
 
+class PromptNow(BaseModel):
+    """What the person at the bench is asked to do; the power is off until it is answered."""
+
+    number: int = Field(description="send it with POST /continue")
+    sentence: str = Field(examples=["Hang 50 g at the tip of the arm, and stand clear."])
+
+
 class Status(BaseModel):
     """State of the bench."""
 
@@ -41,6 +48,7 @@ class Status(BaseModel):
     simulated: bool = Field(description="True where no hardware moves")
     run: Run | None = Field(description="null before the first experiment")
     reading: ReadingNow | None
+    prompt: PromptNow | None = Field(description="null where nobody is waited for")
 
 
 def status_of(found: RunnerStatus, simulated: bool) -> dict[str, Any]:
@@ -51,7 +59,9 @@ def status_of(found: RunnerStatus, simulated: bool) -> dict[str, Any]:
         names = ("experiment_id", "kind", "outcome", "reason", "trial_index", "trial_count", "progress")
         run = {name: getattr(found, name) for name in names}
     reading = None if found.reading is None else _reading(found.reading)
-    return {"state": "running" if running else "idle", "simulated": simulated, "run": run, "reading": reading}
+    prompt = None if found.prompt is None else {"number": found.prompt.number, "sentence": found.prompt.sentence}
+    state = "running" if running else "idle"
+    return {"state": state, "simulated": simulated, "run": run, "reading": reading, "prompt": prompt}
 
 
 def _reading(reading: Reading) -> dict[str, Any]:

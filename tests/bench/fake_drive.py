@@ -1,7 +1,7 @@
 """A drive small enough to be checked by eye: a rigid joint with dry friction, no backlash, and faults on demand."""
 
 from collections.abc import Callable
-from math import copysign, inf, nan, sin
+from math import copysign, nan, sin
 
 from bench.rig import Arm, Gear, Motor, Rig, Sensor, Supply
 from drivers.contract import Command, Description, Mode, Sample, Status
@@ -42,7 +42,7 @@ class FakeDrive:
     def describe(self) -> Description:
         return Description(
             "fake", "tests", "rigid joint", "1", "0", True, self.modes, frozenset(Sample._fields) - {"current_a"},
-            {"position_rad": 6.283185 / 4096 / RATIO}, inf, 0.1,
+            {"position_rad": 6.283185 / 4096 / RATIO}, 10_000.0, 0.1,
         )  # fmt: skip
 
     def open(self, period_s: float) -> None:

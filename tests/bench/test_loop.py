@@ -12,7 +12,7 @@ from bench.limits import Guard, Limits
 from bench.loop import OFF, RECORDED, Action, ControlLoop, Outcome
 from bench.servo import CurrentServo
 from compensator.lab.channels import CHANNELS
-from drivers.contract import Command, Mode, Status
+from drivers.contract import Ages, Command, Mode, Status
 from drivers.errors import DriveFault
 from tests.bench.fake_drive import RIG, FakeDrive, ListSink
 
@@ -93,6 +93,7 @@ TRIPS = [
     ({"position_rad": -0.6}, "tracking error is 0.6 rad; allowed is -0.5 .. 0.5 rad"),
     ({"age_s": 0.2}, "age of the sample is 0.2 s; allowed is at most 0.1 s"),
     ({"age_s": nan}, "age of the sample is nan s"),
+    ({"ages": Ages(status_s=3.0)}, "age of supply voltage, temperature or state is 3 s; allowed is at most 2 s"),
 ]
 
 

@@ -163,7 +163,7 @@ def test_close_stops_and_nothing_starts_afterwards(store):
 def fake(monkeypatch):
     """A fake drive in place of the simulated one."""
     drive = FakeDrive()
-    monkeypatch.setattr(runner_module, "make_equipment", lambda _configuration: Equipment(drive, drive))
+    monkeypatch.setattr(runner_module, "make_equipment", lambda _configuration, _ask: Equipment(drive, drive))
     yield drive
     assert not drive.powered
 

@@ -1,13 +1,17 @@
 """Position servo and current servo."""
 
+from contextlib import suppress
 from math import nan
 
 import pytest
 
+from bench.configuration import default_configuration
 from bench.errors import ConfigurationError
+from bench.experiments.joint import Joint
+from bench.loop import Reading
 from bench.rig import Gear, Motor, Rig
 from bench.servo import CurrentServo, PositionServo, ServoSettings, current_servo
-from drivers.contract import Sample, Status
+from drivers.contract import Command, Mode, Sample, Status
 from tests.bench.fake_drive import RIG
 
 SETTINGS = ServoSettings(
@@ -60,3 +64,25 @@ def test_a_rig_without_motor_constants_has_no_current_servo():
     assert current_servo(rig) is None
     with pytest.raises(ConfigurationError, match=r"rig 'bare'.*resistance_ohm"):
         CurrentServo(rig)
+
+
+def test_a_drive_that_closes_the_position_loop_is_given_positions():
+    configuration = default_configuration()
+    settings = configuration.servo.model_copy(update={"closed_by": "drive"})
+    joint = Joint(configuration.model_copy(update={"servo": settings}))
+    at_rest = Sample(0.0, 0.0, 0.5, 0.0, nan, 0.3, nan, nan, Status.ENABLED)
+    reading = Reading(0.0, at_rest, 0.0, 0.3)
+    found = []
+
+    def procedure():
+        yield from joint.wake()
+        found.append((yield from joint.settle(0.5)))
+
+    running = procedure()
+    next(running)
+    commands = []
+    with suppress(StopIteration):
+        while True:
+            commands.append(running.send(reading).command)
+    assert set(commands) == {Command(Mode.POSITION, 0.5)}
+    assert found[0].current_a == pytest.approx(0.3)

@@ -14,6 +14,7 @@ from tests.service.running_service import TOKEN, running_service
 CHANGES = [
     ("POST", "/experiments"),
     ("POST", "/stop"),
+    ("POST", "/continue"),
     ("POST", "/recording-sets?name=x"),
     ("POST", "/studies"),
     ("POST", "/studies/1/models"),

@@ -7,6 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 import httpx
 import pytest
 
+from bench import runner as runner_module
+from bench.drive_factory import Equipment
+from bench.technician import PersonTechnician
+from tests.bench.fake_drive import FakeDrive
+
 
 def test_kinds_have_a_schema_with_units_bounds_and_defaults(service):
     kinds = {kind["name"]: kind for kind in service.stranger.get("/experiment-kinds").json()["items"]}
@@ -186,3 +191,28 @@ def test_live_rows_of_the_next_trial_are_marked_as_such(idle):
     later = idle.stranger.get("/live/now", params={"after_row": rows["last_row"]}).json()["rows"]
     assert later["restarted"] is False
     assert idle.runner.wait(5.0)
+
+
+def test_an_answer_to_what_is_not_asked(idle):
+    answer = idle.client.post("/continue", json={"prompt": 1})
+    assert answer.status_code == 409
+    assert "prompt 1 is not open" in answer.json()["detail"]
+    assert idle.stranger.post("/continue", json={"prompt": 1}).status_code == 401
+
+
+def test_the_person_at_the_bench_is_asked_over_rest(idle, monkeypatch):
+    drive = FakeDrive()
+    monkeypatch.setattr(
+        runner_module, "make_equipment", lambda _configuration, ask: Equipment(drive, PersonTechnician(ask))
+    )
+    idle.start("steps", repeats=1)
+    deadline_s = time.monotonic() + 20.0
+    while (prompt := idle.client.get("/bench").json()["prompt"]) is None:
+        assert time.monotonic() < deadline_s
+    assert prompt["sentence"] == "Hang 100 g at the tip of the arm, and stand clear."
+    assert drive.exchanges == 0
+    assert idle.client.post("/continue", json={"prompt": prompt["number"]}).status_code == 200
+    while drive.exchanges == 0:
+        assert time.monotonic() < deadline_s
+    idle.runner.stop()
+    assert idle.runner.wait(10.0)

@@ -1,9 +1,10 @@
-// The page: which view is shown, and what is there in every view (status, STOP, token).
+// The page: which view is shown, and what is there in every view (status, STOP, what the bench asks for, token).
 
 import { replace } from "./dom.js";
 import { benchView } from "./bench.js";
 import { effectsView } from "./effects.js";
 import { Live } from "./live.js";
+import { promptBar } from "./prompt.js";
 import { statusBar } from "./status.js";
 import { stopButton } from "./stop.js";
 import { studiesView } from "./studies.js";
@@ -29,6 +30,7 @@ function show() {
 
 stopButton(document.getElementById("stop"), document.getElementById("stop-answer"));
 statusBar(document.getElementById("status"), live);
+promptBar(document.getElementById("prompt"), live);
 tokenForm(document.getElementById("token"));
 addEventListener("hashchange", show);
 show();

@@ -1,0 +1,1 @@
+"""The `[drive]` section of bench.toml: one file per kind of drive."""

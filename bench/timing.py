@@ -1,0 +1,27 @@
+"""Whether a drive keeps up with the control period, and watches over it: checked before motion."""
+
+from bench.errors import ConfigurationError
+from drivers.contract import Description
+
+SLOWEST_WATCHDOG_S = 2.0  # a joint without its host may not go on for longer
+_PERIODS_IN_WATCHDOG = 2.0  # one late cycle is no reason to switch off
+
+
+def check_timing(drive: Description, period_s: float) -> None:
+    """Compare rate and watchdog of a drive with the control period.
+
+    Raises:
+        ConfigurationError: the drive is too slow, or its watchdog too quick or too slow; with the numbers.
+    """
+    shortest_s = 1.0 / drive.max_rate_hz
+    if period_s < shortest_s:
+        raise ConfigurationError(
+            f"control.period_s is {period_s:g} s; drive '{drive.device}' sustains {drive.max_rate_hz:.4g} cycles a "
+            f"second, so at least {shortest_s:.2g} s is wanted. Choose a longer period or a faster line"
+        )
+    least_s = _PERIODS_IN_WATCHDOG * period_s
+    if not least_s <= drive.watchdog_s <= SLOWEST_WATCHDOG_S:
+        raise ConfigurationError(
+            f"the watchdog of drive '{drive.device}' stops it after {drive.watchdog_s:g} s; {least_s:g} s (two control "
+            f"periods) .. {SLOWEST_WATCHDOG_S:g} s is wanted. Change drive.watchdog_s or control.period_s"
+        )
