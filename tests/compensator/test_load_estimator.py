@@ -1,0 +1,205 @@
+"""One estimate of the load at rest, stuck, turning and in motion."""
+
+from dataclasses import replace
+from itertools import pairwise
+from math import cos, inf, isnan, nan, pi, sin
+
+import pytest
+
+from compensator import load_estimator
+from compensator.errors import ModelParameterError
+from compensator.friction_lookup import FrictionLookup
+from compensator.gear_loss import GearLoss
+from compensator.kinetic_friction import KineticFriction
+from compensator.load_estimator import Branch, EstimatorSettings, JointModel, Observation, RestResult
+
+PERIOD_S, COUNT_RAD = 0.005, 1e-5
+LIGHT, HEAVY = KineticFriction(0.06, 0.1, 5.0, 2.0, 2e-3), KineticFriction(0.16, 0.27, 5.0, 2.0, 2e-3)
+MODEL = JointModel(
+    FrictionLookup.over_friction({0.1: LIGHT, 0.27: HEAVY}),
+    ratio=20.0,
+    rotor_inertia_a_s2_rad=0.012,
+    arm_inertia_a_s2_rad=(0.01, 0.035),
+    gear_loss=GearLoss(0.25, 0.2, 0.003),
+)
+SETTINGS = EstimatorSettings(PERIOD_S, COUNT_RAD, free_play_rad=0.01, dead_band_rad=0.004)
+
+
+def follow(observations, model=MODEL, settings=SETTINGS, selector=0.1):
+    """The estimate of every observation."""
+    state, found = load_estimator.begin(selector), []
+    for observation in observations:
+        state, estimate = load_estimator.advance(model, settings, state, observation)
+        found.append(estimate)
+    return found
+
+
+def counted(position_rad):
+    return round(position_rad / COUNT_RAD) * COUNT_RAD
+
+
+def motor_current_a(load_a, speed, acceleration, selector=0.1, model=MODEL):
+    """What the motor of exactly this model takes in motion."""
+    way = 1.0 if speed > 0 else -1.0
+    teeth_a = load_a + model.arm_inertia_at(selector) * acceleration
+    return (
+        model.gear_loss.motor_current_a(teeth_a, way)
+        + model.rotor_inertia_a_s2_rad * acceleration
+        + model.friction_a(speed, way, selector)
+    )
+
+
+def cruise(load_a, speed, seconds=0.6, start_rad=0.0, selector=0.1):
+    cycles = range(round(seconds / PERIOD_S))
+    current_a = motor_current_a(load_a, speed, 0.0, selector)
+    return [Observation(counted(start_rad + speed * cycle * PERIOD_S), current_a) for cycle in cycles]
+
+
+def stand(current_a, cycles=60, position_rad=0.0, target_rad=0.0, **more):
+    return [Observation(position_rad, current_a, target_rad, **more)] * cycles
+
+
+@pytest.mark.parametrize("load_a", [-0.3, 0.0, 0.3])
+@pytest.mark.parametrize("speed", [-5.0, -0.5, 0.5, 5.0])
+def test_at_a_steady_speed_the_load_is_found(load_a, speed):
+    last = follow(cruise(load_a, speed))[-1]
+    assert last.branch is Branch.MOVING
+    assert last.load_current_a == pytest.approx(load_a, abs=2e-3)
+
+
+def test_the_curve_is_that_of_the_present_f_load():
+    found = RestResult(0.3, 0.005, 0.27)
+    moves = cruise(0.3, 2.0, selector=0.27)
+    wrong = follow(moves)[-1]
+    right = follow([*stand(0.3, rest=found), *moves])[-1]
+    assert right.load_current_a == pytest.approx(0.3, abs=2e-3)
+    assert abs(wrong.load_current_a - 0.3) > 0.05
+
+
+def test_what_accelerates_rotor_and_arm_is_no_load():
+    # half a turn back and forth: speed never 0 in the window that is looked at
+    seen = []
+    for cycle in range(80):
+        time_s = cycle * PERIOD_S
+        speed, acceleration = 1.0 + 8.0 * time_s, 8.0
+        position_rad = time_s + 4.0 * time_s**2
+        seen.append(Observation(counted(position_rad), motor_current_a(0.2, speed, acceleration)))
+    assert follow(seen)[-1].load_current_a == pytest.approx(0.2, abs=4e-3)
+    rigid = replace(MODEL, rotor_inertia_a_s2_rad=0.0, arm_inertia_a_s2_rad=(0.0, 0.0))
+    assert abs(follow(seen, rigid)[-1].load_current_a - 0.2) > 0.1
+
+
+def test_gravity_by_the_model_makes_up_for_the_age_of_the_estimate():
+    weigh = replace(MODEL, gravity_a=(0.3, 0.3))
+    seen = []
+    for cycle in range(200):
+        time_s = cycle * PERIOD_S
+        angle_rad = 2.0 * time_s - 1.0
+        seen.append(Observation(counted(angle_rad), motor_current_a(0.3 * sin(angle_rad), 2.0, 0.0)))
+    truth_a = 0.3 * sin(seen[-1].position_rad)
+    assert follow(seen, weigh)[-1].load_current_a == pytest.approx(truth_a, abs=3e-3)
+    late_a = follow(seen)[-1].load_current_a - truth_a
+    assert late_a == pytest.approx(-0.3 * cos(seen[-1].position_rad) * 2.0 * SETTINGS.latency_s, rel=0.3)
+
+
+def test_at_rest_the_result_of_the_search_stands():
+    estimates = follow([*stand(0.35), *stand(0.35, 1, rest=RestResult(0.3, 0.005, 0.1)), *stand(0.35, 400)])
+    assert estimates[-1].branch is Branch.REST
+    assert estimates[-1].load_current_a == pytest.approx(0.3, abs=1e-6)
+    assert estimates[-1].half_width_a == pytest.approx(0.005, abs=1e-6)
+
+
+def test_without_a_search_static_friction_bounds_the_load():
+    last = follow(stand(0.3))[-1]
+    low_a = (0.3 - 1.09 * 0.1) / 1.25
+    high_a = (0.3 + 1.09 * 0.1 - 0.003) / 0.8
+    assert last.load_current_a - last.half_width_a == pytest.approx(low_a, rel=1e-6)
+    assert last.load_current_a + last.half_width_a == pytest.approx(high_a, rel=1e-6)
+
+
+def test_a_result_that_the_current_contradicts_gives_way():
+    # somebody leans on the arm: the servo holds with 0.6 A more than the load found
+    estimates = follow([*stand(0.3, 1, rest=RestResult(0.3, 0.005, 0.1)), *stand(0.9, 400)])
+    assert estimates[-1].load_current_a == pytest.approx((0.9 - 1.09 * 0.1) / 1.25, abs=1e-4)
+    assert estimates[-1].half_width_a > 0.05
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_stuck_against_a_wall_friction_points_away_from_the_set_point(way):
+    last = follow(stand(way * 0.6, 400, target_rad=way * 0.1))[-1]
+    assert last.branch is Branch.STUCK
+    assert last.load_current_a == pytest.approx(way * (0.6 - 0.1) / 1.25, abs=1e-4)
+    assert last.friction_current_a == pytest.approx(way * 0.1, rel=1e-6)
+
+
+def test_after_turning_back_the_estimate_is_held_through_the_free_play():
+    there = cruise(0.3, 0.5)
+    top_rad = there[-1].position_rad
+    # within the gap the motor turns against its own friction alone
+    gap = [Observation(counted(top_rad - 0.0001 * cycle), -0.07) for cycle in range(1, 99)]
+    estimates = follow([*there, *gap])
+    assert {estimate.branch for estimate in estimates[len(there) + 2 :]} == {Branch.TURNING}
+    assert estimates[-1].load_current_a == pytest.approx(0.3, abs=2e-3)
+
+
+def test_no_jump_where_one_branch_takes_over_from_another():
+    # the search's result and the motion after it disagree by 40 mA; counts make 2 mA of noise
+    seen = [*stand(0.35, 1, rest=RestResult(0.34, 0.005, 0.1)), *stand(0.35, 100), *cruise(0.3, 2.0, 1.5)]
+    loads_a = [estimate.load_current_a for estimate in follow(seen)]
+    steps_a = [abs(after - before) for before, after in pairwise(loads_a)]
+    assert max(steps_a) <= 0.04 * PERIOD_S / SETTINGS.blend_s + 5e-4
+    assert loads_a[-1] == pytest.approx(0.3, abs=2e-3)
+
+
+def test_the_band_holds_the_difference_while_it_dies_away():
+    seen = [*stand(0.35, 1, rest=RestResult(0.34, 0.005, 0.1)), *stand(0.35, 100), *cruise(0.3, 2.0, 1.0)]
+    for estimate in follow(seen)[150:]:
+        if estimate.branch is Branch.MOVING:
+            assert abs(estimate.load_current_a - 0.3) <= estimate.half_width_a
+
+
+def test_while_a_search_moves_the_joint_the_estimate_is_held():
+    ramp = [Observation(1e-4 * cycle, 0.3 + 0.01 * cycle, 0.0, searching=True) for cycle in range(50)]
+    estimates = follow([*stand(0.35, 1, rest=RestResult(0.3, 0.005, 0.1)), *stand(0.35), *ramp])
+    assert estimates[-1].branch is Branch.SEARCHING
+    assert estimates[-1].load_current_a == pytest.approx(0.3, abs=1e-6)
+
+
+@pytest.mark.parametrize("lost", [Observation(nan, 0.3), Observation(0.0, nan)])
+def test_a_lost_sample_gives_no_number(lost):
+    estimates = follow([*stand(0.3), lost, *stand(0.3)])
+    assert isnan(estimates[60].load_current_a)
+    assert estimates[60].half_width_a == inf
+    assert estimates[60].branch is Branch.LOST
+    assert estimates[-1].branch is Branch.REST
+
+
+def test_until_something_is_known_there_is_no_number():
+    assert isnan(follow(cruise(0.3, 2.0, 0.1))[-1].load_current_a)
+
+
+def test_a_selector_outside_of_the_calibrated_ones_takes_the_nearest_allowed():
+    found = follow([*stand(0.3, 1, rest=RestResult(0.3, 0.005, 9.0)), *cruise(0.3, 2.0, selector=0.287)])
+    assert found[-1].load_current_a == pytest.approx(0.3, abs=2e-3)
+
+
+def test_a_sine_is_followed_through_its_reversals():
+    weigh = replace(MODEL, gravity_a=(0.3, 0.3), rotor_inertia_a_s2_rad=0.012)
+    omega, seen, truth_a = pi, [], []
+    for cycle in range(1600):
+        time_s = cycle * PERIOD_S
+        angle_rad = 0.8 * sin(omega * time_s) + 1.0
+        speed, acceleration = 0.8 * omega * cos(omega * time_s), -0.8 * omega**2 * sin(omega * time_s)
+        truth_a.append(0.3 * sin(angle_rad))
+        seen.append(Observation(counted(angle_rad), motor_current_a(truth_a[-1], speed, acceleration)))
+    estimates = follow(seen, weigh)[400:]
+    errors_a = [one.load_current_a - a for one, a in zip(estimates, truth_a[400:], strict=True)]
+    plain_a = [one.current_a - a for one, a in zip(seen[400:], truth_a[400:], strict=True)]
+    assert sum(e**2 for e in errors_a) < sum(p**2 for p in plain_a) / 8**2
+    assert {one.branch for one in estimates} == {Branch.MOVING, Branch.TURNING}
+
+
+@pytest.mark.parametrize("wrong", [{"arm_inertia_a_s2_rad": (0.1,)}, {"offsets_a": (0.1,)}, {"ratio": 0.0}])
+def test_models_that_do_not_fit_together_are_refused(wrong):
+    with pytest.raises(ModelParameterError, match=next(iter(wrong))):
+        replace(MODEL, **wrong)
