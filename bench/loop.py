@@ -177,7 +177,7 @@ class ControlLoop:
 
     def _wire_command(self, command: Command) -> Command:
         """The command in a mode that the drive closes itself; powers the stage for it where it is not."""
-        mode, value = command
+        mode, value, _ = command
         if mode is Mode.CURRENT and not self._has_current_mode:
             if self._current_servo is None or self._previous is None:
                 raise ConfigurationError(

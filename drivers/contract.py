@@ -33,14 +33,22 @@ class Status(IntEnum):
 
 
 class Command(NamedTuple):
-    """One cycle's demand. The unit of the value follows the mode."""
+    """One cycle's demand. The unit of the value follows the mode.
+
+    Attributes:
+        mode: what the value means.
+        value: the demand.
+        feed_forward_a: in POSITION, motor current that the drive adds to what its own position loop asks for [A]:
+            where friction is compensated. Other modes ignore it.
+    """
 
     mode: Mode
     value: float = 0.0
+    feed_forward_a: float = 0.0
 
 
 class Ages(NamedTuple):
-    """How old each quantity of a sample is at its `time_s` [s]; 0 where it is not measured.
+    """How old each quantity of a sample is when it is handed over [s]; 0 where it is not measured.
 
     Drives on a slow line ask for what changes slowly less often than once per cycle.
     """
@@ -72,6 +80,8 @@ class Sample(NamedTuple):
         temperature_c: temperature that the drive reports [deg C].
         status: state of the power stage.
         ages: of each quantity.
+        number: of the measurement since opening, where the drive is asked for each (CANopen: of the SYNC); two
+            samples of one number are one measurement, handed over twice because the next one has not come in time.
     """
 
     time_s: float
@@ -84,6 +94,7 @@ class Sample(NamedTuple):
     temperature_c: float
     status: Status
     ages: Ages = ALL_NEW
+    number: int = 0
 
 
 @dataclass(frozen=True, slots=True)

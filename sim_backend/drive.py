@@ -137,7 +137,7 @@ class SimulatedDrive:
             DriveConfigurationError: the command is not finite, or a duty is outside -1 .. 1.
             DriveConnectionError: the script loses this cycle's command and sample; time has passed all the same.
         """
-        mode, value = command
+        mode, value, _ = command
         if self._script:
             self._lose_sample()
         self._silent_cycles = 0
