@@ -121,14 +121,29 @@ class FaultScript:
     """
 
     def __init__(self, faults: Iterable[Fault] = ()) -> None:
-        self._faults = sorted(faults, key=lambda fault: fault.start_s)
-        for place, fault in enumerate(self._faults):
-            for other in self._faults[place + 1 :]:
-                if type(other) is type(fault) and fault.holds(other.start_s):
-                    raise ParameterError(
-                        f"{type(fault).__name__}.start_s = {other.start_s:g} [s]: the one of {fault.start_s:g} s is "
-                        f"not over before {fault.start_s + fault.duration_s:g} s; one of a kind at a time"
-                    )
+        self._faults: list[Fault] = []
+        for fault in sorted(faults, key=lambda one: one.start_s):
+            self.add(fault)
+
+    def add(self, fault: Fault) -> None:
+        """Let something more go wrong.
+
+        Raises:
+            ParameterError: another of the kind is there at a time when this one is.
+        """
+        for other in self._faults:
+            first, second = sorted((other, fault), key=lambda one: one.start_s)
+            if type(other) is type(fault) and first.holds(second.start_s):
+                raise ParameterError(
+                    f"{type(fault).__name__}.start_s = {second.start_s:g} [s]: the one of {first.start_s:g} s is "
+                    f"not over before {first.start_s + first.duration_s:g} s; one of a kind at a time"
+                )
+        self._faults.append(fault)
+        self._faults.sort(key=lambda one: one.start_s)
+
+    def lift(self, time_s: float) -> None:
+        """Put right whatever is wrong at a time; what is to come stays."""
+        self._faults = [fault for fault in self._faults if not fault.holds(time_s)]
 
     def __bool__(self) -> bool:
         return bool(self._faults)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from bench.cli import demo, effects, experiments, recordings, run, serve, service, study, trials
+from bench.cli import demo, effects, experiments, recordings, run, serve, service, simulate_device, study, trials
 from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import HELP, errors_as_messages
 from bench.cli.output import say
@@ -24,6 +24,7 @@ _ORDER = (
     "import",
     "study",
     "effects",
+    "simulate-device",
 )
 
 
@@ -88,6 +89,7 @@ app.command("import")(recordings.import_)
 app.add_typer(study.app, name="study")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
+app.add_typer(simulate_device.app, name="simulate-device")
 
 
 def main() -> None:

@@ -1,0 +1,184 @@
+"""What every simulated device drives: a power stage with a joint on it, advanced in ticks of a millisecond."""
+
+from math import isnan, pi
+from typing import NamedTuple, Protocol
+
+from drivers.contract import Sample, Status
+from sim_backend.errors import ParameterError
+from sim_backend.fault_play import FaultPlay
+from sim_backend.faults import Fault, FaultScript, OverCurrent, TorqueDisabled, Trip
+from sim_backend.gravity import Load
+from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
+from sim_backend.overload import OverloadMeter
+from sim_backend.parameters import PlantParameters
+from sim_backend.plant import COARSEST_STEP_S, Plant
+from sim_backend.thermal_drift import drifted
+
+TICK_S = 1e-3
+_STEPS = round(TICK_S / COARSEST_STEP_S)
+_OVERLOAD_HOLDS_S = 1.0
+# called from here as Python: compiling it for one call in a while costs a second at the start
+_drifted = getattr(drifted, "py_func", drifted)
+_STAGE_NAMES = {OPEN: "open", VOLTAGE: "voltage", CURRENT: "current", BRAKE: "brake"}
+
+
+class Demand(NamedTuple):
+    """What the power stage does for a tick: a stage of `motor`, and its duty (-1 .. 1) or current [A]."""
+
+    stage: int
+    value: float = 0.0
+
+
+OFF = Demand(OPEN)
+
+
+class Law(Protocol):
+    """The real-time half of a device: asked once a tick, with what the sensors have just shown."""
+
+    def demand(self, seen: Sample) -> Demand:
+        """Return what the power stage is to do for the coming tick."""
+
+
+class Power(NamedTuple):
+    """Whether the stage can drive the motor, and since when in the axis' time [s]."""
+
+    on: bool
+    since_s: float
+
+
+class Axis:
+    """Power stage and joint.
+
+    Time is the axis' own, from 0; whoever owns the axis says how far it has come. A fault of the script that switches
+    a drive off, or an open safe-torque-off circuit, opens the stage whatever the law demands.
+
+    Args:
+        parameters: the joint, and what the device measures of it.
+        law: of the device.
+        seed: of the plant's own randomness.
+    """
+
+    def __init__(self, parameters: PlantParameters, law: Law, seed: int = 0) -> None:
+        self.plant = Plant(parameters, seed)
+        self.script = FaultScript()
+        self.applied = OFF
+        self.power = Power(False, 0.0)
+        self._law = law
+        self._play = FaultPlay(self.script, self.plant)
+        self._overload = OverloadMeter(parameters.overload)
+        self._ticks = 0
+        self._count_rad = 2.0 * pi / (parameters.encoder.counts_per_turn * parameters.gear.ratio)
+        self._duty_counts = parameters.supply.duty_counts
+        self.seen = self._look()
+
+    @property
+    def time_s(self) -> float:
+        """How far the axis has come [s]."""
+        return self._ticks * TICK_S
+
+    @property
+    def stage_name(self) -> str:
+        """The state of the power stage."""
+        return _STAGE_NAMES[self.applied.stage]
+
+    def advance_to(self, time_s: float) -> None:
+        """Run every tick that is over at a time [s]."""
+        while (self._ticks + 1) * TICK_S <= time_s + 1e-9:
+            self._tick()
+
+    def trip(self) -> Trip | None:
+        """Return what switches the drive off now, or None."""
+        return self.script.trip(self.time_s)
+
+    def torque_is_disabled(self) -> bool:
+        """Tell whether the safe-torque-off circuit is open."""
+        return self.script.holding(TorqueDisabled, self.time_s) is not None
+
+    def meet(self, fault: Fault) -> None:
+        """Let something go wrong, in the axis' time.
+
+        Raises:
+            ParameterError: one of the kind is already there at the time.
+        """
+        self.script.add(fault)
+
+    def counts(self) -> int:
+        """Return the encoder's count."""
+        return round(self.seen.position_rad / self._count_rad)
+
+    def counts_per_s(self) -> float:
+        """Return the encoder's speed, counted over its window [1/s]."""
+        return self.seen.velocity_rad_s / self._count_rad
+
+    def hang_load(self, load_kg: float, balanced: bool) -> None:
+        """Hang a load on the arm, and put the arm at rest at angle 0.
+
+        Raises:
+            ParameterError: the load is negative or not finite, or the stage drives the motor.
+        """
+        if self.power.on:
+            raise ParameterError("a load can be hung only with the power off; disable the drive, then hang it")
+        self.plant.hang(Load(mass_kg=load_kg, balanced=balanced))
+        self.seen = self._look()
+
+    def _tick(self) -> None:
+        demand = self._law.demand(self.seen)
+        if self.script:
+            self._play.work_on_plant()
+            if self.trip() is not None or self.torque_is_disabled():
+                demand = OFF
+        self._apply(demand)
+        measured = self.plant.advance(self.applied.stage, self.applied.value, _STEPS)
+        self._ticks += 1
+        self.seen = self._sample(*measured.tolist())
+        self._count_overload()
+
+    def _apply(self, demand: Demand) -> None:
+        stage, value = demand
+        if stage == CURRENT:
+            value = self.plant.parameters.overload.limited(value)
+        elif stage == VOLTAGE:
+            value = round(min(max(value, -1.0), 1.0) * self._duty_counts) / self._duty_counts
+        self.applied = Demand(stage, value)
+        drives = stage == CURRENT or (stage == VOLTAGE and value != 0.0)
+        if drives != self.power.on:
+            self.power = Power(drives, self.time_s)
+
+    def _count_overload(self) -> None:
+        current_a = self.seen.current_a
+        if not isnan(current_a) and self._overload.overloads(current_a, TICK_S) and self.trip() is None:
+            self.script.add(
+                OverCurrent(start_s=self.time_s, duration_s=_OVERLOAD_HOLDS_S, current_a=max(abs(current_a), 1e-3))
+            )
+
+    def _look(self) -> Sample:
+        return self._sample(*self.plant.advance(OPEN, 0.0, 0).tolist())
+
+    def _sample(
+        self, position_rad: float, velocity_rad_s: float, current_a: float, temperature_c: float, supply_v: float
+    ) -> Sample:
+        status = Status.ENABLED if self.power.on else Status.DISABLED
+        sample = Sample(
+            self.time_s, 0.0, position_rad, velocity_rad_s, self._duty(supply_v), current_a, supply_v, temperature_c,
+            status,
+        )  # fmt: skip
+        return self._play.falsify(sample) if self.script else sample
+
+    def _duty(self, supply_v: float) -> float:
+        """Return the duty that the stage applies; in current mode what the loop needs: (R i + K w) / V, within 1."""
+        stage, value = self.applied
+        if stage == VOLTAGE:
+            return value
+        if stage != CURRENT or not supply_v > 0.0:
+            return 0.0
+        parameters, truth = self.plant.parameters, self.plant.truth()
+        motor = parameters.motor
+        winding = _drifted(
+            parameters.thermal_drift, motor.resistance_ohm, motor.torque_constant_n_m_a,
+            truth.winding_c, truth.housing_c,
+        )  # fmt: skip
+        back_emf_v = winding.torque_constant_n_m_a * truth.rotor_rad_s * parameters.gear.ratio
+        return min(max((winding.resistance_ohm * truth.current_a + back_emf_v) / supply_v, -1.0), 1.0)
+
+
+__all__ = ["BRAKE", "CURRENT", "OFF", "OPEN", "TICK_S", "VOLTAGE", "Axis", "Demand", "Law", "Power"]

@@ -1,0 +1,1 @@
+"""Byte lines between a host and a simulated device: pace, faults, pseudo-terminals and TCP."""

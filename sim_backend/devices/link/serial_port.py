@@ -1,0 +1,88 @@
+"""The thread that carries bytes between a pseudo-terminal and a device, at the line's pace and with its faults."""
+
+import threading
+from pathlib import Path
+
+from sim_backend.devices.link.byte_device import ByteDevice
+from sim_backend.devices.link.faults import Direction, LinkFaultKind
+from sim_backend.devices.link.line import Line
+from sim_backend.devices.link.pause import pause_until
+from sim_backend.devices.link.pseudo_terminal import PseudoTerminal
+from sim_backend.devices.wall_time import WallTime
+
+_LOOK_UP_S = 0.02  # how soon a port notices that it shall close or disconnect
+
+
+class SerialPort(threading.Thread):
+    """A device behind a serial port.
+
+    Args:
+        device: what answers.
+        clock: of the device.
+        line: pace and faults.
+        link: symbolic link for the host's end.
+    """
+
+    def __init__(self, device: ByteDevice, clock: WallTime, line: Line, link: Path | None = None) -> None:
+        super().__init__(name="device serial port", daemon=True)
+        self._device = device
+        self._clock = clock
+        self._line = line
+        self._link = link
+        self._closing = threading.Event()
+        self._terminal: PseudoTerminal | None = PseudoTerminal(link)
+        self.path = self._terminal.path
+        self.error: BaseException | None = None
+
+    def run(self) -> None:
+        """Carry bytes until `close`."""
+        try:
+            while not self._closing.is_set():
+                self._serve()
+        except BaseException as error:
+            self.error = error
+            raise
+        finally:
+            self._unplug()
+
+    def close(self) -> None:
+        """End the thread and the port."""
+        self._closing.set()
+        if self.is_alive():
+            self.join()
+        self._unplug()
+
+    def _serve(self) -> None:
+        if self._line.faults.holds(LinkFaultKind.DISCONNECT, self._clock.now_s()):
+            self._unplug()
+            self._closing.wait(_LOOK_UP_S)
+            return
+        terminal = self._plugged()
+        data = terminal.read(_LOOK_UP_S)
+        if data:
+            self._carry(terminal, data)
+
+    def _carry(self, terminal: PseudoTerminal, data: bytes) -> None:
+        for request in self._line.carry(Direction.TO_DEVICE, data, self._clock.now_s()):
+            pause_until(self._clock, request.at_s)
+            now_s = self._clock.now_s()
+            with self._device.lock:
+                self._device.advance_to(now_s)
+                answer = self._device.receive(request.data, now_s)
+            if answer:
+                for delivery in self._line.carry(Direction.FROM_DEVICE, answer, request.at_s):
+                    pause_until(self._clock, delivery.at_s)
+                    terminal.write(delivery.data)
+
+    def _plugged(self) -> PseudoTerminal:
+        if self._terminal is None:
+            self._terminal = PseudoTerminal(self._link)
+            self.path = self._terminal.path
+            with self._device.lock:
+                self._device.connect()
+        return self._terminal
+
+    def _unplug(self) -> None:
+        if self._terminal is not None:
+            self._terminal.close()
+            self._terminal = None

@@ -1,0 +1,1 @@
+"""A RoboClaw motor controller (Basicmicro), packet serial, as its user manual describes it."""

@@ -1,0 +1,85 @@
+"""One motor channel: what it was told, and the duty that follows from it."""
+
+from sim_backend.devices.axis import TICK_S
+from sim_backend.devices.roboclaw.settings import PID
+
+FULL_DUTY = 32767
+_FIXED_POINT = 65536.0
+_RECOVERY = 1.02  # of a limited duty, per tick
+
+
+class Channel:
+    """Duty, ramped duty or speed control, within a current limit.
+
+    The manual does not print the speed controller's equation. Here: duty = (target + P e + I sum(e) dt) / QPPS, e the
+    error in pulses/s; D is stored and not used.
+    """
+
+    def __init__(self) -> None:
+        self.limited = False
+        self._share = 1.0  # of the duty, that the current limit leaves
+        self._closes_speed = False
+        self._target = 0.0  # duty
+        self._now = 0.0  # duty, on its way there
+        self._rate: float | None = None  # duty a second; None is at once
+        self._speed = 0
+        self._sum = 0.0  # of speed errors [pulses]
+
+    def stop(self) -> None:
+        """Stop at once."""
+        self._set_duty(0.0, None)
+
+    def drive(self, duty: int, acceleration: int | None = None) -> None:
+        """Take a duty, +-32767; with an acceleration [counts/s] it is approached."""
+        self._set_duty(max(-1.0, min(1.0, duty / FULL_DUTY)), acceleration)
+
+    def turn(self, speed: int) -> None:
+        """Take a speed [pulses/s], closed by the drive."""
+        self._speed = speed
+        self._closes_speed = True
+
+    def duty(self, speed: float, pid: PID, current_a: float, limit_a: float) -> float:
+        """Return the duty of the coming tick.
+
+        Args:
+            speed: measured [pulses/s].
+            pid: of the speed controller.
+            current_a: measured [A].
+            limit_a: largest current [A].
+        """
+        wanted = self._controlled(speed, pid) if self._closes_speed else self._ramped()
+        self._limit(abs(current_a), limit_a)
+        return wanted * self._share
+
+    def _set_duty(self, duty: float, acceleration: int | None) -> None:
+        self._closes_speed = False
+        self._target = duty
+        self._rate = None if acceleration is None else acceleration / FULL_DUTY
+        self._sum = 0.0
+        self._speed = 0
+        if self._rate is None:
+            self._now = duty
+
+    def _ramped(self) -> float:
+        if self._rate is not None:
+            step = self._rate * TICK_S
+            self._now += max(-step, min(step, self._target - self._now))
+        return self._now
+
+    def _controlled(self, speed: float, pid: PID) -> float:
+        p, i, _, full_speed = pid
+        if full_speed == 0:
+            return 0.0
+        error = self._speed - speed
+        reach = full_speed * _FIXED_POINT / i if i else 0.0
+        self._sum = max(-reach, min(reach, self._sum + error * TICK_S))
+        duty = (self._speed + (p * error + i * self._sum) / _FIXED_POINT) / full_speed
+        self._now = max(-1.0, min(1.0, duty))
+        return self._now
+
+    def _limit(self, current_a: float, limit_a: float) -> None:
+        if current_a > limit_a:
+            self._share *= limit_a / current_a
+        else:
+            self._share = min(self._share * _RECOVERY, 1.0)
+        self.limited = self._share < 1.0

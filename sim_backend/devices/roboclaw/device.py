@@ -1,0 +1,195 @@
+"""The RoboClaw: answers packets, drives motor 1. Nothing is wired to motor 2."""
+
+from math import exp, isnan
+from struct import pack
+from threading import RLock
+from typing import Any
+
+from drivers.contract import Sample
+from sim_backend.devices.axis import OFF, TICK_S, VOLTAGE, Axis, Demand
+from sim_backend.devices.roboclaw.channel import FULL_DUTY, Channel
+from sim_backend.devices.roboclaw.commands import ACKNOWLEDGED, COMMANDS
+from sim_backend.devices.roboclaw.crc import crc16
+from sim_backend.devices.roboclaw.encoder import Counter
+from sim_backend.devices.roboclaw.handlers import handlers_of
+from sim_backend.devices.roboclaw.packets import ADDRESSES, PacketReader, Request
+from sim_backend.devices.roboclaw.settings import Settings
+from sim_backend.devices.roboclaw.status import WARM_C, Flag, flag_of
+from sim_backend.parameters import PlantParameters
+
+VERSION = b"USB Roboclaw 2x15a v4.1.34\n\0"
+SPEED_WINDOW_S = 1.0 / 300.0  # of commands 30, 31
+MEASURED = {"encoder": {"speed_window_s": SPEED_WINDOW_S}}
+_SPEED_LAG_S = 0.02  # of commands 18, 19, which the manual calls filtered and does not say how
+_DEFAULT_TEMPERATURE_C = 25.0
+
+Values = tuple[int, ...]
+
+
+class RoboClaw:
+    """One device on a serial line.
+
+    Args:
+        parameters: the joint on motor 1.
+        address: 0x80 .. 0x87.
+        usb: over USB every address is its own.
+        seed: of the plant.
+    """
+
+    def __init__(self, parameters: PlantParameters, address: int = 0x80, usb: bool = False, seed: int = 0) -> None:
+        self.axis = Axis(parameters, self, seed)
+        self.lock = RLock()
+        self.settings = Settings()
+        self._packets = PacketReader(frozenset(ADDRESSES) if usb else frozenset({address}))
+        self._channels = (Channel(), Channel())
+        self._counters = (Counter(), Counter())
+        self._speed = 0.0  # filtered [pulses/s]
+        self._heard_s = 0.0
+        self._timeouts = 0
+        self._silent = False
+        self._handlers = handlers_of(self)
+
+    # what the threads around it call -----------------------------------------------------------------
+
+    def advance_to(self, time_s: float) -> None:
+        """Let time pass."""
+        self.axis.advance_to(time_s)
+
+    def connect(self) -> None:
+        """Forget half a packet."""
+        self._packets.forget()
+
+    def receive(self, data: bytes, time_s: float) -> bytes:
+        """Take bytes; return the answers."""
+        self._heard_s = time_s
+        self._silent = False
+        self._counters[0].follow(self.axis.counts())
+        return b"".join(self._answer(request) for request in self._packets.feed(data, time_s))
+
+    def report(self) -> dict[str, Any]:
+        """Say what the drive is about."""
+        return {
+            "kind": "roboclaw",
+            "status": int(self._status()),
+            "watchdog_s": self.settings.serial_timeout * 0.1,
+            "watchdog_trips": self._timeouts,
+        }
+
+    # the real-time half ----------------------------------------------------------------------------------
+
+    def demand(self, seen: Sample) -> Demand:
+        """Return the duty of motor 1 for the coming tick."""
+        self._counters[0].follow(self.axis.counts())
+        raw = self.axis.counts_per_s()
+        self._speed += (raw - self._speed) * (1.0 - exp(-TICK_S / _SPEED_LAG_S))
+        self._watch()
+        if self.axis.trip() is not None or self.axis.torque_is_disabled():
+            self._stop()
+            return OFF
+        limit_a = self.settings.current_limits[0][0] * 0.01
+        current_a = 0.0 if isnan(seen.current_a) else seen.current_a
+        return Demand(VOLTAGE, self._channels[0].duty(raw, self.settings.velocity_pids[0], current_a, limit_a))
+
+    def _watch(self) -> None:
+        timeout = self.settings.serial_timeout
+        if timeout and not self._silent and self.axis.time_s - self._heard_s > timeout * 0.1:
+            self._silent = True
+            self._timeouts += 1
+            self._stop()
+
+    def _stop(self) -> None:
+        for channel in self._channels:
+            channel.stop()
+
+    # the packets -----------------------------------------------------------------------------------------
+
+    def _answer(self, request: Request) -> bytes:
+        result = self._handlers[request.command](*request.values)
+        layout = COMMANDS[request.command].reply
+        if not layout:
+            return ACKNOWLEDGED
+        data = VERSION if layout == "text" else pack(">" + layout, *result)
+        return data + crc16(request.head + data).to_bytes(2)
+
+    def read_status(self) -> Values:
+        """Command 90."""
+        return (int(self._status()),)
+
+    def read_count(self, motor: int) -> Values:
+        """Commands 16, 17."""
+        return self._counters[motor].read()
+
+    def read_counts(self) -> Values:
+        """Command 78."""
+        return self._counters[0].value(), self._counters[1].value()
+
+    def set_count(self, motor: int, value: int) -> Values:
+        """Commands 20, 22, 23."""
+        self._counters[motor].set(value)
+        return ()
+
+    def read_speeds(self, raw: bool) -> Values:
+        """Commands 79, 108 [pulses/s]."""
+        return round(self.axis.counts_per_s() if raw else self._speed), 0
+
+    def read_speed(self, motor: int, raw: bool) -> Values:
+        """Commands 18, 19, 30, 31: speed [pulses/s] and 1 for backward."""
+        speed = self.read_speeds(raw)[motor]
+        return speed, int(speed < 0)
+
+    def drive(self, motor: int, duty: int, acceleration: int | None = None) -> Values:
+        """Commands 32 .. 34, 52 .. 54."""
+        self._channels[motor].drive(duty, acceleration)
+        return ()
+
+    def turn(self, motor: int, speed: int) -> Values:
+        """Commands 35 .. 37."""
+        self._channels[motor].turn(speed)
+        return ()
+
+    def read_duties(self) -> Values:
+        """Command 48: what the stage applies to motor 1; what motor 2 was told."""
+        unwired = self._channels[1].duty(0.0, self.settings.velocity_pids[1], 0.0, 1.0)
+        return round(self.axis.seen.duty * FULL_DUTY), round(unwired * FULL_DUTY)
+
+    def read_currents(self) -> Values:
+        """Command 49 [10 mA]."""
+        current_a = self.axis.seen.current_a
+        return 0 if isnan(current_a) else _short(round(current_a * 100.0)), 0
+
+    def read_main_voltage(self) -> Values:
+        """Command 24 [0.1 V]."""
+        return (round(self.axis.seen.supply_v * 10.0),)
+
+    def read_temperature(self) -> Values:
+        """Commands 82, 83 [0.1 degC]."""
+        return (round(self._temperature_c() * 10.0),)
+
+    def restore_defaults(self) -> Values:
+        """Command 80."""
+        self._stop()
+        self.settings = Settings()
+        return ()
+
+    def _temperature_c(self) -> float:
+        temperature_c = self.axis.seen.temperature_c
+        return _DEFAULT_TEMPERATURE_C if isnan(temperature_c) else temperature_c
+
+    def _status(self) -> Flag:
+        status = Flag(0)
+        trip = self.axis.trip()
+        if trip is not None:
+            status |= flag_of(trip)
+        if self.axis.torque_is_disabled():
+            status |= Flag.E_STOP
+        if self._channels[0].limited:
+            status |= Flag.MOTOR_1_CURRENT_WARNING
+        if self._temperature_c() >= WARM_C:
+            status |= Flag.TEMPERATURE_WARNING
+        if self.axis.seen.supply_v * 10.0 < self.settings.main_limits[0]:
+            status |= Flag.MAIN_LOW_WARNING
+        return status
+
+
+def _short(value: int) -> int:
+    return max(-32768, min(32767, value))
