@@ -52,7 +52,9 @@ class SearchSettings(Section):
 class StoreSettings(Section):
     """Where the trials are kept."""
 
-    url: str = quantity("sqlite:///friction-bench.sqlite", "", "Database address")
+    url: str = quantity(
+        "sqlite:///friction-bench.sqlite", "", "Database address: sqlite:///FILE or postgresql://USER@HOST/DATABASE"
+    )
 
 
 class BenchConfiguration(Section):

@@ -17,6 +17,7 @@ from bench.service.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
 from bench.service.app import PREFIX, create_app
 from bench.service.tokens import find_or_make_token, find_token, token_file
 from bench.store import Store
+from bench.store.backend import shown
 
 LINGER_S = 2  # how long open connections are waited for at the end
 
@@ -110,13 +111,13 @@ def _family(host: str) -> socket.AddressFamily:
 
 
 def _welcome(configuration: BenchConfiguration, host: str, port: int, token: str) -> list[str]:
-    shown = f"[{host}]" if ":" in host else host
+    address = f"[{host}]" if ":" in host else host
     drive = "SIMULATED drive, no hardware moves" if is_simulated(configuration) else "REAL drive, the joint moves"
     return [
         f"bench  {configuration.name}: {drive}",
-        f"store  {configuration.store.url}",
-        f"page   http://{shown}:{port}/",
-        f"REST   http://{shown}:{port}{PREFIX}/openapi.json",
+        f"store  {shown(configuration.store.url)}",
+        f"page   http://{address}:{port}/",
+        f"REST   http://{address}:{port}{PREFIX}/openapi.json",
         f"token  {token}   (the page asks for it; keep it to yourself)",
         "Ctrl-C stops the joint and ends the service.",
     ]

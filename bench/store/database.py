@@ -5,42 +5,39 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from sqlalchemy import Connection
-from sqlalchemy.engine import make_url
-from sqlalchemy.exc import ArgumentError, StatementError
+from sqlalchemy.exc import StatementError
 
-from bench.store import sqlite
-from bench.store.errors import StoreFileError, StoreLockedError, StoreValueError
+from bench.store.backend import Claim, backend_of
+from bench.store.errors import StoreLockedError, StoreValueError
+from bench.store.json_text import NoJsonError
 
 
 class Database:
     """One engine, usable from several threads. Writers of this process take turns; readers never wait.
 
     Args:
-        url: "sqlite:///bench.sqlite" (relative) or "sqlite:////home/lab/bench.sqlite" (absolute).
+        url: "sqlite:///bench.sqlite" (relative), "sqlite:////home/lab/bench.sqlite" (absolute), or
+            "postgresql://user@host/database".
         busy_timeout_s: how long a writer waits for another one [s].
 
     Raises:
-        StoreFileError: the URL cannot be read, names no file, or the folder does not exist.
+        StoreFileError: the URL cannot be read, names no file or database, or the folder does not exist.
     """
 
     def __init__(self, url: str, busy_timeout_s: float) -> None:
-        try:
-            parsed = make_url(url)
-        except ArgumentError as error:
-            raise StoreFileError(f"store '{url}' is no database URL; write sqlite:///bench.sqlite") from error
-        if parsed.get_backend_name() != "sqlite":
-            found = parsed.get_backend_name()
-            raise StoreFileError(f"store: database '{found}' is not supported; write sqlite:///bench.sqlite")
-        self.path = sqlite.file_of(parsed)
         self.busy_timeout_s = busy_timeout_s
-        self._engine = sqlite.create(self.path, busy_timeout_s)
+        self.backend = backend_of(url, busy_timeout_s)
         self._writer = threading.Lock()
-        self._inode: int | None = None
+
+    @property
+    def where(self) -> str:
+        """How messages name it."""
+        return self.backend.where
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
         """A transaction that sees one state of the database throughout."""
-        with self._explained(), self._engine.connect() as connection, connection.begin():
+        with self._explained(), self.backend.engine.connect() as connection, connection.begin():
             yield connection
 
     @contextmanager
@@ -48,45 +45,41 @@ class Database:
         """A transaction that writes: committed when the block ends, undone when it raises."""
         if not self._writer.acquire(timeout=self.busy_timeout_s):
             raise StoreLockedError(
-                f"store '{self.path}': another thread has been writing for more than {self.busy_timeout_s:g} s; "
+                f"store '{self.where}': another thread has been writing for more than {self.busy_timeout_s:g} s; "
                 "wait until the import has ended"
             )
         try:
-            with self._explained(), self._engine.connect() as connection:
-                connection = connection.execution_options(**{sqlite.WRITES: True})
+            with self._explained(), self.backend.engine.connect() as connection:
+                connection = connection.execution_options(**self.backend.write_options)
                 with connection.begin():
-                    self._check_file()
+                    self.backend.begin_write(connection)
                     yield connection
         finally:
             self._writer.release()
 
+    def claim(self) -> Claim:
+        """Say that this process runs experiments. Called inside a transaction that writes."""
+        with self._explained():
+            return self.backend.claim()
+
     def close(self) -> None:
         """Close all connections. Safe to call twice."""
-        self._engine.dispose()
-
-    def _check_file(self) -> None:
-        """Refuse to write into a file that is not there any more: SQLite would, and every row would be lost."""
-        try:
-            found = self.path.stat().st_ino
-        except FileNotFoundError:
-            found = None
-        self._inode = self._inode or found
-        if found is None or found != self._inode:
-            raise StoreFileError(
-                f"store '{self.path}' was deleted, moved or replaced while it was in use; nothing more can be kept. "
-                "Put the file back if you can, and start this program again"
-            )
+        self.backend.engine.dispose()
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
         try:
             yield
-        except (OverflowError, UnicodeEncodeError) as error:  # a number or text that SQLite cannot hold
-            raise StoreValueError(f"store '{self.path}': {error}") from error
+        except (
+            OverflowError,
+            UnicodeEncodeError,
+            NoJsonError,
+        ) as error:  # a number or text that the database cannot hold
+            raise StoreValueError(f"store '{self.where}': {error}") from error
         except StatementError as error:
-            if isinstance(error.orig, (TypeError, UnicodeEncodeError)):
-                raise StoreValueError(f"store '{self.path}': {error.orig}") from error
-            explained = sqlite.explain(error.orig, self.path, self.busy_timeout_s)
+            if isinstance(error.orig, (TypeError, ValueError)):
+                raise StoreValueError(f"store '{self.where}': {error.orig}") from error
+            explained = self.backend.explain(error.orig)
             if explained is None:
                 raise
             raise explained from error

@@ -27,6 +27,7 @@ class StoreValueError(StoreError, ValueError):
     - a condition that is not finite, or is neither number, text nor bool
     - a second trial of the same name in an experiment
     - rows of the wrong shape, a channel that does not exist
+    - a text with a NUL character in it
     """
 
 
@@ -49,6 +50,10 @@ class StoreFileError(StoreError, OSError):
     - the file is no database, is damaged, or belongs to another program
     - the disk reports an error
     """
+
+
+class StoreUnreachableError(StoreError, ConnectionError):
+    """Raised when the database server does not answer, does not know the database, or refuses the user."""
 
 
 class StoreVersionError(StoreError, RuntimeError):

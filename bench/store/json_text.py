@@ -10,11 +10,15 @@ from typing import Any
 import numpy as np
 
 
+class NoJsonError(TypeError):
+    """Raised for something that JSON has no form for."""
+
+
 def plain(value: Any) -> Any:
     """The value from dicts, lists, text, numbers, bools and None alone; NaN and infinity become None.
 
     Raises:
-        TypeError: something that JSON has no form for.
+        NoJsonError: something that JSON has no form for.
     """
     match value:
         case None | bool() | int() | str():
@@ -31,7 +35,7 @@ def plain(value: Any) -> Any:
             return {str(key): plain(item) for key, item in value.items()}
         case Sequence() | set() | frozenset():
             return [plain(item) for item in value]
-    raise TypeError(f"a {type(value).__name__} cannot be kept as JSON: {value!r}")
+    raise NoJsonError(f"a {type(value).__name__} cannot be kept as JSON: {value!r}")
 
 
 def to_json(value: Any) -> str:

@@ -25,9 +25,9 @@ def migrate(database: Database) -> None:
     with database.writing() as connection:  # another process may have been faster: look again under the lock
         found = _revision(connection)
         if found is None and inspect(connection).get_table_names():
-            raise StoreFileError(f"store '{database.path}' belongs to another program; name another file")
+            raise StoreFileError(f"store '{database.where}' belongs to another program; name another")
         if found != HEAD:
-            _upgrade(connection, database.path, found)
+            _upgrade(connection, database.where, found)
 
 
 def _revision(connection: Connection) -> str | None:
@@ -36,7 +36,7 @@ def _revision(connection: Connection) -> str | None:
     return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
 
 
-def _upgrade(connection: Connection, path: Path, found: str | None) -> None:
+def _upgrade(connection: Connection, where: str, found: str | None) -> None:
     from alembic import command
     from alembic.config import Config
     from alembic.script import ScriptDirectory
@@ -47,7 +47,7 @@ def _upgrade(connection: Connection, path: Path, found: str | None) -> None:
     known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
     if found is not None and found not in known:
         raise StoreVersionError(
-            f"store '{path}' was made by a newer version (schema {found}; version {version('friction-bench')} knows "
-            f"up to {HEAD}); install the newer version, or name another file"
+            f"store '{where}' was made by a newer version (schema {found}; version {version('friction-bench')} knows "
+            f"up to {HEAD}); install the newer version, or name another"
         )
     command.upgrade(config, "head")

@@ -38,6 +38,19 @@ class UtcDateTime(TypeDecorator[datetime]):
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
 
+class PlainText(TypeDecorator[str]):
+    """Text without NUL characters: PostgreSQL has no place for them, and a file moves between databases."""
+
+    impl = Text
+    cache_ok = True
+
+    def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:  # noqa: ARG002
+        """Refuse a NUL character before it is written."""
+        if value is not None and "\0" in value:
+            raise ValueError(f"the text {value[:40]!r} has a NUL character in it, which cannot be kept; leave it out")
+        return value
+
+
 METADATA = MetaData(
     naming_convention={
         "ix": "ix_%(table_name)s_%(column_0_N_name)s",
@@ -57,18 +70,18 @@ EXPERIMENT = Table(
     "experiment",
     METADATA,
     Column("id", Integer, primary_key=True),
-    Column("kind", Text, nullable=False),
+    Column("kind", PlainText, nullable=False),
     Column("parameters", JSON, nullable=False),
-    Column("source", Text, nullable=False),  # simulated, real, imported
-    Column("operator", Text, nullable=False),
-    Column("note", Text, nullable=False),
+    Column("source", PlainText, nullable=False),  # simulated, real, imported
+    Column("operator", PlainText, nullable=False),
+    Column("note", PlainText, nullable=False),
     Column("provenance", JSON, nullable=False),
     Column("rig", JSON, nullable=False),
-    Column("owner", Text, nullable=True),  # who runs it, see owner.py; empty for an import
+    Column("owner", PlainText, nullable=True),  # who runs it, see owner.py; empty for an import
     Column("started_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
-    Column("outcome", Text, nullable=False),
-    Column("reason", Text, nullable=False),
+    Column("outcome", PlainText, nullable=False),
+    Column("reason", PlainText, nullable=False),
     Column("results", JSON, nullable=False),
     Index(None, "outcome"),
     Index(None, "kind"),
@@ -79,14 +92,14 @@ TRIAL = Table(
     METADATA,
     Column("id", Integer, primary_key=True),
     _parent("experiment", "experiment_id"),
-    Column("name", Text, nullable=False),
-    Column("kind", Text, nullable=False),
+    Column("name", PlainText, nullable=False),
+    Column("kind", PlainText, nullable=False),
     Column("channels", JSON, nullable=False),  # names, in the order of the columns of a sample block
     Column("rows", Integer, nullable=False),
     Column("started_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
-    Column("outcome", Text, nullable=False),
-    Column("reason", Text, nullable=False),
+    Column("outcome", PlainText, nullable=False),
+    Column("reason", PlainText, nullable=False),
     Column("results", JSON, nullable=False),
     UniqueConstraint("experiment_id", "name"),
     Index(None, "outcome"),
@@ -98,10 +111,10 @@ TRIAL_CONDITION = Table(
     "trial_condition",
     METADATA,
     _parent("trial", "trial_id", primary_key=True),
-    Column("key", Text, primary_key=True),
+    Column("key", PlainText, primary_key=True),
     Column("position", Integer, nullable=False),  # conditions keep their order
     Column("number", Float, nullable=True),
-    Column("text", Text, nullable=True),
+    Column("text", PlainText, nullable=True),
     Column("flag", Boolean, nullable=True),
     Index(None, "key", "number"),
     Index(None, "key", "text"),
@@ -122,8 +135,8 @@ EVENT = Table(
     Column("id", Integer, primary_key=True),
     _parent("trial", "trial_id"),
     Column("time_s", Float, nullable=False),
-    Column("name", Text, nullable=False),
-    Column("detail", Text, nullable=False),
+    Column("name", PlainText, nullable=False),
+    Column("detail", PlainText, nullable=False),
     Index(None, "trial_id", "time_s"),
 )
 
@@ -131,7 +144,7 @@ STUDY = Table(
     "study",
     METADATA,
     Column("id", Integer, primary_key=True),
-    Column("name", Text, nullable=False),
+    Column("name", PlainText, nullable=False),
     Column("definition", JSON, nullable=False),
     Column("created_utc", UtcDateTime, nullable=False),
 )

@@ -6,11 +6,11 @@ from types import TracebackType
 from typing import Any, Self
 
 from bench.store import experiments, samples, studies, trials
+from bench.store.backend import Claim
 from bench.store.conditions import Wanted
 from bench.store.database import Database
 from bench.store.errors import StoreError, StoreValueError
 from bench.store.migration import migrate
-from bench.store.owner import Owner, lives
 from bench.store.records import Condition, Event, Experiment, ModelRow, StudyRow, Trial
 from bench.store.reduction import MIN_POINTS, rows_to_keep
 from bench.store.trial_writer import TrialWriter
@@ -29,25 +29,25 @@ class Store:
 
     def __init__(self, database: Database) -> None:
         self._database = database
-        self._owner: Owner | None = None
+        self._owner: Claim | None = None
 
     @classmethod
     def open(cls, url: str, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Self:
         """Open a database; create or upgrade its tables; mark as interrupted what a dead process left running.
 
         Args:
-            url: "sqlite:///bench.sqlite".
+            url: "sqlite:///bench.sqlite", or "postgresql://user@host/database".
             busy_timeout_s: how long a write waits for another one before `StoreLockedError` [s].
 
         Raises:
             StoreFileError: no such folder, no database, a database of another program, or a damaged one.
             StoreVersionError: made by a newer version.
-            StoreLockedError, StoreFullError, StoreReadOnlyError
+            StoreLockedError, StoreFullError, StoreReadOnlyError, StoreUnreachableError
         """
         store = cls(Database(url, busy_timeout_s))
         try:
             migrate(store._database)
-            store._interrupt(LEFT_RUNNING, lambda token: not lives(store._database.path, token))
+            store._interrupt(LEFT_RUNNING, lambda token: not store._database.backend.lives(token))
         except BaseException:
             store.close()
             raise
@@ -292,8 +292,8 @@ class Store:
 
     def _claim(self) -> str:
         """The token under which this store runs experiments. Called inside a transaction that writes."""
-        if self._owner is None:
-            self._owner = Owner(self._database.path)
+        if self._owner is None or not self._owner.holds():
+            self._owner = self._database.claim()
         return self._owner.token
 
     def _interrupt(self, reason: str, chosen: Callable[[str | None], bool]) -> None:

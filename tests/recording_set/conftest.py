@@ -1,5 +1,5 @@
-"""A store in a temporary folder."""
+"""A store in either database."""
 
-from tests.store.conftest import empty_database, store, url
+from tests.store.conftest import backend, empty_database, empty_template, server, sqlite_url, store, store_url
 
-__all__ = ["empty_database", "store", "url"]
+__all__ = ["backend", "empty_database", "empty_template", "server", "sqlite_url", "store", "store_url"]

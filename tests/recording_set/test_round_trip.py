@@ -30,8 +30,9 @@ RIG = Rig(
     arm=Arm(length_m=1e-17),
     effort=Effort(quantity="current"),
 )
-NAMES = st.text(st.characters(codec="utf-8"), min_size=1, max_size=12)
-KEYS = st.text(st.characters(codec="utf-8"), max_size=8).map(lambda text: f"k{text}k").filter(str.isprintable)
+CHARACTERS = st.characters(codec="utf-8", exclude_characters="\0")  # a database has no place for NUL
+NAMES = st.text(CHARACTERS, min_size=1, max_size=12)
+KEYS = st.text(CHARACTERS, max_size=8).map(lambda text: f"k{text}k").filter(str.isprintable)
 
 
 @st.composite
@@ -43,7 +44,7 @@ def recordings(draw: st.DrawFn, name: str) -> Recording:
     channels = {"time_s": np.array(time_s)} | {key: np.array(draw(numbers)) for key in others}
     for values in channels.values():
         values[np.isnan(values)] = np.nan  # one NaN: CSV has no payloads
-    texts = st.text(st.characters(codec="utf-8"), max_size=6)
+    texts = st.text(CHARACTERS, max_size=6)
     times = st.one_of(st.sampled_from(time_s), st.floats(-1e9, 1e9))
     events = draw(st.lists(st.builds(Event, times, texts, texts), max_size=4))
     events.sort(key=lambda event: event.time_s)

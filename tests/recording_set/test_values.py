@@ -10,7 +10,7 @@ from compensator.lab.recording import Condition
 CONDITIONS = st.one_of(
     st.floats(allow_nan=False, allow_infinity=False),
     st.booleans(),
-    st.text(st.characters(codec="utf-8")),
+    st.text(st.characters(codec="utf-8", exclude_characters="\0")),
     st.text("'0123456789.+-eE trufals_", max_size=8),
 )
 

@@ -10,10 +10,10 @@ from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from tests.store.examples import begin, begin_trial, rows
 
 
-def test_an_experiment_is_kept_as_it_was_begun(store: Store, url: str) -> None:
+def test_an_experiment_is_kept_as_it_was_begun(store: Store, store_url: str) -> None:
     experiment_id = begin(store)
     store.finish_experiment(experiment_id, "completed", "all steps made", {"spread_a": np.float64(0.75)})
-    with Store.open(url) as other:
+    with Store.open(store_url) as other:
         found = other.experiment(experiment_id)
     assert (found.kind, found.source, found.operator, found.note) == ("steps", "simulated", "Ada", "first")
     assert (found.parameters, found.provenance, found.rig) == ({"count": 3}, {"seed": 1}, {"name": "paper"})

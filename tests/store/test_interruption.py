@@ -1,25 +1,21 @@
 """What remains when the process that measures is gone, and what a living one is spared."""
 
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
-from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from bench.store import Store
-from bench.store.errors import StoreFileError
 from tests.store.examples import begin, begin_trial, rows
 
 # writes blocks of 25 rows for ever and says after each which rows are committed
 WRITER = """
 import sys
 from bench.store import Store
-from bench.store.errors import StoreFileError
 from tests.store.examples import begin, begin_trial, rows
 store = Store.open(sys.argv[1])
 writer = begin_trial(store, begin(store), load_kg=0.1)
@@ -42,6 +38,17 @@ def kill(process: "subprocess.Popen[str]") -> int:
     return int(whole[-1]) if whole else 0
 
 
+def opened_after_a_death(url: str) -> Store:
+    """The store, once it has been seen that the process is gone: a server needs a moment to see it."""
+    deadline_s = time.monotonic() + 10.0
+    while True:
+        store = Store.open(url)
+        if not store.experiments(outcome="running") or time.monotonic() > deadline_s:
+            return store
+        store.close()
+        time.sleep(0.05)
+
+
 def test_what_was_committed_survives_a_kill_at_any_moment(url: str) -> None:
     generator = np.random.default_rng(7)
     for delay_s in generator.uniform(0.0, 0.15, size=4):
@@ -50,9 +57,7 @@ def test_what_was_committed_survives_a_kill_at_any_moment(url: str) -> None:
         first = int(process.stdout.readline())
         time.sleep(delay_s)
         committed = max(first, kill(process))
-        with closing(sqlite3.connect(url.removeprefix("sqlite:///"))) as connection:
-            assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-        with Store.open(url) as store:
+        with opened_after_a_death(url) as store:
             experiment = store.experiments(limit=1)[0]
             (trial,) = store.trials(experiment.id)
             assert (experiment.outcome, trial.outcome) == ("interrupted", "interrupted")
@@ -60,7 +65,6 @@ def test_what_was_committed_survives_a_kill_at_any_moment(url: str) -> None:
             assert "killed" in trial.reason
             assert committed <= trial.rows <= committed + 25
             assert np.array_equal(store.samples(trial.id)["time_s"], np.arange(float(trial.rows)))
-        assert list(Path(url.removeprefix("sqlite:///")).parent.glob("*-owner-*")) == []
 
 
 def test_a_bench_that_runs_in_another_process_is_left_running(url: str) -> None:
@@ -73,14 +77,14 @@ def test_a_bench_that_runs_in_another_process_is_left_running(url: str) -> None:
         assert int(process.stdout.readline()) >= 25  # it goes on writing
     finally:
         kill(process)
-    with Store.open(url) as store:
+    with opened_after_a_death(url) as store:
         assert [experiment.outcome for experiment in store.experiments()] == ["interrupted"]
 
 
-def test_a_bench_that_runs_in_this_process_is_left_running(store: Store, url: str) -> None:
+def test_a_bench_that_runs_in_this_process_is_left_running(store: Store, store_url: str) -> None:
     experiment_id = begin(store)
     for _ in range(2):  # looking must not let go of the lock
-        with Store.open(url) as other:
+        with Store.open(store_url) as other:
             assert other.experiment(experiment_id).outcome == "running"
     begin_trial(store, experiment_id).append(rows(0, 5))
 
@@ -98,9 +102,9 @@ def test_closing_marks_what_it_left_running(url: str) -> None:
         assert store.trial(trial_id).outcome == "interrupted"
 
 
-def test_closing_spares_what_others_run(store: Store, url: str) -> None:
+def test_closing_spares_what_others_run(store: Store, store_url: str) -> None:
     mine = begin(store)
-    with Store.open(url) as other:
+    with Store.open(store_url) as other:
         theirs = begin(other)
     assert store.experiment(mine).outcome == "running"
     assert store.experiment(theirs).outcome == "interrupted"
@@ -113,14 +117,3 @@ def test_what_ended_stays_as_it_ended(url: str, outcome: str) -> None:
         store.finish_experiment(experiment_id, outcome)
     with Store.open(url) as store:
         assert store.experiment(experiment_id).outcome == outcome
-
-
-@pytest.mark.parametrize("replaced", [False, True])
-def test_nothing_is_written_into_a_database_that_was_taken_away(store: Store, tmp_path: Path, replaced: bool) -> None:
-    writer = begin_trial(store, begin(store))
-    writer.append(rows(0, 25))
-    (tmp_path / "bench.sqlite").rename(tmp_path / "elsewhere.sqlite")
-    if replaced:
-        (tmp_path / "bench.sqlite").touch()
-    with pytest.raises(StoreFileError, match="was deleted, moved or replaced while it was in use"):
-        writer.append(rows(25, 25))

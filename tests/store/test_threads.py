@@ -57,9 +57,9 @@ def test_writers_in_several_threads_take_turns(store: Store) -> None:
         assert np.array_equal(store.samples(writer.trial_id)["time_s"], np.arange(200.0))
 
 
-def test_a_reader_does_not_wait_for_a_writer(store: Store, url: str) -> None:
+def test_a_reader_does_not_wait_for_a_writer(store: Store, store_url: str) -> None:
     experiment_id = begin(store)
-    other = Database(url, 5.0)
+    other = Database(store_url, 5.0)
     with other.writing():
         started = time.monotonic()
         assert store.experiment(experiment_id).outcome == "running"
@@ -67,7 +67,7 @@ def test_a_reader_does_not_wait_for_a_writer(store: Store, url: str) -> None:
     other.close()
 
 
-def test_two_benches_on_one_store_take_turns(store: Store, url: str) -> None:
+def test_two_benches_on_one_store_take_turns(store: Store, store_url: str) -> None:
     errors: list[BaseException] = []
 
     def begins(opened: Store, kind: str) -> None:
@@ -78,7 +78,7 @@ def test_two_benches_on_one_store_take_turns(store: Store, url: str) -> None:
         except BaseException as error:
             errors.append(error)
 
-    with Store.open(url) as other:
+    with Store.open(store_url) as other:
         threads = [threading.Thread(target=begins, args=pair) for pair in ((store, "a"), (other, "b"))]
         for thread in threads:
             thread.start()

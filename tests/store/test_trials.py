@@ -37,9 +37,9 @@ def test_a_view_with_strides_is_stored_as_it_looks(store: Store) -> None:
     assert np.array_equal(np.column_stack(list(found.values())), wide[::2, ::2])
 
 
-def test_what_is_appended_is_there_at_once_for_others(store: Store, url: str) -> None:
+def test_what_is_appended_is_there_at_once_for_others(store: Store, store_url: str) -> None:
     writer = begin_trial(store, begin(store))
-    with Store.open(url) as other:
+    with Store.open(store_url) as other:
         for total in range(10, 50, 10):
             writer.append(rows(total - 10, 10))
             assert other.trial(writer.trial_id).rows == total == len(other.samples(writer.trial_id)["time_s"])
@@ -162,3 +162,10 @@ def test_a_trial_that_is_not_there_is_named(store: Store) -> None:
     for call in (store.trial, store.samples, store.events):
         with pytest.raises(NotFoundError, match="trial 9 is not in the store"):
             call(9)
+
+
+def test_a_text_with_a_nul_in_it_is_refused_and_nothing_is_kept(store: Store) -> None:
+    experiment_id = begin(store)
+    with pytest.raises(StoreValueError, match="NUL character"):
+        begin_trial(store, experiment_id, grease="NLGI\0 2")
+    assert store.trials(experiment_id) == []

@@ -1,0 +1,80 @@
+"""What a kind of database has to offer: all that differs between SQLite and PostgreSQL stands behind this."""
+
+from typing import Any, Protocol
+
+from sqlalchemy import Connection, Engine
+from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError
+
+from bench.store.errors import StoreError, StoreFileError
+
+EXAMPLES = "sqlite:///bench.sqlite or postgresql://user@host/database"
+
+
+class Claim(Protocol):
+    """The word of a process that it runs experiments. It ends with the process, however that ends."""
+
+    token: str
+
+    def holds(self) -> bool:
+        """Whether others still see it."""
+
+    def release(self) -> None:
+        """Let go. Safe to call twice."""
+
+
+class Backend(Protocol):
+    """One database.
+
+    Attributes:
+        where: how messages name it; without password.
+        engine: connections are made as they are needed.
+        write_options: execution options of a connection that is going to write.
+    """
+
+    where: str
+    engine: Engine
+    write_options: dict[str, Any]
+
+    def begin_write(self, connection: Connection) -> None:
+        """First thing in a transaction that writes: wait for other writers, and make sure that it can be kept."""
+
+    def explain(self, error: BaseException | None) -> StoreError | None:
+        """The store's error for an error of the driver, with the next step; None where it is none of these."""
+
+    def claim(self) -> Claim:
+        """Say that this process runs experiments. Called inside a transaction that writes."""
+
+    def lives(self, token: str | None) -> bool:
+        """Whether the process that made this claim still holds it."""
+
+
+def backend_of(url: str, busy_timeout_s: float) -> Backend:
+    """The database that a URL names; nothing is opened yet.
+
+    Raises:
+        StoreFileError: the URL cannot be read, names no file or folder that is there, or an unknown database.
+    """
+    parsed = _parsed(url)
+    name = parsed.get_backend_name()
+    if name == "sqlite":
+        from bench.store.sqlite import Sqlite
+
+        return Sqlite(parsed, busy_timeout_s)
+    if name == "postgresql":
+        from bench.store.postgresql import Postgresql
+
+        return Postgresql(parsed, busy_timeout_s)
+    raise StoreFileError(f"store: database '{name}' is not supported; write {EXAMPLES}")
+
+
+def shown(url: str) -> str:
+    """A database URL as it may be shown: without its password."""
+    return _parsed(url).render_as_string(hide_password=True)
+
+
+def _parsed(url: str) -> URL:
+    try:
+        return make_url(url)
+    except ArgumentError as error:
+        raise StoreFileError(f"store '{url}' is no database URL; write {EXAMPLES}") from error

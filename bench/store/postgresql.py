@@ -1,0 +1,135 @@
+"""PostgreSQL: all that is special about it, for a laboratory with several benches.
+
+Writers take turns by one advisory lock, as SQLite makes them: the same code sees the same order of
+things on both. A transaction that reads sees one state throughout (repeatable read). A process that
+runs experiments holds an advisory lock of its own in a session of its own: the server lets go of it
+when the process, or its network, is gone.
+"""
+
+import secrets
+from types import ModuleType
+from typing import Any
+
+from sqlalchemy import Connection, create_engine, text
+from sqlalchemy.engine import URL
+from sqlalchemy.exc import DBAPIError
+
+from bench.store.errors import (
+    StoreError,
+    StoreFileError,
+    StoreFullError,
+    StoreLockedError,
+    StoreReadOnlyError,
+    StoreUnreachableError,
+    StoreValueError,
+)
+from bench.store.json_text import to_json
+
+WRITER_KEY = 0x46524943  # "FRIC": below all keys of claims
+CLAIM_PREFIX = "pg-"
+CONNECT_TIMEOUT_S = 10
+
+
+class Postgresql:
+    """See `Backend`.
+
+    Args:
+        url: "postgresql://user@host/database".
+        busy_timeout_s: how long a writer waits for another one [s].
+
+    Raises:
+        StoreFileError: the driver is not installed, or the URL names no database.
+    """
+
+    def __init__(self, url: URL, busy_timeout_s: float) -> None:
+        self._driver = _driver()
+        self.where = url.render_as_string(hide_password=True)
+        if not url.database:
+            raise StoreFileError(f"store '{self.where}' names no database; write postgresql://user@host/database")
+        self.write_options: dict[str, Any] = {"isolation_level": "READ COMMITTED"}
+        self._busy_timeout_s = busy_timeout_s
+        self.engine = create_engine(
+            url.set(drivername="postgresql+psycopg"),
+            isolation_level="REPEATABLE READ",
+            connect_args={
+                "options": f"-c lock_timeout={max(1, round(1000 * busy_timeout_s))}",
+                "connect_timeout": CONNECT_TIMEOUT_S,
+            },
+            pool_pre_ping=True,  # the server may have been restarted
+            max_overflow=-1,
+            json_serializer=to_json,
+        )
+
+    def begin_write(self, connection: Connection) -> None:
+        """Wait for other writers."""
+        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": WRITER_KEY})
+
+    def explain(self, error: BaseException | None) -> StoreError | None:
+        """By the class of the error, and by its SQLSTATE (PostgreSQL manual, appendix A)."""
+        if not isinstance(error, self._driver.Error):
+            return None
+        state = getattr(error, "sqlstate", None) or ""
+        where, told = f"store '{self.where}'", str(error).strip()
+        if state in ("55P03", "40P01"):
+            return StoreLockedError(
+                f"{where} is locked by another program for more than {self._busy_timeout_s:g} s; "
+                "end what holds it (an import, a backup, an open console), then try again"
+            )
+        if state == "53100":
+            return StoreFullError(f"{where}: the server's disk is full; free some space there. Earlier blocks are kept")
+        if state in ("25006", "42501"):
+            return StoreReadOnlyError(f"{where} may not be written ({told}); give the user rights on the database")
+        if state.startswith("22") or isinstance(error, self._driver.DataError):
+            return StoreValueError(f"{where}: {told}")
+        if state.startswith("XX"):
+            return StoreFileError(f"{where} is damaged ({told}); look at the server's log, and restore a backup")
+        if state[:2] in ("", "08", "57", "53", "28", "3D") and isinstance(error, self._driver.OperationalError):
+            return StoreUnreachableError(
+                f"{where} cannot be reached ({told}); check that the server runs, and name, user and password"
+            )
+        return None
+
+    def claim(self) -> "SessionClaim":
+        """A session that holds a lock of its own."""
+        return SessionClaim(self.engine.connect())
+
+    def lives(self, token: str | None) -> bool:
+        """Whether the lock of a claim is taken."""
+        if token is None or not token.startswith(CLAIM_PREFIX):
+            return False
+        with self.engine.connect() as connection, connection.begin():
+            query = text("SELECT pg_try_advisory_xact_lock(:key)")
+            return not connection.execute(query, {"key": int(token.removeprefix(CLAIM_PREFIX), 16)}).scalar_one()
+
+
+class SessionClaim:
+    """A session with the server that holds an advisory lock."""
+
+    def __init__(self, connection: Connection) -> None:
+        key = secrets.randbits(62) | 2**40
+        self.token = f"{CLAIM_PREFIX}{key:x}"
+        self._connection = connection.execution_options(isolation_level="AUTOCOMMIT")
+        self._connection.execute(text("SELECT pg_advisory_lock(:key)"), {"key": key})
+
+    def holds(self) -> bool:
+        """Whether the session is still there."""
+        try:
+            self._connection.execute(text("SELECT 1"))
+        except DBAPIError:
+            return False
+        return True
+
+    def release(self) -> None:
+        """End the session, and with it the lock."""
+        self._connection.invalidate()  # not back to the pool: the session would live on
+        self._connection.close()
+
+
+def _driver() -> ModuleType:
+    try:
+        import psycopg
+    except ImportError as error:
+        raise StoreFileError(
+            "store: PostgreSQL needs the driver psycopg; install it with: pip install 'friction-bench[postgresql]'"
+        ) from error
+    return psycopg

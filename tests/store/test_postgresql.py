@@ -1,0 +1,88 @@
+"""What is special about PostgreSQL: the server, its users, its locks."""
+
+import sys
+
+import pytest
+from sqlalchemy import text
+
+from bench.store import Store
+from bench.store.backend import shown
+from bench.store.database import Database
+from bench.store.errors import (
+    StoreFileError,
+    StoreLockedError,
+    StoreReadOnlyError,
+    StoreUnreachableError,
+)
+from tests.databases import PostgresqlServer
+from tests.store.examples import begin, begin_trial
+
+
+@pytest.fixture
+def backend() -> str:
+    return "postgresql"
+
+
+def test_a_lock_of_another_program_is_waited_for_and_then_named(store_url: str) -> None:
+    other = Database(store_url, 5.0)
+    with Store.open(store_url, busy_timeout_s=0.2) as store:
+        experiment_id = begin(store)
+        with other.writing():
+            with pytest.raises(StoreLockedError, match=r"locked by another program for more than 0\.2 s; end what"):
+                begin_trial(store, experiment_id)
+            assert store.experiments() != []  # readers do not mind
+        begin_trial(store, experiment_id)
+    other.close()
+
+
+def test_a_transaction_that_reads_sees_one_state(store: Store, store_url: str) -> None:
+    database = Database(store_url, 5.0)
+    with database.reading() as connection:
+        count = text("SELECT count(*) FROM experiment")
+        before = connection.execute(count).scalar()
+        begin(store)
+        assert connection.execute(count).scalar() == before == 0
+    database.close()
+
+
+def test_a_server_that_is_not_there_is_named_without_the_password() -> None:
+    with pytest.raises(StoreUnreachableError, match="check that the server runs") as caught:
+        Store.open("postgresql://ada:secret@localhost:1/bench")
+    assert "secret" not in str(caught.value)
+
+
+def test_a_database_that_is_not_there_is_named(server: PostgresqlServer) -> None:
+    with pytest.raises(StoreUnreachableError, match='database "nowhere" does not exist'):
+        Store.open(server.url("nowhere"))
+
+
+def test_a_connection_that_broke_is_made_again(store: Store, server: PostgresqlServer, store_url: str) -> None:
+    experiment_id = begin(store)
+    server.run("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname LIKE 'bench%'")
+    assert store.experiment(experiment_id).outcome == "running"
+    later = begin(store)  # and with it the claim, which the server had let go
+    with Store.open(store_url) as other:
+        assert other.experiment(later).outcome == "running"
+
+
+def test_a_database_that_may_not_be_written_is_named(server: PostgresqlServer, store: Store, store_url: str) -> None:
+    name = store_url.split("/")[3].split("?")[0]
+    server.run(f"ALTER DATABASE {name} SET default_transaction_read_only = on")
+    with Store.open(store_url) as other, pytest.raises(StoreReadOnlyError, match="may not be written"):
+        begin(other)
+
+
+def test_the_missing_driver_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "psycopg", None)
+    with pytest.raises(StoreFileError, match=r"pip install 'friction-bench\[postgresql\]'"):
+        Store.open("postgresql://localhost/bench")
+
+
+def test_a_url_without_a_database_is_refused() -> None:
+    with pytest.raises(StoreFileError, match="names no database"):
+        Store.open("postgresql://localhost")
+
+
+def test_a_url_is_shown_without_its_password() -> None:
+    assert shown("postgresql://ada:secret@host/bench") == "postgresql://ada:***@host/bench"
+    assert shown("sqlite:////lab/bench.sqlite") == "sqlite:////lab/bench.sqlite"
