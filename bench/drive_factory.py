@@ -1,12 +1,15 @@
 """The drive that the configuration names, and who hangs its load. The only file that knows the simulation."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from bench.configuration import BenchConfiguration
+from bench.drives.real import RealDriveSettings, joint_scale
+from bench.drives.roboclaw import RoboclawDriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
 from bench.errors import ConfigurationError
-from bench.technician import SimulatedTechnician, Technician
+from bench.rig import Rig
+from bench.technician import PersonTechnician, SimulatedTechnician, Technician
 from drivers.contract import Drive
 
 Ask = Callable[[str], bool]
@@ -29,7 +32,7 @@ def nobody(sentence: str) -> bool:
     raise ConfigurationError(f"a person is needed, and there is none to ask: {sentence}")
 
 
-def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equipment:  # noqa: ARG001
+def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equipment:
     """The drive, not yet open, and the technician.
 
     Args:
@@ -42,6 +45,8 @@ def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equi
     match configuration.drive:
         case SimulatedDriveSettings() as settings:
             return _simulated(settings)
+        case RoboclawDriveSettings() as settings:
+            return _roboclaw(settings, configuration.rig, ask)
 
 
 def is_simulated(configuration: BenchConfiguration) -> bool:
@@ -54,6 +59,8 @@ def seed_of(configuration: BenchConfiguration) -> int | None:
     match configuration.drive:
         case SimulatedDriveSettings(seed=seed):
             return seed
+        case _:
+            return None
 
 
 # each imports what it needs by itself: a bench needs neither the libraries nor the compiler of another kind
@@ -71,3 +78,16 @@ def _simulated(settings: SimulatedDriveSettings) -> Equipment:
     except ParameterError as error:
         raise ConfigurationError(f"simulated drive: {error}") from error
     return Equipment(drive, SimulatedTechnician(drive))
+
+
+def _roboclaw(settings: RoboclawDriveSettings, rig: Rig, ask: Ask) -> Equipment:
+    from drivers.roboclaw.drive import RoboclawDrive
+    from drivers.roboclaw.settings import RoboclawSettings
+
+    line = RoboclawSettings(**_driver_values(settings))
+    return Equipment(RoboclawDrive(line, joint_scale(settings, rig)), PersonTechnician(ask))
+
+
+def _driver_values(settings: RealDriveSettings) -> dict[str, Any]:
+    """What the driver's own settings take: all but the kind, and what the joint's scale takes."""
+    return settings.model_dump(exclude={"kind", *RealDriveSettings.model_fields})

@@ -14,7 +14,10 @@ from pydantic import BaseModel
 from drivers.contract import Description
 
 DISTRIBUTION = "friction-bench"
-LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "sqlalchemy", "alembic", "tsdownsample")
+LIBRARIES = (
+    "numpy", "scipy", "numba", "pydantic", "sqlalchemy", "alembic", "tsdownsample",
+    "python-can", "canopen", "pyserial", "pymodbus",
+)  # fmt: skip
 _ROOT = Path(__file__).resolve().parent.parent
 _GIT_TIMEOUT_S = 5.0
 

@@ -1,1 +1,1 @@
-"""The drive contract and its errors; the real drives that satisfy it are to come."""
+"""The drive contract, its errors, and the real drives that satisfy it."""

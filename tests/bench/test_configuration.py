@@ -35,7 +35,7 @@ WRONG = [
     ("[rig.arm]\ncentre_of_mass_m = nan", "rig.arm.centre_of_mass_m: found nan; should be a finite number"),
     ("[control]\nperiod_s = 0.2", "control.period_s: found 0.2; should be less than or equal to 0.1 s"),
     ("[rig.motor]\nresistance_ohm = -8.0", "rig.motor.resistance_ohm: found -8.0; should be greater than 0 ohm"),
-    ("[drive]\nkind = 'can'", "drive.kind: found 'can'; should be 'sim'"),
+    ("[drive]\nkind = 'can'", "drive: found {'kind': 'can'}; kind should be one of sim, "),
     ("[drive]\nseed = -1", "drive.seed: found -1; should be greater than or equal to 0"),
 ]
 

@@ -1,0 +1,1 @@
+"""RoboClaw motor controllers over packet serial (Basicmicro, RoboClaw Series User Manual)."""

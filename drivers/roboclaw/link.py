@@ -1,0 +1,160 @@
+"""The serial port: one question, one answer, in bounded time."""
+
+import time
+from typing import Any
+
+import serial
+from serial.tools import list_ports
+
+from drivers.errors import DriveConnectionError
+from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, Read, Write
+from drivers.roboclaw.frames import VERSION_END, is_intact, read_packet, version_packet, write_packet
+from drivers.roboclaw.settings import RoboclawSettings
+
+RESYNC_S = 0.012  # the controller forgets half a packet after 10 ms of silence
+ATTEMPTS = 2
+
+
+class Link:
+    """An open port to one controller.
+
+    Args:
+        settings: port, baud rate, address, time limit.
+        device: name used in messages.
+
+    Raises:
+        DriveConnectionError: the port is not there, or somebody else uses it.
+    """
+
+    def __init__(self, settings: RoboclawSettings, device: str) -> None:
+        self._device = device
+        self._address = settings.address
+        self._timeout_s = settings.answer_timeout_s
+        self._requests: dict[int, bytes] = {}
+        self._deadline_s = 0.0
+        try:
+            self._port: Any = serial.Serial(
+                settings.port,
+                settings.baud_rate,
+                timeout=settings.answer_timeout_s,
+                write_timeout=settings.answer_timeout_s,
+                exclusive=True,
+            )
+            self._port.reset_input_buffer()
+        except (OSError, ValueError) as error:  # SerialException is an OSError
+            raise DriveConnectionError(device, f"{error}; {_ports()}") from error
+
+    @staticmethod
+    def longest_call_s(settings: RoboclawSettings) -> float:
+        """By then whoever has called `begin` has his answers, or an error [s]."""
+        return (ATTEMPTS + 1) * (settings.answer_timeout_s + RESYNC_S)
+
+    def begin(self) -> None:
+        """A call of the contract begins: from now on its questions share one time limit."""
+        self._deadline_s = time.perf_counter() + ATTEMPTS * (self._timeout_s + RESYNC_S)
+
+    def close(self) -> None:
+        """Give the port back. Safe to call twice."""
+        self._port.close()
+
+    def read(self, command: Read) -> tuple[int, ...]:
+        """Ask, and return the data of the answer.
+
+        Raises:
+            DriveConnectionError: no intact answer in time, or the port is gone.
+        """
+        request = self._requests.get(command.number)
+        if request is None:
+            request = self._requests[command.number] = read_packet(self._address, command)
+        size = command.reply_bytes
+        found = "nothing"
+        for _ in range(ATTEMPTS):
+            reply = self._ask(request, size)
+            if len(reply) == size and is_intact(request, reply):
+                return command.layout.unpack_from(reply)
+            found = _seen(reply, size)
+            if not self._resync():
+                break
+        raise self._no_answer(command.meaning, found)
+
+    def write(self, command: Write, *values: int) -> None:
+        """Tell, and wait for the acknowledgement. Told twice where the first was not acknowledged.
+
+        Raises:
+            DriveConnectionError: not acknowledged in time, or the port is gone.
+        """
+        packet = write_packet(self._address, command, *values)
+        found = "nothing"
+        for _ in range(ATTEMPTS):
+            reply = self._ask(packet, 1)
+            if reply == ACKNOWLEDGED:
+                return
+            found = f"{reply.hex()} instead of ff" if reply else "nothing"
+            if not self._resync():
+                break
+        raise self._no_answer(command.meaning, found)
+
+    def version(self) -> str:
+        """The text of command 21.
+
+        Raises:
+            DriveConnectionError: no intact answer in time, or the port is gone.
+        """
+        request = version_packet(self._address)
+        found = "nothing"
+        for _ in range(ATTEMPTS):
+            reply = self._ask_text(request)
+            if is_intact(request, reply):
+                return reply[: -CRC_BYTES - len(VERSION_END)].decode("ascii", "replace")
+            found = "nothing" if not reply else f"{len(reply)} bytes that are no answer of a RoboClaw"
+            if not self._resync():
+                break
+        raise self._no_answer("firmware version", found)
+
+    def _ask(self, packet: bytes, reply_bytes: int) -> bytes:
+        try:
+            self._port.write(packet)
+            reply: bytes = self._port.read(reply_bytes)
+        except (OSError, TypeError) as error:  # TypeError: pyserial, where the port was closed meanwhile
+            raise self._gone(error) from error
+        return reply
+
+    def _ask_text(self, request: bytes) -> bytes:
+        try:
+            self._port.write(request)
+            text: bytes = self._port.read_until(VERSION_END, LONGEST_VERSION_BYTES)
+            return text + self._port.read(CRC_BYTES) if text.endswith(VERSION_END) else text
+        except (OSError, TypeError) as error:
+            raise self._gone(error) from error
+
+    def _resync(self) -> bool:
+        """Let the controller forget half a packet, and forget half an answer; False where the time is up."""
+        time.sleep(RESYNC_S)
+        try:
+            self._port.reset_input_buffer()
+        except Exception as error:  # termios.error is no OSError
+            raise self._gone(error) from error
+        return time.perf_counter() < self._deadline_s
+
+    def _no_answer(self, meaning: str, found: str) -> DriveConnectionError:
+        return DriveConnectionError(
+            self._device,
+            f"{meaning}: found {found} within {self._timeout_s:g} s, asked {ATTEMPTS} times at most; check the cable, "
+            f"the power, the address ({self._address:#x}) and the baud rate",
+        )
+
+    def _gone(self, error: Exception) -> DriveConnectionError:
+        return DriveConnectionError(self._device, f"the port is gone ({error}); plug it in, then start again")
+
+
+def _seen(reply: bytes, wanted_bytes: int) -> str:
+    if not reply:
+        return "nothing"
+    if len(reply) < wanted_bytes:
+        return f"{len(reply)} of {wanted_bytes} bytes"
+    return "an answer with a wrong CRC"
+
+
+def _ports() -> str:
+    names = sorted(port.device for port in list_ports.comports())
+    return f"ports found here: {', '.join(names)}" if names else "no serial port was found here; plug it in"

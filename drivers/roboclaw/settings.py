@@ -1,0 +1,36 @@
+"""What has to be known of a RoboClaw before it is opened."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+BAUD_RATES = (2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800)
+WATCHDOG_STEP_S = 0.1  # command 14 counts in these
+
+
+@dataclass(frozen=True, slots=True)
+class RoboclawSettings:
+    """How to reach one motor of one controller.
+
+    Attributes:
+        port: serial port ("/dev/ttyACM0").
+        baud_rate: of the line; ignored on USB.
+        address: 0x80 .. 0x87.
+        motor: 1 or 2.
+        watchdog_s: silence after which the controller stops the motor [s], in steps of 0.1 s.
+        answer_timeout_s: longest wait for one answer [s].
+        slow_every: cycles between two questions for status, supply voltage or temperature, in turn.
+        velocity: "drive": command 18, one question more per cycle, filtered by the controller over a while that the
+            manual does not state; "none": left to the control loop, which derives it from the position.
+        current: "signed" where the controller reports the current with the sign of the motor's torque, "magnitude"
+            where it does not; then it takes the sign of the applied duty.
+    """
+
+    port: str
+    baud_rate: int = 115200
+    address: int = 0x80
+    motor: int = 1
+    watchdog_s: float = 0.2
+    answer_timeout_s: float = 0.05
+    slow_every: int = 4
+    velocity: Literal["drive", "none"] = "none"
+    current: Literal["signed", "magnitude"] = "signed"

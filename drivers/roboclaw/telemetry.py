@@ -1,0 +1,165 @@
+"""What a cycle asks the controller for, and the sample that comes of it.
+
+Position, applied PWM and current are asked for in every cycle; status, supply voltage and temperature change slowly
+and are asked for in turn. The values of one cycle are taken one after the other: each has its own age.
+"""
+
+import time
+from collections.abc import Callable
+from math import copysign, nan
+
+from drivers.contract import Ages, Sample, Status
+from drivers.errors import DriveConnectionError
+from drivers.joint import JointScale
+from drivers.roboclaw import commands
+from drivers.roboclaw.commands import DUTY_FULL, Read
+from drivers.roboclaw.encoder import EncoderCount
+from drivers.roboclaw.flags import FLAGS_16_BIT, FLAGS_32_BIT, Flag, faults
+from drivers.roboclaw.link import Link
+from drivers.roboclaw.settings import RoboclawSettings
+
+_CURRENT_A = 0.01  # one step of command 49
+_VOLTAGE_V = 0.1  # of command 24
+_TEMPERATURE_C = 0.1  # of command 82
+
+
+class Telemetry:
+    """Asks, scales and keeps what was asked for last. Probes at once what the controller measures.
+
+    Args:
+        link: open.
+        settings: which motor, and how often to ask for what.
+        joint: scales and signs.
+
+    Raises:
+        DriveConnectionError: the encoder, the applied PWM or the status is not answered.
+    """
+
+    def __init__(self, link: Link, settings: RoboclawSettings, joint: JointScale) -> None:
+        self._link, self._joint, self._motor = link, joint, settings.motor
+        self._channel = commands.CHANNELS[settings.motor]
+        self._index = self._channel.index
+        self._is_signed = settings.current == "signed"
+        self._reads_speed = settings.velocity == "drive"
+        self._slow_every = settings.slow_every
+        self._encoder = EncoderCount(link.read(self._channel.encoder)[0])
+        self._status, self._flags = _status_layout(link)
+        self.faults: list[str] = []
+        self.has_current = _answers(link, commands.CURRENTS)
+        self.has_supply = _answers(link, commands.SUPPLY)
+        self.has_temperature = _answers(link, commands.TEMPERATURE)
+        self._supply_v = self._temperature_c = nan
+        self._supply_at_s = self._temperature_at_s = self._status_at_s = time.perf_counter()
+        self._slow = self._slow_reads()
+        self._cycle = 0
+        for read in self._slow:
+            read()
+
+    @property
+    def measured(self) -> frozenset[str]:
+        """Names of the `Sample` fields that are measured."""
+        optional = {
+            "velocity_rad_s": self._reads_speed,
+            "current_a": self.has_current,
+            "supply_v": self.has_supply,
+            "temperature_c": self.has_temperature,
+        }
+        return frozenset({"time_s", "position_rad", "duty"} | {name for name, there in optional.items() if there})
+
+    @property
+    def resolution(self) -> dict[str, float]:
+        """Smallest step of each quantity, in its unit."""
+        steps = {
+            "position_rad": self._joint.count_rad,
+            "velocity_rad_s": self._joint.count_rad,
+            "duty": 1.0 / DUTY_FULL,
+            "current_a": _CURRENT_A,
+            "supply_v": _VOLTAGE_V,
+            "temperature_c": _TEMPERATURE_C,
+        }
+        return {name: step for name, step in steps.items() if name in self.measured}
+
+    def sample(self, status: Status) -> Sample:
+        """Ask, and return what was found; `faults` is up to date afterwards where it was its turn.
+
+        Raises:
+            DriveConnectionError: no valid answer in time.
+        """
+        link, channel, joint, index = self._link, self._channel, self._joint, self._index
+        position_rad = joint.position_rad(self._encoder.follow(link.read(channel.encoder)[0]))
+        position_at_s = time.perf_counter()
+        velocity_rad_s, velocity_at_s = nan, position_at_s
+        if self._reads_speed:
+            velocity_rad_s = joint.velocity_rad_s(link.read(channel.speed)[0])
+            velocity_at_s = time.perf_counter()
+        duty = joint.motor_sign * link.read(commands.APPLIED_DUTY)[index] / DUTY_FULL
+        duty_at_s = time.perf_counter()
+        current_a = self._current_a(duty) if self.has_current else nan
+        self._cycle += 1
+        if self._cycle % self._slow_every == 0:
+            self._slow[self._cycle // self._slow_every % len(self._slow)]()
+        now_s = time.perf_counter()
+        ages = Ages(
+            now_s - position_at_s,
+            now_s - velocity_at_s if self._reads_speed else 0.0,
+            now_s - duty_at_s,
+            now_s - duty_at_s if self.has_current else 0.0,
+            now_s - self._supply_at_s if self.has_supply else 0.0,
+            now_s - self._temperature_at_s if self.has_temperature else 0.0,
+            now_s - self._status_at_s,
+        )
+        return Sample(
+            position_at_s, ages.position_s, position_rad, velocity_rad_s, duty, current_a,
+            self._supply_v, self._temperature_c, status, ages,
+        )  # fmt: skip
+
+    def read_status(self) -> list[str]:
+        """Ask for the status now. Returns the faults, by name."""
+        self.faults = faults(self._link.read(self._status)[0], self._flags, self._motor)
+        self._status_at_s = time.perf_counter()
+        return self.faults
+
+    def _current_a(self, duty: float) -> float:
+        reported_a = self._link.read(commands.CURRENTS)[self._index] * _CURRENT_A
+        if self._is_signed:
+            return self._joint.motor_sign * reported_a
+        return copysign(reported_a, duty) if reported_a else 0.0
+
+    def _read_supply(self) -> None:
+        self._supply_v = self._link.read(commands.SUPPLY)[0] * _VOLTAGE_V
+        self._supply_at_s = time.perf_counter()
+
+    def _read_temperature(self) -> None:
+        self._temperature_c = self._link.read(commands.TEMPERATURE)[0] * _TEMPERATURE_C
+        self._temperature_at_s = time.perf_counter()
+
+    def _slow_reads(self) -> list[Callable[[], object]]:
+        """The slow questions in turn; the status twice as often as the others."""
+        others: list[Callable[[], object]] = []
+        if self.has_supply:
+            others.append(self._read_supply)
+        if self.has_temperature:
+            others.append(self._read_temperature)
+        return [read for other in others for read in (self.read_status, other)] or [self.read_status]
+
+
+def _status_layout(link: Link) -> tuple[Read, tuple[Flag, ...]]:
+    """The layout of the status word: four bytes, or two from older firmware."""
+    try:
+        link.begin()
+        link.read(commands.STATUS_32_BIT)
+    except DriveConnectionError:
+        link.begin()
+        link.read(commands.STATUS_16_BIT)
+        return commands.STATUS_16_BIT, FLAGS_16_BIT
+    return commands.STATUS_32_BIT, FLAGS_32_BIT
+
+
+def _answers(link: Link, command: Read) -> bool:
+    """Whether the controller knows a command; one that it does not know is met with silence."""
+    try:
+        link.begin()
+        link.read(command)
+    except DriveConnectionError:
+        return False
+    return True

@@ -1,0 +1,52 @@
+"""The [drive] section of bench.toml, and the drive that comes of it."""
+
+import pytest
+
+from bench.configuration import default_configuration, parse_configuration
+from bench.drive_factory import is_simulated, make_equipment, seed_of
+from bench.errors import ConfigurationError
+from bench.technician import PersonTechnician
+from drivers.errors import DriveConnectionError
+
+ROBOCLAW = {"kind": "roboclaw", "port": "/dev/absent", "motor_sign": -1, "watchdog_s": 0.3}
+
+
+def configured(drive, **rig):
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    return parse_configuration(values | {"drive": drive, "rig": values["rig"] | rig}, "bench.toml")
+
+
+def test_kind_chooses_the_drive():
+    configuration = configured(ROBOCLAW)
+    assert not is_simulated(configuration)
+    assert seed_of(configuration) is None
+    drive, technician = make_equipment(configuration, lambda _sentence: True)
+    assert isinstance(technician, PersonTechnician)
+    assert drive.describe().device == "/dev/absent address 0x80 M1"
+    assert drive.describe().watchdog_s == pytest.approx(0.3)
+    with pytest.raises(DriveConnectionError, match="could not open port /dev/absent"):
+        drive.open(0.01)
+
+
+def test_the_simulated_drive_has_a_seed():
+    assert seed_of(default_configuration()) == 1
+
+
+@pytest.mark.parametrize(
+    ("drive", "message"),
+    [
+        ({"kind": "roboclaws"}, r"drive: found .*roboclaws.*; kind should be one of sim, roboclaw"),
+        ({"kind": "roboclaw"}, r"bench.toml: drive.port: missing"),
+        (ROBOCLAW | {"address": 5}, r"address: found 5; should be greater than or equal to 128"),
+        (ROBOCLAW | {"seed": 3}, r"seed: unknown key"),
+        (ROBOCLAW | {"encoder_sign": 2}, r"encoder_sign: found 2; should be 1 or -1"),
+    ],
+)
+def test_a_section_that_is_not_as_wanted(drive, message):
+    with pytest.raises(ConfigurationError, match=message):
+        configured(drive)
+
+
+def test_a_real_drive_needs_to_know_the_gear():
+    with pytest.raises(ConfigurationError, match=r"needs sensor.counts_per_turn and gear.ratio"):
+        make_equipment(configured(ROBOCLAW, gear={"backlash_rad": 0.01}))
