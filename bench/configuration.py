@@ -10,6 +10,7 @@ from pydantic import Field, ValidationError
 from bench.drives.settings import DriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
 from bench.errors import ConfigurationError
+from bench.friction import FrictionSettings
 from bench.limits import Limits
 from bench.quantities import quantity
 from bench.rig import Rig, Section
@@ -69,6 +70,9 @@ class BenchConfiguration(Section):
     servo: ServoSettings = ServoSettings()
     search: SearchSettings = SearchSettings()
     store: StoreSettings = StoreSettings()
+    friction: FrictionSettings | None = Field(
+        default=None, description="Friction curves; without them those of the calibration in use"
+    )
 
 
 def read_configuration(path: Path) -> BenchConfiguration:

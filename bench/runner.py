@@ -4,6 +4,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from bench.calibration import with_friction
 from bench.clock import Clock, VirtualClock, WallClock
 from bench.configuration import BenchConfiguration
 from bench.drive_factory import is_simulated, make_equipment, seed_of
@@ -162,16 +163,17 @@ class Runner:
             raise BusyError(f"{name} is running; wait for its end, or stop it")
 
     def _launch(self, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None) -> int:
+        configuration = with_friction(self._store, self.configuration)
         try:
-            prepared = self._prepare(run, kind, pace)
+            prepared = self._prepare(configuration, run, kind, pace)
         except (BenchError, DriveError) as error:
             # failed starts are on record too
-            run.experiment_id = self._begin(run.request, run.request.parameters)
+            run.experiment_id = self._begin(configuration, run.request, run.request.parameters)
             run.end("refused" if isinstance(error, BenchError) else "failed", str(error))
             self._store.finish_experiment(run.experiment_id, run.outcome, run.reason, {})
             raise
         try:
-            run.experiment_id = self._begin(run.request, prepared.parameters.model_dump(mode="json"))
+            run.experiment_id = self._begin(configuration, run.request, prepared.parameters.model_dump(mode="json"))
         except BaseException:
             prepared.equipment.drive.close()
             raise
@@ -181,9 +183,10 @@ class Runner:
         self._thread.start()
         return run.experiment_id
 
-    def _prepare(self, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None) -> Prepared:
+    def _prepare(
+        self, configuration: BenchConfiguration, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None
+    ) -> Prepared:
         """Check everything that can be checked before motion, and open the drive."""
-        configuration = self.configuration
         clock = WallClock() if self._is_real_time(pace) else VirtualClock()
         parameters = parse_parameters(kind, run.request.parameters)
         kind.refuse(parameters, configuration)
@@ -216,8 +219,8 @@ class Runner:
             raise ParameterError("pace is 'fast'; a real drive runs in real time")
         return pace == "real-time" or not simulated
 
-    def _begin(self, request: Request, parameters: dict[str, Any]) -> int:
-        configuration, drive = self.configuration, self._description
+    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: dict[str, Any]) -> int:
+        drive = self._description
         simulated = is_simulated(configuration) if drive is None else drive.simulated
         return self._store.begin_experiment(
             request.kind,

@@ -35,6 +35,25 @@ def check_points(speed_rad_s: ArrayLike, current_a: ArrayLike, stribeck: bool = 
     return speed, current
 
 
+def check_accelerations(acceleration_rad_s2: ArrayLike, speed: FloatArray) -> FloatArray:
+    """The accelerations as an array of the speeds' shape.
+
+    Raises:
+        CalibrationError: another shape, or one is not finite.
+    """
+    acceleration = np.asarray(acceleration_rad_s2, dtype=np.float64)
+    if acceleration.shape != speed.shape:
+        raise CalibrationError(
+            f"accelerations have shape {acceleration.shape} and speeds {speed.shape}; allowed is one for each speed"
+        )
+    wrong = np.flatnonzero(~np.isfinite(acceleration))
+    if len(wrong):
+        raise CalibrationError(
+            f"acceleration of point {wrong[0]} is {acceleration[wrong[0]]} rad/s2; allowed is a finite number"
+        )
+    return acceleration
+
+
 def _check_count(speed: FloatArray, least: int) -> None:
     if len(speed) < least:
         raise CalibrationError(

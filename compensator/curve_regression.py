@@ -16,44 +16,50 @@ SHAPES = (0.3, 4.0)  # allowed ds; the literature has 0.5 .. 2
 STARTS = tuple((share, shape) for share in (0.005, 0.02, 0.06, 0.2) for shape in (1.0, 2.0))
 SCALE_PASSES = 5
 SOFTNESS = 2.0  # scale of the loss over the spread: 95 % as efficient as least squares where there are no outliers
-PLAIN = np.array([0, 4, 5])  # parameters without the Stribeck shape
+PLAIN = (0, 4, 5)  # parameters without the Stribeck shape
+WHOLE = (0, 1, 2, 3, 4, 5)
+INERTIA = 6  # fitted where accelerations are known
+COUNT = 7
 
 
 class Solution(NamedTuple):
     """What was found.
 
     Attributes:
-        p: Fc, Fs - Fc [A], ln vs [ln rad/s], ln ds, b [A s/rad], offset [A].
-        covariance: of p, shape (6, 6); 0 for what was not fitted or lies at a bound.
-        free: shape (6,); whether it was fitted and lies within its bounds.
+        p: Fc, Fs - Fc [A], ln vs [ln rad/s], ln ds, b [A s/rad], offset [A], inertia [A s2/rad].
+        covariance: of p, shape (7, 7); 0 for what was not fitted or lies at a bound.
+        free: shape (7,); whether it was fitted and lies within its bounds.
         scatter_a: standard deviation of the bulk of the residuals.
+        fitted: number of parameters that were fitted.
     """
 
     p: FloatArray
     covariance: FloatArray
     free: NDArray[np.bool_]
     scatter_a: float
+    fitted: int
 
 
 class _Problem:
     """Residuals of eq. (2) and their derivatives, as functions of the parameters that are fitted."""
 
-    def __init__(self, speed: FloatArray, current: FloatArray, stribeck: bool) -> None:
+    def __init__(self, speed: FloatArray, current: FloatArray, acceleration: FloatArray, stribeck: bool) -> None:
         self.magnitude, self.direction, self.current = np.abs(speed), np.sign(speed), current
+        self.acceleration, quickest = acceleration, float(np.max(np.abs(acceleration)))
         self.fastest, self.largest = float(np.max(self.magnitude)), float(np.max(np.abs(current)))
-        self.fitted = np.arange(6) if stribeck else PLAIN
-        per_speed = self.largest / self.fastest
-        self.scales = np.array([self.largest, self.largest, 1.0, 1.0, per_speed, self.largest])
-        self.low = np.array([0.0, 0.0, np.log(1e-3 * self.fastest), np.log(SHAPES[0]), 0.0, -np.inf])
-        self.high = np.array([np.inf, np.inf, np.log(self.fastest), np.log(SHAPES[1]), np.inf, np.inf])
+        self.fitted = np.array([*(WHOLE if stribeck else PLAIN), *((INERTIA,) if quickest > 0.0 else ())])
+        per_speed, per_acceleration = self.largest / self.fastest, self.largest / (quickest or 1.0)
+        self.scales = np.array([self.largest, self.largest, 1.0, 1.0, per_speed, self.largest, per_acceleration])
+        self.low = np.array([0.0, 0.0, np.log(1e-3 * self.fastest), np.log(SHAPES[0]), 0.0, -np.inf, 0.0])
+        self.high = np.array([np.inf, np.inf, np.log(self.fastest), np.log(SHAPES[1]), np.inf, np.inf, np.inf])
 
     def start(self, speed_share: float, shape: float) -> FloatArray:
         speed, viscous = np.log(speed_share * self.fastest), 0.3 * self.largest / self.fastest
-        rise = 0.2 * self.largest if len(self.fitted) == 6 else 0.0
-        return np.array([0.5 * self.largest, rise, speed, np.log(shape), viscous, 0.0])
+        rise = 0.2 * self.largest if 1 in self.fitted else 0.0
+        return np.array([0.5 * self.largest, rise, speed, np.log(shape), viscous, 0.0, 0.0])
 
     def whole(self, fitted: FloatArray) -> FloatArray:
-        """All six parameters."""
+        """All parameters, fitted or not."""
         p = self.start(1.0, 2.0)
         p[self.fitted] = fitted
         return p
@@ -61,7 +67,8 @@ class _Problem:
     def residuals(self, fitted: FloatArray) -> FloatArray:
         p = self.whole(fitted)
         bump = p[1] * np.exp(-self._power(p))
-        return np.asarray(self.direction * (p[0] + bump + p[4] * self.magnitude) + p[5] - self.current)
+        friction = self.direction * (p[0] + bump + p[4] * self.magnitude)
+        return np.asarray(friction + p[5] + p[INERTIA] * self.acceleration - self.current)
 
     def derivatives(self, fitted: FloatArray) -> FloatArray:
         p = self.whole(fitted)
@@ -69,16 +76,17 @@ class _Problem:
         bump, shape = np.exp(-power), np.exp(p[3])
         steep = p[1] * bump * power * shape
         columns = [np.ones_like(power), bump, steep, -steep * (np.log(self.magnitude) - p[2]), self.magnitude]
-        return np.column_stack([*(self.direction * column for column in columns), np.ones_like(power)])[:, self.fitted]
+        along = [self.direction * column for column in columns]
+        return np.column_stack([*along, np.ones_like(power), self.acceleration])[:, self.fitted]
 
     def _power(self, p: FloatArray) -> FloatArray:
         # beyond 700 the exponential is 0 in any case, and the power times it has to be 0, too
         return np.asarray(np.minimum(np.exp(np.exp(p[3]) * (np.log(self.magnitude) - p[2])), 700.0))
 
 
-def solve(speed: FloatArray, current: FloatArray, stribeck: bool) -> Solution:
-    """Fit eq. (2) and an offset to checked points, shapes (n,)."""
-    problem = _Problem(speed, current, stribeck)
+def solve(speed: FloatArray, current: FloatArray, stribeck: bool, acceleration: FloatArray | None = None) -> Solution:
+    """Fit eq. (2), an offset and, where the points still accelerate, an inertia to checked points, shapes (n,)."""
+    problem = _Problem(speed, current, np.zeros_like(speed) if acceleration is None else acceleration, stribeck)
     starts = [problem.start(*start) for start in (STARTS if stribeck else STARTS[:1])]
     scale_a = 0.02 * problem.largest
     best = min((_run(problem, start[problem.fitted], scale_a) for start in starts), key=lambda found: found.cost)
@@ -88,8 +96,8 @@ def solve(speed: FloatArray, current: FloatArray, stribeck: bool) -> Solution:
         best = _run(problem, best.x, scale_a)
     p = problem.whole(best.x)
     inside = np.minimum(p - problem.low, problem.high - p) > 1e-6 * problem.scales
-    free = np.isin(np.arange(6), problem.fitted) & inside
-    return Solution(p, _covariance(problem, best, free, scale_a), free, spread_a)
+    free = np.isin(np.arange(COUNT), problem.fitted) & inside
+    return Solution(p, _covariance(problem, best, free, scale_a), free, spread_a, len(problem.fitted))
 
 
 def _run(problem: _Problem, start: FloatArray, scale_a: float) -> OptimizeResult:
@@ -119,7 +127,7 @@ def _covariance(problem: _Problem, best: OptimizeResult, free: NDArray[np.bool_]
     mean_slope = float(np.mean(slope))
     inflation = 1.0 + parameters / count * float(np.var(slope)) / mean_slope**2
     variance = inflation**2 * float(np.sum(influence_a**2)) / (count - parameters) / mean_slope**2
-    covariance = np.zeros((6, 6))
+    covariance = np.zeros((COUNT, COUNT))
     # pinv: with the Stribeck rise at 0 its speed and shape move nothing
     covariance[np.ix_(free, free)] = variance * np.linalg.pinv(columns.T @ columns, rcond=1e-14, hermitian=True)
     return covariance

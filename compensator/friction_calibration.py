@@ -1,10 +1,14 @@
 """General Kinetic Friction from steady points of a balanced joint (paper, sections 2.2, 3.2.1, Figs 2, 3).
 
     I = sgn(w) (Fc + (Fs - Fc) exp(-|w/vs|^ds) + b |w|) + offset        (2)
+        [+ J dw/dt]
 
 Robust bounded regression: soft-L1 loss, its scale from the median absolute residual. The offset is what differs between
 the directions (an arm not quite balanced, a current sensor's zero, unequal Coulomb friction); in one direction alone it
 could not be told from Coulomb friction. It is no part of the curve.
+
+J, in A s2/rad, is for points whose speed is not quite steady: within a finite travel a heavy arm is not. What little it
+still gains is worth J dw/dt, and without it that share is taken for friction. No part of the curve either.
 """
 
 from dataclasses import dataclass
@@ -14,7 +18,7 @@ from numpy.typing import ArrayLike
 from scipy.stats import t as student_t
 
 from compensator import motor
-from compensator.calibration_points import check_points
+from compensator.calibration_points import check_accelerations, check_points
 from compensator.curve_regression import Solution, solve
 from compensator.interval import CONFIDENCE, Interval
 from compensator.kinetic_friction import KineticFriction
@@ -31,7 +35,8 @@ class FrictionFit:
 
     Attributes:
         curve: eq. (2).
-        parameters: 95 % interval of each of its parameters, and of `offset_a`, by name.
+        parameters: 95 % interval of each of its parameters, of `offset_a` and, where accelerations were given, of
+            `inertia_a_s2_rad`, by name.
         scatter_a: standard deviation of the points about the curve, outliers aside [A].
         points: number of them.
     """
@@ -42,22 +47,33 @@ class FrictionFit:
     points: int
 
 
-def fit(speed_rad_s: ArrayLike, current_a: ArrayLike, stribeck: bool = True) -> FrictionFit:
+NO_PART_OF_THE_CURVE = ("offset_a", "inertia_a_s2_rad")
+
+
+def fit(
+    speed_rad_s: ArrayLike,
+    current_a: ArrayLike,
+    stribeck: bool = True,
+    acceleration_rad_s2: ArrayLike | None = None,
+) -> FrictionFit:
     """Fit one curve to the steady points of one load.
 
     Args:
         speed_rad_s: steady speeds, shape (n,), both signs, none 0; of the motor shaft if a look-up is to give duties.
         current_a: motor current at each, shape (n,).
         stribeck: False leaves out static friction and the Stribeck shape (Fs = Fc): for points without low speeds.
+        acceleration_rad_s2: of the same shaft, shape (n,), where the speeds are not quite steady. Sign as the speed's
+            where the joint gains speed.
 
     Raises:
         CalibrationError: too few points, not finite, at rest, one direction only, or (with `stribeck`) no low speeds.
     """
     speed, current = check_points(speed_rad_s, current_a, stribeck)
-    solution = solve(speed, current, stribeck)
-    quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, len(speed) - len(solution.p)))
+    acceleration = None if acceleration_rad_s2 is None else check_accelerations(acceleration_rad_s2, speed)
+    solution = solve(speed, current, stribeck, acceleration)
+    quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, len(speed) - solution.fitted))
     parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
-    curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name != "offset_a"})
+    curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name not in NO_PART_OF_THE_CURVE})
     return FrictionFit(curve, parameters, solution.scatter_a, len(speed))
 
 
@@ -71,11 +87,11 @@ def fit_duty(
 
 def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dict[str, Interval]:
     """Intervals of the parameters by name, in the order of `KineticFriction`, the offset last."""
-    coulomb_a, rise_a, log_speed, log_shape, viscous, offset_a = solution.p
+    coulomb_a, rise_a, log_speed, log_shape, viscous, offset_a, inertia = solution.p
     width = quantile * np.sqrt(np.diag(solution.covariance))
     static_width = quantile * np.sqrt(np.sum(solution.covariance[:2, :2]))
     told = bool(solution.free[1]) and rise_a > width[1]
-    return {
+    found = {
         "coulomb_a": _linear(coulomb_a, width[0], solution.free[0]),
         "static_a": _linear(coulomb_a + rise_a, static_width, True)
         if told
@@ -85,6 +101,7 @@ def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dic
         "viscous_a_s_rad": _linear(viscous, width[4], solution.free[4]),
         "offset_a": Interval(float(offset_a), float(offset_a - width[5]), float(offset_a + width[5])),
     }
+    return found | ({"inertia_a_s2_rad": _linear(inertia, width[6], True)} if solution.free[6] else {})
 
 
 def _linear(value: float, width: float, free: bool) -> Interval:

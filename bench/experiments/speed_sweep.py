@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from functools import partial
-from math import isnan
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field, model_validator
@@ -13,7 +12,8 @@ from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.load_sweep import PAPER_LOADS_KG, Load
 from bench.experiments.refusal import refuse_currents, refuse_load, refuse_speed
-from bench.experiments.saturation import Ending, Stroke, next_run_up, remaining_rad_s
+from bench.experiments.saturation import Ending, next_run_up, remaining_rad_s
+from bench.experiments.steady_speed import steady_speed_results
 from bench.experiments.stroke import MARGIN_RAD, OVERSPEED, Held, Strokes, StrokeSettings, Window, refuse_travel
 from bench.loop import Procedure
 from bench.quantities import quantity
@@ -83,30 +83,23 @@ def measure_steady_speed(
 ) -> Procedure:
     """The procedure: strokes until the speed is saturated, then back to angle 0.
 
-    Results (along the direction: positive where they go with it):
-        speed_rad_s, motor_speed_rad_s: steady speed of the joint, of the motor shaft; 0 where it stalled.
-        remaining_speed_rad_s: speed still to come, of the joint; None where not known.
-        current_a: of the motor, measured or by eq. (3).
-        measured_current_a: as the drive measures it; None where it does not.
-        duty, supply_v: mean.
-        window_s, strokes: length of the window measured, strokes that it took.
-        saturated: True where the speed is steady within the tolerance.
-        ending: in words.
+    Results: `steady_speed.steady_speed_results`.
     """
     sign = DIRECTIONS[direction]
     strokes = Strokes(configuration, stroke_settings(parameters, configuration), step.held, step.level, sign)
     yield from strokes.begin()
-    shown: list[Stroke] = []
+    windows: list[Window] = []
     run_up = step.level if step.held is Held.SPEED else parameters.top_speed_rad_s / 2.0
     while True:
-        window = yield from strokes.run(run_up)
-        shown.append(window.stroke)
-        verdict = _verdict(step, shown, window, parameters)
+        windows.append((yield from strokes.run(run_up)))
+        verdict = _verdict(step, windows, parameters)
         if isinstance(verdict, Ending):
             break
         run_up = verdict
     yield from strokes.end()
-    return _results(window, shown, verdict, _remaining(step, shown, window), configuration)
+    ratio = configuration.rig.gear.ratio or 1.0  # a joint without one is refused before
+    remaining_rad_s = _remaining(step, windows)
+    return steady_speed_results(windows, verdict, remaining_rad_s, step.held, ratio, parameters.window_s)
 
 
 def stroke_settings(parameters: SpeedSweepParameters, configuration: BenchConfiguration) -> StrokeSettings:
@@ -122,46 +115,24 @@ def stroke_settings(parameters: SpeedSweepParameters, configuration: BenchConfig
     )
 
 
-def _verdict(step: Step, shown: list[Stroke], window: Window, parameters: SpeedSweepParameters) -> Ending | float:
+def _verdict(step: Step, windows: list[Window], parameters: SpeedSweepParameters) -> Ending | float:
+    shown = [window.stroke for window in windows]
     if step.held is Held.SPEED:
-        if window.stroke.stalled:
+        if shown[-1].stalled:
             return Ending.STALLED
         # what accelerates the arm is taken for friction, which is no less at low speed: not a share of the speed held
-        steady = abs(_remaining(step, shown, window)) <= parameters.tolerance * parameters.top_speed_rad_s
+        steady = abs(_remaining(step, windows)) <= parameters.tolerance * parameters.top_speed_rad_s
         return Ending.SATURATED if steady else Ending.NOT_SATURATED
     verdict = next_run_up(shown, parameters.tolerance, parameters.top_speed_rad_s)
     out_of_strokes = not isinstance(verdict, Ending) and len(shown) >= parameters.strokes
     return Ending.NOT_SATURATED if out_of_strokes else verdict
 
 
-def _remaining(step: Step, shown: list[Stroke], window: Window) -> float:
+def _remaining(step: Step, windows: list[Window]) -> float:
     """Speed still to come; where the servo holds the speed, what it would change within a second."""
     if step.held is Held.SPEED:
-        return window.stroke.acceleration_rad_s2
-    return remaining_rad_s(shown)
-
-
-def _results(
-    window: Window, shown: list[Stroke], ending: Ending, remaining: float, configuration: BenchConfiguration
-) -> dict[str, Any]:
-    ratio = configuration.rig.gear.ratio or 1.0  # a joint without one is refused before
-    return {
-        "speed_rad_s": window.stroke.speed_rad_s,
-        "motor_speed_rad_s": window.stroke.speed_rad_s * ratio,
-        "remaining_speed_rad_s": _known(remaining),
-        "current_a": window.current_a,
-        "measured_current_a": _known(window.measured_current_a),
-        "duty": window.duty,
-        "supply_v": _known(window.supply_v),
-        "window_s": window.seconds,
-        "strokes": len(shown),
-        "saturated": ending is Ending.SATURATED,
-        "ending": ending.value,
-    }
-
-
-def _known(value: float) -> float | None:
-    return None if isnan(value) else value
+        return windows[-1].stroke.acceleration_rad_s2
+    return remaining_rad_s([window.stroke for window in windows])
 
 
 def _plan(parameters: SpeedSweepParameters, configuration: BenchConfiguration) -> list[TrialPlan]:

@@ -1,7 +1,7 @@
 """The store: experiments, trials, samples, studies and models in a database."""
 
-from bench.store.records import Event, Experiment, ModelRow, StudyRow, Trial
+from bench.store.records import CalibrationRow, Event, Experiment, ModelRow, StudyRow, Trial
 from bench.store.store import Store
 from bench.store.trial_writer import TrialWriter
 
-__all__ = ["Event", "Experiment", "ModelRow", "Store", "StudyRow", "Trial", "TrialWriter"]
+__all__ = ["CalibrationRow", "Event", "Experiment", "ModelRow", "Store", "StudyRow", "Trial", "TrialWriter"]

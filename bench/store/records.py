@@ -6,7 +6,7 @@ from typing import Any
 
 from compensator.lab.recording import Condition, Event
 
-__all__ = ["OUTCOMES", "SOURCES", "Condition", "Event", "Experiment", "ModelRow", "StudyRow", "Trial"]
+__all__ = ["OUTCOMES", "SOURCES", "CalibrationRow", "Condition", "Event", "Experiment", "ModelRow", "StudyRow", "Trial"]
 
 OUTCOMES = ("running", "completed", "stopped", "tripped", "failed", "interrupted", "refused")
 SOURCES = ("simulated", "real", "imported")
@@ -83,3 +83,28 @@ class ModelRow:
     effects: list[str]
     result: dict[str, Any]
     created_utc: datetime
+
+
+@dataclass(frozen=True, slots=True)
+class CalibrationRow:
+    """Friction curves of one rig, and where they come from.
+
+    Attributes:
+        source: that of the experiments, one of `SOURCES`.
+        rig, drive: that they hold for; the drive is {} where it is not known.
+        provenance: of the software that fitted them.
+        result: see `bench.calibration.calibrate`.
+        chosen_utc: when it was last named as the one to use; None: never, or taken back.
+    """
+
+    id: int
+    note: str
+    source: str
+    rig: dict[str, Any]
+    drive: dict[str, Any]
+    provenance: dict[str, Any]
+    experiment_ids: list[int]
+    trial_ids: list[int]
+    result: dict[str, Any]
+    created_utc: datetime
+    chosen_utc: datetime | None

@@ -161,3 +161,20 @@ MODEL = Table(
     Index(None, "study_id"),
     Index(None, "parent_id"),
 )
+
+# the experiments and trials behind it are named, not referred to: what was found outlives them
+CALIBRATION = Table(
+    "calibration",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("note", Text, nullable=False),
+    Column("source", Text, nullable=False),  # as that of its experiments
+    Column("rig", JSON, nullable=False),
+    Column("drive", JSON, nullable=False),
+    Column("provenance", JSON, nullable=False),
+    Column("experiment_ids", JSON, nullable=False),
+    Column("trial_ids", JSON, nullable=False),
+    Column("result", JSON, nullable=False),
+    Column("created_utc", UtcDateTime, nullable=False),
+    Column("chosen_utc", UtcDateTime, nullable=True),  # when it was last named as the one to use
+)

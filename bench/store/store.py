@@ -7,6 +7,7 @@ from typing import Any, Self
 
 from bench.store import experiments, samples, studies, trials
 from bench.store.backend import Claim
+from bench.store.calibrations import Calibrations
 from bench.store.conditions import Wanted
 from bench.store.database import Database
 from bench.store.errors import StoreError, StoreValueError
@@ -29,6 +30,7 @@ class Store:
 
     def __init__(self, database: Database) -> None:
         self._database = database
+        self.calibrations = Calibrations(database)
         self._owner: Claim | None = None
 
     @classmethod

@@ -1,0 +1,159 @@
+"""A calibration out of experiments in the store: fitted, and kept with all that it was made from."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from math import sin
+from typing import Any
+
+from bench.calibration.curves import friction_fits, inertia_of
+from bench.calibration.motor_constants import identify_motor
+from bench.calibration.points import FrictionPoint, Row, friction_points
+from bench.calibration.samples import points_of_recording
+from bench.calibration.selection import drive_of_experiment
+from bench.provenance import software
+from bench.rig import Rig
+from bench.store import Experiment, Store, Trial
+from bench.store.json_text import plain
+from compensator.errors import CalibrationError
+from compensator.friction_calibration import FrictionFit
+
+UPRIGHT = 0.1  # |sin| of an angle below which gravity has no moment worth the name
+FROM_SEARCH = "zero-speed search at angle 0"
+FROM_CURVE = "static friction of the curve"
+
+
+def calibrate(store: Store, experiment_ids: Sequence[int], stribeck: bool = True, note: str = "") -> int:
+    """Fit and keep a calibration. Returns its id.
+
+    Args:
+        store: holds the experiments, and will hold the calibration.
+        experiment_ids: speed sweeps, or imported trials of the balanced joint; and load sweeps, whose zero-speed
+            searches at angle 0 give the F_load of each load. All of one rig and one drive.
+        stribeck: False leaves out static friction: for trials without low speeds.
+        note: kept with it.
+
+    Raises:
+        NotFoundError: no such experiment.
+        CalibrationError: the experiments differ in rig, drive or source, or cannot carry two friction curves.
+    """
+    experiments = [store.experiment(one) for one in dict.fromkeys(experiment_ids)]
+    if not experiments:
+        raise CalibrationError("there are 0 experiments to calibrate from; name a speed sweep")
+    _check_alike(experiments)
+    trials = [trial for one in experiments for trial in store.trials(one.id) if trial.outcome == "completed"]
+    rig, first = Rig.model_validate(experiments[0].rig), experiments[0]
+    result, used = fit_trials(store, trials, rig, stribeck)
+    return store.calibrations.add(
+        note=note,
+        source=first.source,
+        rig=first.rig,
+        drive=drive_of_experiment(first),
+        provenance={"software": software()},
+        experiment_ids=[one.id for one in experiments],
+        trial_ids=used,
+        result=plain(result),
+    )
+
+
+def fit_trials(
+    store: Store, trials: Sequence[Trial], rig: Rig, stribeck: bool = True
+) -> tuple[dict[str, Any], list[int]]:
+    """What trials tell: curves, points, motor constants as JSON-able values; and the ids of the trials used.
+
+    Raises:
+        CalibrationError: they cannot carry two friction curves.
+    """
+    rows: list[Row] = [
+        {**trial.conditions, **trial.results, "trial_id": trial.id}
+        for trial in trials
+        if "motor_speed_rad_s" in trial.results
+    ]
+    points = _points(store, trials, rows, rig)
+    if len(points) < 2:
+        raise CalibrationError(
+            f"the trials show the balanced joint in motion under {len(points)} loads; allowed is two or more. Run a "
+            "speed sweep over more loads"
+        )
+    fits = friction_fits(points, stribeck)
+    searched = _f_loads(trials)
+    used = {one.trial_id for found in points.values() for one in found if one.trial_id is not None}
+    used |= {trial_id for _, ids in searched.values() for trial_id in ids}
+    result = {
+        "stribeck": stribeck,
+        "curves": [_curve(load_kg, fits[load_kg], searched) for load_kg in points],
+        "points": [_point(one, inertia_of(fits[one.load_kg])) for found in points.values() for one in found],
+        "motor": _motor(rows),
+    }
+    return result, sorted(used)
+
+
+def _check_alike(experiments: Sequence[Experiment]) -> None:
+    first = experiments[0]
+    for other in experiments[1:]:
+        for name, one, two in (
+            ("rig", first.rig, other.rig),
+            ("drive", drive_of_experiment(first), drive_of_experiment(other)),
+            ("source", first.source, other.source),
+        ):
+            if one != two:
+                raise CalibrationError(
+                    f"the {name} of experiment {other.id} differs from that of experiment {first.id}; allowed is the "
+                    "same: a calibration holds for one joint. Calibrate them apart"
+                )
+
+
+def _points(
+    store: Store, trials: Sequence[Trial], rows: Sequence[Row], rig: Rig
+) -> Mapping[float, Sequence[FrictionPoint]]:
+    """From the results of trials where they have them, else from their samples."""
+    known = {row["trial_id"] for row in rows}
+    recorded = [trial for trial in trials if trial.id not in known and trial.conditions.get("balanced") is True]
+    points: dict[float, list[FrictionPoint]] = defaultdict(list)
+    if rows or not recorded:
+        points |= friction_points(rows)
+    for trial in recorded:
+        for one in points_of_recording(store.recording(trial.id), rig, trial.id):
+            points[one.load_kg].append(one)
+    return {load_kg: points[load_kg] for load_kg in sorted(points) if points[load_kg]}
+
+
+def _f_loads(trials: Sequence[Trial]) -> dict[float, tuple[float, list[int]]]:
+    """Mean F_load [A] of the searches at angle 0 under each load, and the trials that it is from."""
+    found: dict[float, list[tuple[float, int]]] = defaultdict(list)
+    for trial in trials:
+        friction_a, angle_rad = trial.results.get("friction_current_a"), trial.conditions.get("angle_rad")
+        if friction_a is not None and isinstance(angle_rad, float) and abs(sin(angle_rad)) < UPRIGHT:
+            found[float(trial.conditions["load_kg"])].append((friction_a, trial.id))
+    return {
+        load_kg: (sum(friction_a for friction_a, _ in each) / len(each), [trial_id for _, trial_id in each])
+        for load_kg, each in found.items()
+    }
+
+
+def _curve(load_kg: float, fit: FrictionFit, searched: Mapping[float, tuple[float, list[int]]]) -> dict[str, Any]:
+    f_load_a = searched[load_kg][0] if load_kg in searched else fit.curve.static_a
+    return {
+        "load_kg": load_kg,
+        "f_load_a": f_load_a,
+        "f_load_from": FROM_SEARCH if load_kg in searched else FROM_CURVE,
+        **asdict(fit.curve),
+        "parameters": {name: one._asdict() for name, one in fit.parameters.items()},
+        "scatter_a": fit.scatter_a,
+        "points": fit.points,
+    }
+
+
+def _point(one: FrictionPoint, inertia_a_s2_rad: float) -> dict[str, Any]:
+    return asdict(one) | {"friction_a": one.current_a - inertia_a_s2_rad * one.acceleration_rad_s2}
+
+
+def _motor(rows: Sequence[Row]) -> dict[str, Any]:
+    """What the rows tell of R and Ke; and why, where they do not."""
+    try:
+        found = identify_motor(rows)
+    except CalibrationError as error:
+        return {"unidentified": {"resistance_ohm": str(error), "back_emf_v_s_rad": str(error)}}
+    values = {name: getattr(found, name) for name in found.__dataclass_fields__ if name != "unidentified"}
+    intervals = {name: one._asdict() if hasattr(one, "_asdict") else one for name, one in values.items()}
+    return {**intervals, "unidentified": found.unidentified}

@@ -1,0 +1,46 @@
+"""From points to friction curves and their look-up."""
+
+from collections.abc import Mapping, Sequence
+
+from bench.calibration.points import FrictionPoint
+from compensator.errors import CalibrationError
+from compensator.friction_calibration import FrictionFit, fit
+from compensator.friction_lookup import FrictionLookup
+
+
+def friction_fits(points: Mapping[float, Sequence[FrictionPoint]], stribeck: bool = True) -> dict[float, FrictionFit]:
+    """The friction curve at each load [kg], over the speed of the motor shaft.
+
+    What a point still gains in speed takes current too: its inertia is fitted along, and is no part of the curve.
+
+    Raises:
+        CalibrationError: the points of a load cannot carry a curve; the load is named.
+    """
+    return {load_kg: _fit(load_kg, found, stribeck) for load_kg, found in points.items()}
+
+
+def friction_lookup(fits: Mapping[float, FrictionFit]) -> FrictionLookup:
+    """The look-up over the load [kg].
+
+    Raises:
+        CalibrationError: there is one load only.
+    """
+    return FrictionLookup.over_load({load_kg: one.curve for load_kg, one in fits.items()})
+
+
+def inertia_of(found: FrictionFit) -> float:
+    """Current that an acceleration of the motor shaft takes [A s2/rad], as the points of the curve told; 0 if not."""
+    fitted = found.parameters.get("inertia_a_s2_rad")
+    return 0.0 if fitted is None else fitted.value
+
+
+def _fit(load_kg: float, points: Sequence[FrictionPoint], stribeck: bool) -> FrictionFit:
+    try:
+        return fit(
+            [one.speed_rad_s for one in points],
+            [one.current_a for one in points],
+            stribeck,
+            [one.acceleration_rad_s2 for one in points],
+        )
+    except CalibrationError as error:
+        raise CalibrationError(f"load {load_kg:g} kg: {error}") from error

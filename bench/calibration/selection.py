@@ -1,0 +1,76 @@
+"""Which calibration a bench compensates with: the one that was named, or the newest that fits."""
+
+from typing import Any
+
+from bench.configuration import BenchConfiguration
+from bench.errors import ConfigurationError
+from bench.friction import FrictionCurve, FrictionSettings
+from bench.store import CalibrationRow, Experiment, Store
+
+_NOT_THE_JOINT = ("seed", "faults")  # settings of a drive that say nothing about the joint's friction
+
+
+def in_use(store: Store, configuration: BenchConfiguration) -> CalibrationRow | None:
+    """The calibration that a bench uses; None where none fits.
+
+    A calibration fits when rig and drive are those of the bench. One that was named needs only the rig to be the same.
+    """
+    found = store.calibrations.find()
+    named = [one for one in found if one.chosen_utc is not None and one.rig == _rig(configuration)]
+    if named:
+        return max(named, key=lambda one: one.chosen_utc or one.created_utc)
+    return next((one for one in found if _fits(one, configuration)), None)
+
+
+def use(store: Store, configuration: BenchConfiguration, calibration_id: int | None) -> None:
+    """Name the calibration that this bench is to use from now on; None: the newest that fits.
+
+    Raises:
+        NotFoundError: no such calibration.
+        ConfigurationError: it is of another rig.
+    """
+    if calibration_id is None:
+        rig = _rig(configuration)
+        store.calibrations.unchoose([one.id for one in store.calibrations.find() if one.rig == rig])
+        return
+    found = store.calibrations.get(calibration_id)
+    if found.rig != _rig(configuration):
+        raise ConfigurationError(
+            f"calibration {calibration_id} is of rig '{found.rig.get('name')}' with other values than rig "
+            f"'{configuration.rig.name}' of this bench; allowed is one of the same rig. Calibrate this bench, or "
+            "correct its rig"
+        )
+    store.calibrations.choose(calibration_id)
+
+
+def with_friction(store: Store, configuration: BenchConfiguration) -> BenchConfiguration:
+    """The configuration with the friction curves that it names itself, or those of the calibration in use, if any."""
+    if configuration.friction is not None:
+        return configuration
+    found = in_use(store, configuration)
+    return configuration if found is None else configuration.model_copy(update={"friction": friction_of(found)})
+
+
+def friction_of(row: CalibrationRow) -> FrictionSettings:
+    """The curves of a calibration."""
+    names = FrictionCurve.model_fields
+    curves = tuple(FrictionCurve(**{name: one[name] for name in names}) for one in row.result["curves"])
+    return FrictionSettings(calibration_id=row.id, curves=curves)
+
+
+def drive_of_experiment(experiment: Experiment) -> dict[str, Any]:
+    """The drive that an experiment was run on, as far as its friction goes; {} where it is not known."""
+    return _joint_of(experiment.provenance.get("configuration", {}).get("drive", {}))
+
+
+def _joint_of(drive: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in drive.items() if name not in _NOT_THE_JOINT}
+
+
+def _rig(configuration: BenchConfiguration) -> dict[str, Any]:
+    return configuration.rig.model_dump(mode="json", exclude_none=True)
+
+
+def _fits(row: CalibrationRow, configuration: BenchConfiguration) -> bool:
+    drive = configuration.model_dump(mode="json", exclude_none=True)["drive"]
+    return (row.rig, row.drive) == (_rig(configuration), _joint_of(drive))

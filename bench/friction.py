@@ -1,0 +1,43 @@
+"""Friction curves of a joint as part of a bench configuration: what was calibrated, and how it is looked up."""
+
+from pydantic import Field
+
+from bench.quantities import quantity
+from bench.rig import Section
+from compensator.friction_lookup import MARGIN, FrictionLookup
+from compensator.kinetic_friction import KineticFriction
+
+
+class FrictionCurve(Section):
+    """General Kinetic Friction of the balanced joint under one load; speeds of the motor shaft."""
+
+    load_kg: float = quantity(..., "kg", "Load under which it holds", ge=0)
+    f_load_a: float = quantity(..., "A", "F_load of the zero-speed search under that load; it selects the curve", gt=0)
+    coulomb_a: float = quantity(..., "A", "Coulomb friction", ge=0)
+    static_a: float = quantity(..., "A", "Static friction", ge=0)
+    stribeck_speed_rad_s: float = quantity(..., "rad/s", "Stribeck speed", gt=0)
+    shape: float = quantity(2.0, "", "Shape of the Stribeck curve", gt=0)
+    viscous_a_s_rad: float = quantity(0.0, "A s/rad", "Viscous friction", ge=0)
+
+    def curve(self) -> KineticFriction:
+        """Eq. (2).
+
+        Raises:
+            ModelParameterError: static friction below Coulomb friction.
+        """
+        return KineticFriction(**self.model_dump(exclude={"load_kg", "f_load_a"}))
+
+
+class FrictionSettings(Section):
+    """The curves that a bench compensates with."""
+
+    calibration_id: int | None = Field(default=None, description="Calibration in the store that they come from")
+    curves: tuple[FrictionCurve, ...] = Field(min_length=2, description="One for each load")
+
+    def over_load(self, margin: float = MARGIN) -> FrictionLookup:
+        """Looked up by the load [kg]. Raises `CalibrationError` where the loads are not different."""
+        return FrictionLookup.over_load({one.load_kg: one.curve() for one in self.curves}, margin)
+
+    def over_friction(self, margin: float = MARGIN) -> FrictionLookup:
+        """Looked up by F_load [A], as eq. (10) gives it. Raises `CalibrationError` where they are not different."""
+        return FrictionLookup.over_friction({one.f_load_a: one.curve() for one in self.curves}, margin)
