@@ -1,5 +1,7 @@
 """Friction curves of a joint as part of a bench configuration: what was calibrated, and how it is looked up."""
 
+from dataclasses import fields
+
 from pydantic import Field
 
 from bench.quantities import quantity
@@ -18,6 +20,8 @@ class FrictionCurve(Section):
     stribeck_speed_rad_s: float = quantity(..., "rad/s", "Stribeck speed", gt=0)
     shape: float = quantity(2.0, "", "Shape of the Stribeck curve", gt=0)
     viscous_a_s_rad: float = quantity(0.0, "A s/rad", "Viscous friction", ge=0)
+    offset_a: float = quantity(0.0, "A", "Friction forwards over that backwards, half of it; no part of the curve")
+    inertia_a_s2_rad: float = quantity(0.0, "A s2/rad", "Of motor, arm and load; no part of the curve", ge=0)
 
     def curve(self) -> KineticFriction:
         """Eq. (2).
@@ -25,7 +29,8 @@ class FrictionCurve(Section):
         Raises:
             ModelParameterError: static friction below Coulomb friction.
         """
-        return KineticFriction(**self.model_dump(exclude={"load_kg", "f_load_a"}))
+        names = (field.name for field in fields(KineticFriction))
+        return KineticFriction(**{name: getattr(self, name) for name in names})
 
 
 class FrictionSettings(Section):

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import Field
 
 UNITS: dict[str, str] = {  # the longest ending wins
+    "_a_s2_rad": "A s2/rad",
     "_a_s_rad": "A s/rad",
     "_a_rad_s": "A/(rad s)",
     "_a_rad": "A/rad",

@@ -138,6 +138,8 @@ def _curve(load_kg: float, fit: FrictionFit, searched: Mapping[float, tuple[floa
         "f_load_a": f_load_a,
         "f_load_from": FROM_SEARCH if load_kg in searched else FROM_CURVE,
         **asdict(fit.curve),
+        "offset_a": fit.parameters["offset_a"].value,
+        "inertia_a_s2_rad": inertia_of(fit),
         "parameters": {name: one._asdict() for name, one in fit.parameters.items()},
         "scatter_a": fit.scatter_a,
         "points": fit.points,

@@ -6,7 +6,19 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from bench.cli import demo, effects, experiments, recordings, run, serve, service, simulate_device, study, trials
+from bench.cli import (
+    calibrate,
+    demo,
+    effects,
+    experiments,
+    recordings,
+    run,
+    serve,
+    service,
+    simulate_device,
+    study,
+    trials,
+)
 from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import HELP, errors_as_messages
 from bench.cli.output import say
@@ -22,6 +34,7 @@ _ORDER = (
     "trial",
     "export",
     "import",
+    "calibrate",
     "study",
     "effects",
     "simulate-device",
@@ -86,6 +99,7 @@ app.command("trials")(trials.trials)
 app.command("trial")(trials.trial)
 app.command("export")(recordings.export)
 app.command("import")(recordings.import_)
+app.add_typer(calibrate.app, name="calibrate")
 app.add_typer(study.app, name="study")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)

@@ -74,7 +74,7 @@ def _run(
 ) -> None:
     from bench.cli.parameters import given
 
-    found, signal_code = _carry_out(
+    found, signal_code = carry_out(
         session_of(context), kind.name, given(kind, options), operator or "", note or "", pace, quiet=as_json
     )
     _report(found, as_json)
@@ -84,7 +84,7 @@ def _run(
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
-def _carry_out(
+def carry_out(
     session: BenchSession,
     kind: str,
     parameters: dict[str, Any],

@@ -7,7 +7,18 @@ from importlib.metadata import version
 from fastapi import APIRouter, FastAPI
 
 from bench.runner import Runner
-from bench.service import bench_state, effects, experiments, live, page, problems, recording_sets, studies, trials
+from bench.service import (
+    bench_state,
+    calibrations,
+    effects,
+    experiments,
+    live,
+    page,
+    problems,
+    recording_sets,
+    studies,
+    trials,
+)
 from bench.service.access import Access
 from bench.service.guard import Guard
 from bench.store import Store
@@ -29,6 +40,13 @@ A run, watched and read:
     GET  /api/v1/live               server-sent events: status and rows as they are recorded
     GET  /api/v1/trials?experiment_id=1
     GET  /api/v1/trials/1/csv
+
+Friction curves, calibrated and used:
+
+    POST /api/v1/experiments        {"kind": "speed-sweep"}
+    POST /api/v1/experiments        {"kind": "load-sweep", "parameters": {"angles_rad": [0]}}
+    POST /api/v1/calibrations       {"experiment_ids": [1, 2]}
+    GET  /api/v1/calibrations/1/picture
 
 A missing effect, found and added:
 
@@ -68,7 +86,7 @@ def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
     problems.install(app)
     api = APIRouter(prefix=PREFIX)
-    for module in (bench_state, experiments, live, trials, recording_sets, studies, effects):
+    for module in (bench_state, experiments, live, trials, recording_sets, calibrations, studies, effects):
         api.include_router(module.router)
     app.include_router(api)
     page.install(app)

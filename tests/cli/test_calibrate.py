@@ -1,0 +1,30 @@
+"""`friction-bench calibrate`."""
+
+import json
+
+LEVELS = ("--loads-kg", "0,0.1", "--duties", "0.2")
+
+
+def test_run_keeps_shows_lists_and_uses(command):
+    made = command("calibrate", "run", *LEVELS, "--note", "at the start", "--json")
+    assert made.exit_code == 0, made.output
+    found = json.loads(made.stdout)
+    assert [curve["load_kg"] for curve in found["curves"]] == [0.0, 0.1]
+    again = command("calibrate", "fit", "--experiment", "1", "--experiment", "2")
+    assert "calibration 2 of rig 'paper', from experiments 1, 2" in again.stdout
+    assert "ohmmeter" in command("calibrate", "show", 1).stdout.replace("\n", " ")
+    assert "calibration 2" in command("calibrate", "use", "--latest").stdout
+    assert "calibration 1" in command("calibrate", "use", 1).stdout
+    listed = json.loads(command("calibrate", "list", "--json").stdout)
+    assert [(one["calibration_id"], one["in_use"]) for one in listed] == [(2, False), (1, True)]
+
+
+def test_what_is_wrong_is_said_and_nothing_is_kept(command):
+    assert command("calibrate", "use").exit_code == 2
+    missing = command("calibrate", "fit", "--experiment", "7")
+    assert missing.exit_code == 3
+    assert "experiment 7 is not in the store" in missing.stderr
+    assert command("calibrate", "run", "--loads-kg", "heavy").exit_code == 2
+    refused = command("calibrate", "run", "--loads-kg", "0,5")
+    assert refused.exit_code == 3
+    assert json.loads(command("calibrate", "list", "--json").stdout) == []
