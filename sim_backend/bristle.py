@@ -82,16 +82,17 @@ def bristle_line(
     stiffness = bristle.stiffness_n_m_rad
     if stiffness == 0.0:
         return BristleLine(0.0, 0.0, 0.0, 0.0)
-    rate = abs(speed_rad_s) * stiffness / max(limit_n_m, 1e-12)
+    per_limit = stiffness / max(limit_n_m, 1e-12)
+    rate = abs(speed_rad_s) * per_limit
     if bristle.elastic_fraction > 0.0:
         # how far the bristles give way, at the middle of the step
         way = 1.0 if speed_rad_s > 0.0 else -1.0
-        bent = way * deflection_rad * stiffness / max(limit_n_m, 1e-12)
+        bent = way * deflection_rad * per_limit
         bent += 0.5 * step_s * rate * (1.0 - plastic_share(bristle.elastic_fraction, bent) * bent)
         rate *= plastic_share(bristle.elastic_fraction, bent)
     damping = _fading(bristle.damping_n_m_s_rad, speed_rad_s / friction.stribeck_rad_s)
     lost, first, second = _decay(rate * step_s)
-    known_n_m = (stiffness * first - damping * lost / step_s) * deflection_rad
+    known_n_m = (stiffness - damping * rate) * first * deflection_rad
     slope = stiffness * step_s * second + damping * first
     return BristleLine(ratio * known_n_m, ratio * ratio * slope, (1.0 - lost) * deflection_rad, ratio * step_s * first)
 
@@ -149,5 +150,6 @@ def _decay(x: float) -> tuple[float, float, float]:
         first = 1.0 - x * (0.5 - x / 6.0)
         return x * first, first, 0.5 - x * (1.0 / 6.0 - x / 24.0)
     lost = 1.0 - exp(-x)
-    first = lost / x
-    return lost, first, (1.0 - first) / x
+    per_x = 1.0 / x
+    first = lost * per_x
+    return lost, first, (1.0 - first) * per_x

@@ -25,6 +25,8 @@ class Dwell(Component):
 @jitted
 def rest_scale(dwell: Dwell, age_s: float) -> float:
     """Return static friction at an age of the contact over that of a fresh one."""
+    if dwell.rise_fraction == 0.0:
+        return 1.0
     return 1.0 + dwell.rise_fraction * age_s / (age_s + dwell.time_s)
 
 

@@ -9,12 +9,18 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def jitted(function: Function) -> Function:
-    """Compile a small function of the kernel. LLVM inlines it into its callers."""
-    compiled: Function = numba.njit(function, error_model="numpy")
+    """Compile a small function of the kernel into its callers. It cannot be called from Python.
+
+    What it saves: calls between mechanisms, half the time of a step; a wrapper for Python around each, half the time
+    that compiling takes.
+    """
+    compiled: Function = numba.njit(
+        function, error_model="numpy", forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )
     return compiled
 
 
 def jitted_and_cached(function: Function) -> Function:
     """Compile a kernel on its first call and keep the machine code on disk for later starts."""
-    compiled: Function = numba.njit(function, cache=True, error_model="numpy")
+    compiled: Function = numba.njit(function, cache=True, error_model="numpy", no_cfunc_wrapper=True)
     return compiled

@@ -36,7 +36,7 @@ def _advance_of(mechanisms: int) -> Callable[..., None]:
         Args:
             parameters: `record.pack(PlantParameters)`, shape (1,).
             states: `record.pack(state.State)`, shape (1,); advanced in place.
-            history: last counts and currents, shape (n, 2), n > window + delay; a ring, advanced in place.
+            history: last rotor angles and currents, shape (n, 2), n > window + delay; a ring, advanced in place.
             measured: filled with position [rad], velocity [rad/s], current [A], temperature [degC],
                 supply [V]; shape (5,).
             stage: state of the power stage, see motor.py.
@@ -53,12 +53,14 @@ def _advance_of(mechanisms: int) -> Callable[..., None]:
         for _ in range(steps):
             step(plant, state, stage, demand, step_s)
             place = place + 1 if place + 1 < length else 0
-            history[place, 0] = counts(plant.encoder, plant.eccentricity, ratio, state.rotor_rad)
+            history[place, 0] = state.rotor_rad
             history[place, 1] = state.current_a
         seen = (place - delay) % length
-        gained = history[seen, 0] - history[(place - delay - window) % length, 0]
+        before = (place - delay - window) % length
+        now_counts = counts(plant.encoder, plant.eccentricity, ratio, history[seen, 0])
+        gained = now_counts - counts(plant.encoder, plant.eccentricity, ratio, history[before, 0])
         unit_rad = radians_per_count(plant.encoder, ratio)
-        measured[POSITION] = history[seen, 0] * unit_rad
+        measured[POSITION] = now_counts * unit_rad
         measured[VELOCITY] = gained * unit_rad / (window * step_s)
         measured[CURRENT] = measured_current(state, plant.current_sensor, history[seen, 1])
         measured[TEMPERATURE] = state.housing_c if plant.heat.present else np.nan
@@ -107,16 +109,3 @@ def _stored_energy_of(mechanisms: int) -> Callable[[Records, Records], float]:
 
 
 stored_energy = _stored_energy_of(_MECHANISMS)
-
-
-def _standing_counts_of(mechanisms: int) -> Callable[[Records, Records], float]:
-    def standing_counts(parameters: Records, states: Records) -> float:
-        """Return the encoder's counts as the rotor stands."""
-        mechanisms  # noqa: B018
-        plant = parameters[0]
-        return counts(plant.encoder, plant.eccentricity, plant.gear.ratio, states[0].rotor_rad)
-
-    return jitted_and_cached(standing_counts)
-
-
-standing_counts = _standing_counts_of(_MECHANISMS)

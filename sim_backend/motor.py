@@ -145,7 +145,7 @@ def winding_energy(
         return 0.0, 0.5 * inductance_h * before_a * before_a
     change_a = current_a - before_a
     voltage_v = winding.resistance_ohm * current_a + winding.torque_constant_n_m_a * speed_rad_s
-    voltage_v += inductance_h * change_a / step_s
+    voltage_v += inductance_h / step_s * change_a
     # backward Euler takes half the square of the change with it
     lost_j = step_s * winding.resistance_ohm * current_a * current_a + 0.5 * inductance_h * change_a * change_a
     return step_s * voltage_v * current_a, lost_j

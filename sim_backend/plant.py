@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sim_backend.clutch import Clutch
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
-from sim_backend.kernel import advance, standing_counts, stored_energy
+from sim_backend.kernel import advance, stored_energy
 from sim_backend.motor import OPEN
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
@@ -164,5 +164,4 @@ class Plant:
     def _forget(self) -> None:
         """Fill the drive's memory with what it would see at rest here."""
         self._history = np.zeros((self._window + self._delay + 1, 2))
-        self.advance(OPEN, 0.0, 0)
-        self._history[:, 0] = standing_counts(self._packed, self._state)
+        self._history[:, 0] = self._state["rotor_rad"]

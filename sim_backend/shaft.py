@@ -23,10 +23,14 @@ class Shaft(Component):
 @jitted
 def stiffness(gear: Gear, shaft: Shaft) -> float:
     """Return the stiffness of teeth and shaft in series [N m/rad]."""
+    if shaft.compliance_rad_n_m == 0.0:
+        return gear.stiffness_n_m_rad
     return gear.stiffness_n_m_rad / (1.0 + shaft.compliance_rad_n_m * gear.stiffness_n_m_rad)
 
 
 @jitted
 def damping(gear: Gear, shaft: Shaft) -> float:
     """Return the damping of teeth and shaft in series [N m s/rad]."""
+    if shaft.compliance_rad_n_m == 0.0:
+        return gear.damping_n_m_s_rad
     return gear.damping_n_m_s_rad / (1.0 + shaft.compliance_rad_n_m * gear.stiffness_n_m_rad)

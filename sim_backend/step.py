@@ -164,7 +164,9 @@ def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, ste
         rate = 0.25 * step_s * stiffness(gear, shaft) + 0.5 * damping(gear, shaft)
         slip_rad_s = state.rotor_rad_s - state.arm_rad_s
         known_n_m = stiffness(gear, shaft) * penetration(gear, side, twist_rad) + rate * slip_rad_s
-        rotor_rad_s, arm_rad_s = coupled_speeds(rotor, arm, step_s * rate, step_s * known_n_m, state.arm_rad_s)
+        rotor_rad_s, arm_rad_s = coupled_speeds(
+            rotor, arm, step_s * rate, step_s * known_n_m, state.rotor_rad_s, state.arm_rad_s
+        )
         contact_n_m = known_n_m + rate * (rotor_rad_s - arm_rad_s)
         carried_n_m = carried(parameters.clutch, contact_n_m)
         if carried_n_m != contact_n_m:

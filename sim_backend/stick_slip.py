@@ -60,7 +60,7 @@ def free_speeds(rotor: Body, arm: Body) -> tuple[float, float]:
 
 
 @jitted
-def coupled_speeds(rotor: Body, arm: Body, k: float, c: float, v_a: float) -> tuple[float, float]:
+def coupled_speeds(rotor: Body, arm: Body, k: float, c: float, v_r: float, v_a: float) -> tuple[float, float]:
     """Return the speeds (rotor, arm) at the end of the step, where the teeth touch.
 
     Args:
@@ -68,11 +68,16 @@ def coupled_speeds(rotor: Body, arm: Body, k: float, c: float, v_a: float) -> tu
         arm: the arm's share.
         k: impulse of the teeth per new speed difference [kg m2].
         c: impulse of the teeth that is known already [N m s].
+        v_r: first guess of the rotor's speed.
         v_a: first guess of the arm's speed.
     """
     d_r, d_a = rotor.diagonal + k, arm.diagonal + k
     p_r, p_a = rotor.impulse - c, arm.impulse + c
-    v_r = 0.0
+    # most steps go on as the last: who slips goes on slipping, who sticks goes on sticking
+    way_r, way_a = _sign(v_r), _sign(v_a)
+    exact_r, exact_a = _settled(rotor, arm, p_r, p_a, k, way_r, way_a)
+    if _agrees(rotor, p_r + k * exact_a, exact_r, way_r) and _agrees(arm, p_a + k * exact_r, exact_a, way_a):
+        return exact_r, exact_a
     for _ in range(_SWEEPS):
         # one sweep shows who sticks and who slips which way; with that settled the rest is linear
         v_r = left_by_friction(p_r + k * v_a, rotor) / d_r
