@@ -25,6 +25,7 @@ from sim_backend.hose import Hose
 from sim_backend.load_friction import LoadFriction
 from sim_backend.lubricant import Lubricant
 from sim_backend.motor import CurrentLoop, Motor, Supply
+from sim_backend.operator import Operator
 from sim_backend.overload import Overload
 from sim_backend.periodic_friction import PeriodicFriction
 from sim_backend.randomness import Scatter
@@ -69,6 +70,7 @@ class PlantParameters:
     end_stops: EndStops = field(default_factory=EndStops)
     wall: Wall = field(default_factory=Wall)
     heat: Heat = field(default_factory=Heat)
+    operator: Operator = field(default_factory=Operator)
     # mechanisms to hide from whoever explains the data
     viscous_asymmetry: ViscousAsymmetry = field(default_factory=ViscousAsymmetry)
     coulomb_asymmetry: CoulombAsymmetry = field(default_factory=CoulombAsymmetry)

@@ -10,7 +10,6 @@ from sim_backend.clutch import Clutch
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
 from sim_backend.kernel import advance, stored_energy
-from sim_backend.motor import OPEN
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
 from sim_backend.state import at_rest
@@ -35,6 +34,7 @@ class Truth:
     contact_n_m: float
     clutch_rad: float
     leant_n_m: float
+    hand_n_m: float
     bristle_rad: float
     arm_bristle_rad: float
     winding_c: float
@@ -43,7 +43,10 @@ class Truth:
 
 @dataclass(frozen=True, slots=True)
 class Energy:
-    """Energy since the plant was made [J]: supplied = lost + stored (+ what a technician's hand put in)."""
+    """Energy since the plant was made [J]: supplied = lost + stored (+ what a technician's hand put in).
+
+    Supplied is what came from the supply and from the operator's hand; either may also take.
+    """
 
     supplied_j: float
     lost_j: float
@@ -68,8 +71,6 @@ class Plant:
         self._state = pack(at_rest(seed, parameters.heat.start_c))
         self._state["supply_v"] = parameters.supply.voltage_v
         self._measured = np.zeros(5)
-        self._origin_s = 0.0
-        self._origin_steps = 0
         self.step_s = step_s
         self.use_step(step_s)
 
@@ -80,8 +81,8 @@ class Plant:
             ParameterError: the step is coarser than 0.1 ms, or too coarse for something stiff.
         """
         self._check_step(step_s)
-        self._origin_s = self.time_s
-        self._origin_steps = int(self._state["steps"][0])
+        self._state["origin_s"] = self.time_s
+        self._state["origin_steps"] = self._state["steps"]
         self.step_s = step_s
         self._window = max(round(self.parameters.encoder.speed_window_s / step_s), 1)
         self._delay = round(self.parameters.latency.delay_s / step_s)
@@ -90,7 +91,8 @@ class Plant:
     @property
     def time_s(self) -> float:
         """Simulated time since the plant was made [s]."""
-        return self._origin_s + (int(self._state["steps"][0]) - self._origin_steps) * self.step_s
+        state = self._state[0]
+        return float(state["origin_s"]) + int(state["steps"] - state["origin_steps"]) * self.step_s
 
     def advance(self, stage: int, demand: float, steps: int) -> NDArray[np.float64]:
         """Advance at a constant demand and measure.
@@ -131,7 +133,7 @@ class Plant:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
         placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "rotor_mean_rad_s": rotor_rad_s}
         placed |= {"arm_rad": arm_rad, "arm_rad_s": arm_rad_s, "arm_mean_rad_s": arm_rad_s}
-        forgotten = ("current_a", "contact_n_m", "leant_n_m", "clutch_rad", "slid")
+        forgotten = ("current_a", "contact_n_m", "leant_n_m", "hand_n_m", "clutch_rad", "slid")
         bristles = ("bristle_rad", "arm_bristle_rad", "rest_s", "arm_rest_s")
         hose = ("hose_first_rad", "hose_second_rad", "hose_third_rad")
         placed |= dict.fromkeys(forgotten + bristles + hose, 0.0)

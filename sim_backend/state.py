@@ -12,6 +12,8 @@ class State:
     random: np.uint64  # the plant's own stream, see randomness.py
     sensor_seed: np.uint64  # of the measurement noise, which takes nothing from that stream
     steps: np.int64  # taken since the plant was made
+    origin_steps: np.int64 = np.int64(0)  # taken when the present step length came into force
+    origin_s: float = 0.0  # the time then
     rotor_rad: float = 0.0
     rotor_rad_s: float = 0.0
     arm_rad: float = 0.0
@@ -23,6 +25,7 @@ class State:
     contact_n_m: float = 0.0  # torque of the teeth on the arm, mean over the last step
     clutch_rad: float = 0.0  # angle that the clutch has slipped
     leant_n_m: float = 0.0  # torque of wall and end stops on the arm, mean over the last step
+    hand_n_m: float = 0.0  # torque of the operator's hand on the arm, mean over the last step
     bristle_rad: float = 0.0  # deflection of the drive side's bristles, at the motor shaft
     arm_bristle_rad: float = 0.0
     slid: bool = False  # the drive side's bristles have slipped since the motion last turned

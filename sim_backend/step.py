@@ -21,6 +21,7 @@ from sim_backend.jit import jitted
 from sim_backend.motor import CurrentLine, current_line, stage_loss, supply_voltage, winding_energy
 from sim_backend.obstacle import Push, push_torque
 from sim_backend.obstacles import obstacles_energy, obstacles_push
+from sim_backend.operator import Hold, hand_torque, hold_of
 from sim_backend.parameters import PlantParameters
 from sim_backend.randomness import draw_static_factor, wander
 from sim_backend.resistance import Resistance, arm_side, drive_side
@@ -53,7 +54,10 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     drive_friction = drive_side(parameters, state, _weight(parameters), step_s)
     arm_friction = arm_side(parameters, state, _weight(parameters), step_s)
     rotor = _rotor(parameters, state, winding, line, drive_friction, step_s)
-    arm = _arm(parameters, state, arm_friction, step_s)
+    time_s = state.origin_s + (state.steps - state.origin_steps) * step_s
+    guess_rad_s = 2.0 * state.arm_rad_s - state.arm_mean_rad_s
+    hold = hold_of(parameters.operator, time_s, state.arm_rad, guess_rad_s, step_s)
+    arm = _held(_arm(parameters, state, arm_friction, step_s), hold, state.arm_rad_s, step_s)
     push = obstacles_push(parameters, state.arm_rad, step_s)
     leaning = _leaning(arm, push, state.arm_rad_s, step_s)
     motion = _move(parameters, state, rotor, leaning, step_s)
@@ -76,7 +80,8 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     )
     friction_j += _friction_loss(rotor, -motion.contact_n_m, motion.rotor_rad_s, mean_r, step_s)
     arm_friction_j += _friction_loss(leaning, motion.contact_n_m, motion.arm_rad_s, mean_a, step_s)
-    state.supplied_j += taken_j + stage_j
+    hand_n_m = hand_torque(hold, state.arm_rad_s, motion.arm_rad_s, step_s)
+    state.supplied_j += taken_j + stage_j + step_s * hand_n_m * mean_a
     state.electrical_loss_j += copper_j + stage_j
     state.friction_loss_j += friction_j
     state.arm_friction_loss_j += arm_friction_j + _drag_hose(parameters, state, mean_a, step_s)
@@ -106,6 +111,7 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.arm_rad_s = motion.arm_rad_s
     state.contact_n_m = motion.contact_n_m
     state.leant_n_m = push_torque(push, mean_a)
+    state.hand_n_m = hand_n_m
     state.current_a = current_a
     state.supply_v = supply_voltage(line, current_a, parameters.supply)
     state.steps += 1
@@ -144,6 +150,15 @@ def _arm(parameters: PlantParameters, state: State, friction: Resistance, step_s
         inertia + 0.5 * step_s * drag, impulse,
         step_s * friction.lower_n_m, step_s * friction.upper_n_m, friction.viscous_n_m_s_rad,
     )  # fmt: skip
+
+
+@jitted
+def _held(arm: Body, hold: Hold, speed_rad_s: float, step_s: float) -> Body:
+    """Return the arm's share in the operator's hand."""
+    impulse = arm.impulse + hold.inertia_kg_m2 * speed_rad_s
+    impulse += step_s * (hold.known_n_m - 0.5 * hold.slope_n_m_s_rad * speed_rad_s)
+    diagonal = arm.diagonal + hold.inertia_kg_m2 + 0.5 * step_s * hold.slope_n_m_s_rad
+    return Body(diagonal, impulse, arm.lower, arm.upper, arm.viscous)
 
 
 @jitted

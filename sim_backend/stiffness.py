@@ -46,6 +46,11 @@ def stiffest(parameters: PlantParameters) -> Iterator[Stiff]:
     yield Stiff("bristle.stiffness_n_m_rad", parameters.bristle.stiffness_n_m_rad, rotor_kg_m2)
     yield Stiff("hose.stiffness_n_m_rad", parameters.hose.stiffness_n_m_rad, arm_kg_m2)
     yield Stiff("arm_bristle.stiffness_n_m_rad", parameters.arm_bristle.stiffness_n_m_rad, arm_kg_m2)
+    operator = parameters.operator
+    if operator.present:
+        lever2_m2 = operator.lever_m**2
+        held_kg_m2 = arm_kg_m2 + lever2_m2 * operator.mass_kg
+        yield Stiff("operator.stiffness_n_m at the joint", lever2_m2 * operator.stiffness_n_m, held_kg_m2)
     # an arm that is found inside a surface is given the energy of that depth: (step times frequency)^2 / 3 of its own
     for name, surface in (("wall", parameters.wall), ("end_stops", parameters.end_stops)):
         if surface.present:

@@ -28,6 +28,7 @@ EVERYTHING = {
     "shaft": {"compliance_rad_n_m": 1e-3},
     "wall": {"present": True, "angle_rad": 1.0, "stiffness_n_m_rad": 3000.0, "damping_n_m_s_rad": 1.0},
     "end_stops": {"present": True, "lower_rad": -2.0, "upper_rad": 1.0005, "damping_n_m_s_rad": 0.0},
+    "operator": {"present": True, "grip_s": 5.0, "release_s": 35.0, "amplitude_rad": 0.5, "strength_n": 3.0},
     "dwell": {"rise_fraction": 0.3},
     "arm_dwell": {"rise_fraction": 0.3},
     "load_friction": {"driving": 0.3, "back_driving": 0.2},

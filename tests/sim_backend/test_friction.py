@@ -5,6 +5,7 @@ import pytest
 from sim_backend.friction import Friction, dry_friction
 from sim_backend.motor import OPEN
 from sim_backend.record import pack
+from tests.sim_backend.compiled import callable_from_python
 from tests.sim_backend.plants import RATIO, RESISTANCE, SUPPLY, G, K, duty_for_torque, plant, run, settled_speed
 
 STATIC, COULOMB = 8e-3, 5e-3
@@ -39,10 +40,11 @@ def test_moving_joint_stops_exactly_and_stays() -> None:
 
 def test_friction_law_is_the_general_kinetic_one() -> None:
     law = Friction(coulomb_n_m=2.0, static_n_m=3.0, stribeck_rad_s=0.5, stribeck_exponent=1.3, growth_per_n=0.4)
+    torque = callable_from_python(dry_friction)
     wanted = (2.0 + exp(-((0.7 / 0.5) ** 1.3))) * (1.0 + 0.4 * 5.0)
-    assert dry_friction(pack(law)[0], -0.7, 5.0, 1.0, 1.0) == pytest.approx(wanted, rel=1e-12)
-    assert dry_friction(pack(law)[0], 0.0, 0.0, 1.0, 1.0) == 3.0
-    assert dry_friction(pack(law)[0], 1e3, 0.0, 1.0, 1.0) == 2.0
+    assert torque(pack(law)[0], -0.7, 5.0, 1.0, 1.0) == pytest.approx(wanted, rel=1e-12)
+    assert torque(pack(law)[0], 0.0, 0.0, 1.0, 1.0) == 3.0
+    assert torque(pack(law)[0], 1e3, 0.0, 1.0, 1.0) == 2.0
 
 
 def test_friction_grows_with_the_weight_on_the_axis() -> None:

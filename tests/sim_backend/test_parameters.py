@@ -36,6 +36,9 @@ from tests.sim_backend.plants import parameters, plant
         ("overload", {"peak_a": 0.5}, r"Overload.peak_a = 0.5 \[A\]: must be more than the continuous current, 1 A"),
         ("overload", {"present": True}, r"Overload.present = True: I2t needs CurrentSensor.present"),
         ("dwell", {"slip_rad": 0.0}, r"Dwell.slip_rad = 0.0 \[rad\]: must be greater than 0"),
+        ("operator", {"release_s": 0.0}, r"Operator.release_s = 0.0 \[s, the plant's time\]: must be greater than 0"),
+        ("operator", {"grip_s": 2.0, "release_s": 1.0}, r"Operator.release_s = 1.0 .*lets go after it has taken hold"),
+        ("operator", {"lever_m": 0.0}, r"Operator.lever_m = 0.0 .*must be greater than 0"),
         ("current_loop", {"present": True}, r"a loop needs CurrentSensor.present"),
     ],
 )
