@@ -49,8 +49,7 @@ def dry_friction(
     if speed_rad_s != 0.0 and rise_n_m > 0.0:
         relative = speed_rad_s / friction.stribeck_rad_s
         # the usual exponent without the cost of a power
-        power = (
-            relative * relative if friction.stribeck_exponent == 2.0 else abs(relative) ** friction.stribeck_exponent
-        )
+        exponent = friction.stribeck_exponent
+        power = relative * relative if exponent == 2.0 else abs(relative) ** exponent
         rise_n_m *= exp(-power) if power < 40.0 else 0.0
     return (coulomb_n_m + rise_n_m) * (1.0 + friction.growth_per_n * weight_n)

@@ -12,7 +12,7 @@ class State:
     random: np.uint64  # the plant's own stream, see randomness.py
     sensor_seed: np.uint64  # of the measurement noise, which takes nothing from that stream
     steps: np.int64  # taken since the plant was made
-    origin_steps: np.int64 = np.int64(0)  # taken when the present step length came into force
+    origin_steps: np.int64  # taken when the present step length came into force
     origin_s: float = 0.0  # the time then
     rotor_rad: float = 0.0
     rotor_rad_s: float = 0.0
@@ -54,4 +54,4 @@ class State:
 def at_rest(seed: int, temperature_c: float) -> State:
     """Return the state at rest at angle 0."""
     random, sensor_seed = np.random.SeedSequence(seed).generate_state(2, np.uint64)
-    return State(random, sensor_seed, np.int64(0), winding_c=temperature_c, housing_c=temperature_c)
+    return State(random, sensor_seed, np.int64(0), np.int64(0), winding_c=temperature_c, housing_c=temperature_c)

@@ -56,17 +56,8 @@ def test_arm_follows_a_sinusoid_with_gain_and_lag_of_the_impedance(frequency_hz:
 
 
 def test_reach_of_least_jerk_peaks_at_15_eighths_of_its_mean_speed() -> None:
-    reached = plant(
-        gear=FREE,
-        operator=HAND
-        | {
-            "stiffness_n_m": 2e5,
-            "damping_n_s_m": 600.0,
-            "reach_rad": 0.8,
-            "reach_start_s": 0.5,
-            "reach_duration_s": 2.0,
-        },
-    )
+    stiff = {"stiffness_n_m": 2e5, "damping_n_s_m": 600.0}
+    reached = _arm_in_hand(**stiff, reach_rad=0.8, reach_start_s=0.5, reach_duration_s=2.0)
     reached.advance(OPEN, 0.0, 5000)
     assert reached.truth().arm_rad == 0.0
     reached.advance(OPEN, 0.0, 10_000)
@@ -152,10 +143,12 @@ def test_hand_that_holds_still_is_passive(
         return spring_j + 0.5 * lever2 * mass * truth.arm_rad_s**2
 
     began = kept_j()
+    # at the brink of its strength the hand is off by what its spring gains in one step: (step times frequency)^2
+    slack_j = 1e-3 * (began + held.energy().stored_j) + 1e-12
     for _ in range(40):
         held.advance(OPEN, 0.0, 100)
         # where the stage is off, all that is supplied comes from the hand
-        assert held.energy().supplied_j <= (began - kept_j()) + 1e-3 * began + 1e-9
+        assert held.energy().supplied_j <= began - kept_j() + slack_j
 
 
 def test_master_and_slave_are_two_plants_that_share_nothing_but_the_bench() -> None:
