@@ -19,3 +19,7 @@ class CalibrationError(CompensatorError, ValueError):
 
 class LookupRangeError(CompensatorError, ValueError):
     """Raised when a look-up is asked too far outside what it was calibrated on."""
+
+
+class SingularPoseError(CompensatorError, ArithmeticError):
+    """Raised when a force is asked of joints that cannot tell it in their present pose."""
