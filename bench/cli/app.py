@@ -8,6 +8,7 @@ from typer.core import TyperGroup
 
 from bench.cli import (
     calibrate,
+    challenge,
     demo,
     effects,
     experiments,
@@ -38,6 +39,8 @@ _ORDER = (
     "study",
     "effects",
     "simulate-device",
+    "challenge",
+    "reveal",
 )
 
 
@@ -104,6 +107,8 @@ app.add_typer(study.app, name="study")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
 app.add_typer(simulate_device.app, name="simulate-device")
+app.command("challenge")(challenge.challenge)
+app.command("reveal")(challenge.reveal)
 
 
 def main() -> None:

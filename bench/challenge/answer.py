@@ -1,0 +1,51 @@
+"""The answer to a challenge: what is hidden, how much of it, and what share of the effort it makes."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """One hidden mechanism.
+
+    Attributes:
+        name: of the mechanism; title: in words.
+        size: how much of it; measure: of what; unit: of the size.
+        share: RMS of what it changes in the motor current over the current's RMS.
+        parameters: of the plant, that make it.
+    """
+
+    name: str
+    title: str
+    size: float
+    measure: str
+    unit: str
+    share: float
+    parameters: dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """The whole answer.
+
+    Attributes:
+        seed, difficulty: of the challenge.
+        attempt: how many joints were drawn before one that completed the protocol.
+        truths: what is hidden; none where nothing is.
+        plant: all parameters of the plant.
+    """
+
+    seed: int
+    difficulty: str
+    attempt: int
+    truths: tuple[Truth, ...]
+    plant: dict[str, Any]
+
+    def to_json(self) -> dict[str, Any]:
+        """Nested dicts."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> "Answer":
+        """From nested dicts."""
+        return cls(**{**values, "truths": tuple(Truth(**one) for one in values["truths"])})

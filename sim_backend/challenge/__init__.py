@@ -1,0 +1,1 @@
+"""Plants drawn at random, with mechanisms hidden in them. Knows nothing of whoever will explain the data."""

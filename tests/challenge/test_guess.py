@@ -1,0 +1,55 @@
+import pytest
+
+from bench.challenge.guess import Guess, score
+from bench.challenge.hidden_plant import MECHANISMS
+from bench.challenge.names import ABSORBED, ACCEPTED, accepted
+from bench.errors import ParameterError
+
+
+def test_every_mechanism_has_its_names_and_the_lab_knows_them() -> None:
+    assert set(ACCEPTED) == set(MECHANISMS)
+    for mechanism in ("viscous_asymmetry", "drag", "spring", "load_friction", "weight_growth", "latency"):
+        assert accepted(mechanism)
+    for mechanism in ("hose", "friction_jump", "supply_ripple"):
+        assert not accepted(mechanism)
+
+
+@pytest.mark.parametrize(
+    ("truths", "guess", "right", "missed", "wrong", "points"),
+    [
+        ((), "nothing", (), (), (), 0.0),
+        ((), "spring", (), (), ("spring",), -1.0),
+        (("spring",), "spring", ("spring",), (), (), 1.0),
+        (("spring",), "nothing", (), ("spring",), (), 0.0),
+        (("spring",), "none-of-these", (), ("spring",), ("none-of-these",), -1.0),
+        (("drag",), "spring,viscous_quadratic", ("drag",), (), ("spring",), 0.0),
+        (("spring",), "spring/centre_of_mass_angle", ("spring",), (), (), 0.5),
+        (("spring", "drag"), "viscous_quadratic,spring", ("spring", "drag"), (), (), 2.0),
+        (("spring", "drag"), "spring", ("spring",), ("drag",), (), 1.0),
+        # one class stands for one mechanism, even if it holds the names of both
+        (("spring", "centre_of_mass"), "spring/centre_of_mass_angle", ("spring",), ("centre_of_mass",), (), 0.5),
+        (("hose",), "none-of-these", ("hose",), (), (), 1.0),
+        (("hose",), "spring", (), ("hose",), ("spring",), -1.0),
+        (("hose", "spring"), "spring,none-of-these", ("hose", "spring"), (), (), 2.0),
+    ],
+)
+def test_score(
+    truths: tuple[str, ...], guess: str, right: tuple[str, ...], missed: tuple[str, ...], wrong: tuple[str, ...],
+    points: float,
+) -> None:  # fmt: skip
+    found = score(truths, Guess.parse(guess))
+    assert (found.right, found.missed, found.wrong) == (right, missed, wrong)
+    assert found.points == points
+    assert found.perfect == (not missed and not wrong)
+
+
+def test_what_no_motion_can_tell_does_not_count() -> None:
+    found = score(("coulomb_asymmetry",), Guess.parse("nothing"), ABSORBED)
+    assert found.untold == ("coulomb_asymmetry",)
+    assert found.perfect
+
+
+@pytest.mark.parametrize("guess", ["", " , ", "nothing,spring", "sprin", "spring/foo"])
+def test_a_guess_that_cannot_be_read_is_refused(guess: str) -> None:
+    with pytest.raises(ParameterError, match="guess"):
+        Guess.parse(guess)
