@@ -5,7 +5,7 @@ from typing import Any
 
 from bench.challenge.hidden_plant import DrawnPlant
 from bench.configuration import BenchConfiguration, parse_configuration
-from bench.drives import SimulatedDriveSettings
+from bench.drives.simulated import SimulatedDriveSettings
 from bench.rig import Rig
 
 BANDWIDTH_RAD_S = 28.0  # of the position servo: stiff enough for the motions, far below the sampling rate
