@@ -3,7 +3,7 @@
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, ValidationError
 
@@ -13,6 +13,7 @@ from bench.errors import ConfigurationError
 from bench.friction import FrictionSettings
 from bench.limits import Limits
 from bench.quantities import quantity
+from bench.rest import RestSettings
 from bench.rig import Rig, Section
 from bench.servo import ServoSettings
 from bench.validation import problems
@@ -37,8 +38,13 @@ class MotionSettings(Section):
 
 
 class SearchSettings(Section):
-    """The zero-speed search (Fig. 5 of the paper)."""
+    """The zero-speed search: the flow chart of the paper (Fig. 5), or the improved one.
 
+    Both keep to `excursion_rad` and `ceiling_a`. Up to `creep_timeout_s` the values are the flow chart's; the others
+    the improved search's.
+    """
+
+    method: Literal["paper", "improved"] = quantity("improved", "", "Flow chart of the paper, or the improved search")
     current_step_a: float = quantity(0.004, "A", "One step of the ramp", gt=0)
     step_s: float = quantity(0.02, "s", "Length of one step", gt=0)
     onset_counts: float = quantity(4.0, "", "Encoder counts that make a departure", ge=2)
@@ -48,6 +54,13 @@ class SearchSettings(Section):
     excursion_rad: float = quantity(0.15, "rad", "Farthest from the set point", gt=0)
     ceiling_a: float = quantity(1.5, "A", "Largest current of the ramp, either way", gt=0)
     creep_timeout_s: float = quantity(3.0, "s", "Longest creep without an outcome", gt=0)
+    noise_counts: float = quantity(0.25, "", "Noise of a position reading, in encoder counts", ge=0)
+    false_alarms_per_hour: float = quantity(1.0, "", "Times that noise may be taken for motion", gt=0)
+    coarse_rate_a_s: float = quantity(1.5, "A/s", "Rate of the first ramp either way", gt=0)
+    fine_rates_a_s: tuple[float, ...] = quantity((0.6, 0.15), "A/s", "Rates of the others, in turn", min_length=2)
+    pairs: int = quantity(4, "", "Slow ramps up and down", ge=2, le=100)
+    stand_s: float = quantity(0.04, "s", "Rest before each ramp", gt=0)
+    stand_timeout_s: float = quantity(0.5, "s", "Longest wait for that rest", gt=0)
 
 
 class StoreSettings(Section):
@@ -69,6 +82,7 @@ class BenchConfiguration(Section):
     motion: MotionSettings = MotionSettings()
     servo: ServoSettings = ServoSettings()
     search: SearchSettings = SearchSettings()
+    rest: RestSettings | None = Field(default=None, description="What known loads told of the joint at rest")
     store: StoreSettings = StoreSettings()
     friction: FrictionSettings | None = Field(
         default=None, description="Friction curves; without them those of the calibration in use"

@@ -6,13 +6,22 @@ from typing import Any
 from bench.configuration import BenchConfiguration
 from bench.experiments.joint import Joint
 from bench.experiments.reflected_load import reflected_load_kg
+from bench.experiments.rest_estimate import RestFinding, finding
+from bench.experiments.search import Found
 from bench.loop import Procedure
-from compensator.zero_speed_search import Phase, SearchState
 
-SEARCH_S = 4.0  # of one search, roughly
+SEARCH_S = {"paper": 6.0, "improved": 2.5}  # of one search, roughly
 MOVES_S = 3.0  # to the angle and back, roughly
 RIGHT_ANGLE_RAD = pi / 2
-FOUND = ("min_current_a", "max_current_a", "load_current_a", "friction_current_a")
+_NAMES = (
+    "min_current_a", "max_current_a", "load_current_a", "friction_current_a", "load_currents_a", "load_interval_a",
+    "friction_interval_a", "reflected_load_kg", "reflected_interval_kg", "breakaways", "search_s", "search_travel_rad",
+)  # fmt: skip
+
+
+def duration_s(configuration: BenchConfiguration, searches: int) -> float:
+    """Of one trial, roughly [s]."""
+    return MOVES_S + SEARCH_S[configuration.search.method] * searches
 
 
 def measure_at_rest(
@@ -30,10 +39,13 @@ def measure_at_rest(
     Results:
         steady_current_a: uncompensated, as the position servo happened to leave it (Fig. 4).
         min_current_a, max_current_a: at which the joint just moved, mean of all searches.
-        load_current_a, friction_current_a: eqs (9), (10), mean of all searches.
+        load_current_a, friction_current_a: eqs (9), (10), from all searches; corrected where known loads have told how.
         load_currents_a: eq. (9) of each search.
-        reflected_load_kg: what the load current amounts to at this angle; None near angle 0.
-        search_failure: why there is no estimate; "" where there is. Without one all but the first are None.
+        load_interval_a, friction_interval_a: 95 %, [low, high]; None where the searches do not tell.
+        reflected_load_kg: what the load current amounts to at this angle; None near angle 0. With its interval.
+        breakaways: [direction, current_a, rate_a_s] of each.
+        search_s, search_travel_rad: time and motion of one search, mean.
+        search_failure: why there is no estimate; "" where there is. Without one all but the first two are None.
     """
     joint = Joint(configuration)
     yield from joint.wake()
@@ -42,29 +54,42 @@ def measure_at_rest(
     yield from joint.move(angle_rad, approach_rad_s)
     steady = yield from joint.settle(angle_rad)
     results: dict[str, Any] = {"steady_current_a": steady.current_a, "steady_position_rad": steady.position_rad}
-    found: list[SearchState] = []
+    found: list[Found] = []
     for _ in range(searches):
-        state = yield from joint.search(angle_rad)
-        if state.phase is not Phase.DONE:
+        one = yield from joint.search(angle_rad)
+        found.append(one)
+        if one.failure:
             yield from joint.move(0.0)
-            return results | _no_estimate(state)
-        found.append(state)
-        yield from joint.reflect(angle_rad, state.estimate().load_current_a)
+            return results | _no_estimate(one.failure)
+        yield from joint.reflect(angle_rad, finding(found, configuration).load_current_a)
     yield from joint.move(0.0)
     return results | _estimate(found, angle_rad, configuration)
 
 
-def _no_estimate(state: SearchState) -> dict[str, Any]:
-    names = (*FOUND, "load_currents_a", "reflected_load_kg")
-    return {**dict.fromkeys(names), "search_failure": state.reason.value if state.reason else state.phase.value}
+def _no_estimate(failure: str) -> dict[str, Any]:
+    return {**dict.fromkeys(_NAMES), "search_failure": failure}
 
 
-def _estimate(found: list[SearchState], angle_rad: float, configuration: BenchConfiguration) -> dict[str, Any]:
-    rows = [(state.min_current_a, state.max_current_a, *state.estimate()) for state in found]
-    means = {name: sum(values) / len(values) for name, values in zip(FOUND, zip(*rows, strict=True), strict=True)}
-    return {
-        **means,
-        "load_currents_a": [state.estimate().load_current_a for state in found],
-        "reflected_load_kg": reflected_load_kg(means["load_current_a"], angle_rad, configuration.rig),
-        "search_failure": "",
-    }
+def _estimate(found: list[Found], angle_rad: float, configuration: BenchConfiguration) -> dict[str, Any]:
+    whole = finding(found, configuration)
+    values = (
+        whole.min_current_a,
+        whole.max_current_a,
+        whole.load_current_a,
+        whole.friction_current_a,
+        [finding([one], configuration).load_current_a for one in found],
+        whole.load_interval_a,
+        whole.friction_interval_a,
+        reflected_load_kg(whole.load_current_a, angle_rad, configuration.rig),
+        _reflected_interval(whole, angle_rad, configuration),
+        [list(breakaway) for one in found for breakaway in one.breakaways],
+        sum(one.seconds for one in found) / len(found),
+        sum(one.travel_rad for one in found) / len(found),
+    )
+    return {**dict(zip(_NAMES, values, strict=True)), "search_failure": ""}
+
+
+def _reflected_interval(whole: RestFinding, angle_rad: float, configuration: BenchConfiguration) -> list[float] | None:
+    ends_a = whole.load_interval_a or []
+    ends_kg = [reflected_load_kg(end_a, angle_rad, configuration.rig) for end_a in ends_a]
+    return sorted(end_kg for end_kg in ends_kg if end_kg is not None) or None

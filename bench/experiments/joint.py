@@ -1,17 +1,18 @@
 """The joint in the hand of its position servo: the parts that procedures are composed of, with `yield from`."""
 
 from collections.abc import Generator, Iterable
-from dataclasses import dataclass
-from math import ceil, nan, pi
+from dataclasses import dataclass, replace
+from math import ceil, nan
 from typing import TypeVar
 
 from bench.configuration import BenchConfiguration
-from bench.errors import ConfigurationError, ExperimentError
+from bench.errors import ExperimentError
 from bench.experiments.profile import Halt, SetPoint, Trapezoid
+from bench.experiments.resolution import resolution_rad
+from bench.experiments.search import STILL_COUNTS, Found, begin_search
 from bench.loop import OFF, Action, Reading
 from bench.servo import PositionServo
-from compensator import zero_speed_search
-from compensator.zero_speed_search import SearchReading, SearchSettings, SearchState
+from compensator.zero_speed_search import SearchReading
 from drivers.contract import Command, Mode
 
 Result = TypeVar("Result")
@@ -42,12 +43,12 @@ class Joint:
     """
 
     def __init__(self, configuration: BenchConfiguration) -> None:
+        self._configuration = configuration
         self._motion = configuration.motion
         self._period_s = configuration.control.period_s
         self._dead_band_rad = configuration.servo.dead_band_rad
         self._servo = PositionServo(configuration.servo, self._period_s)
-        self._still_rad = 1.5 * resolution_rad(configuration)
-        self._search_settings = search_settings(configuration)
+        self._still_rad = STILL_COUNTS * resolution_rad(configuration)
         self._reading: Reading | None = None
         self._command_a = 0.0
 
@@ -115,23 +116,24 @@ class Joint:
             "Look at the servo's gains and the load"
         )
 
-    def search(self, set_point_rad: float) -> Part[SearchState]:
-        """The zero-speed search of Fig. 5, round an angle at which the joint is settled."""
-        settings = self._search_settings
-        state = zero_speed_search.begin(set_point_rad)
-        reading = self._last()
-        while not state.finished:
-            search_reading = SearchReading(reading.sample.position_rad, reading.current_a, self._command_a)
-            phase = state.phase
-            state, ramp_a = zero_speed_search.advance(settings, state, search_reading)
-            event = None if state.phase is phase else ("search", state.phase.value)
-            if ramp_a is None:
+    def search(self, set_point_rad: float) -> Part[Found]:
+        """The zero-speed search, round an angle at which the joint is settled."""
+        search = begin_search(self._configuration, set_point_rad)
+        reading, phase = self._last(), search.phase
+        start_s, travel_rad = reading.time_s, 0.0
+        while not search.finished:
+            current_a = search.advance(SearchReading(reading.sample.position_rad, reading.current_a, self._command_a))
+            last_rad = reading.sample.position_rad
+            event = None if search.phase == phase else ("search", search.phase)
+            phase = search.phase
+            if current_a is None:
                 reading = yield from self._servo_cycle(set_point_rad, event=event)
             else:
-                self._command_a = ramp_a
-                reading = yield Action(Command(Mode.CURRENT, ramp_a), set_point_rad, event=event)
+                self._command_a = current_a
+                reading = yield Action(Command(Mode.CURRENT, current_a), set_point_rad, event=event)
                 self._reading = reading
-        return state
+            travel_rad += abs(reading.sample.position_rad - last_rad)
+        return replace(search.found(), seconds=reading.time_s - start_s, travel_rad=travel_rad)
 
     def reflect(self, target_rad: float, load_current_a: float, cycles: int = 20) -> Part[None]:
         """Hold an angle, and record the compensated current that the master would be given."""
@@ -162,42 +164,3 @@ class Joint:
         if self._reading is None:
             raise ExperimentError("the procedure moves the joint before its first reading; begin with wake()")
         return self._reading
-
-
-def resolution_rad(configuration: BenchConfiguration) -> float:
-    """The joint angle of one encoder count [rad]."""
-    counts, ratio = configuration.rig.sensor.counts_per_turn, configuration.rig.gear.ratio
-    if counts is None or ratio is None:
-        raise ConfigurationError(
-            f"rig '{configuration.rig.name}': sensor.counts_per_turn and gear.ratio are needed to tell motion from "
-            "rest; add them to the rig"
-        )
-    return 2.0 * pi / (counts * ratio)
-
-
-def search_settings(configuration: BenchConfiguration) -> SearchSettings:
-    """The search in control cycles and encoder counts.
-
-    Raises:
-        ConfigurationError: the rig leaves out counts, ratio or backlash.
-    """
-    search, period_s = configuration.search, configuration.control.period_s
-    free_play_rad = configuration.rig.gear.backlash_rad if search.free_play_rad is None else search.free_play_rad
-    if free_play_rad is None:
-        raise ConfigurationError(
-            f"rig '{configuration.rig.name}': gear.backlash_rad [rad] is needed to tell free play from motion; add it "
-            "to the rig, or give search.free_play_rad"
-        )
-    return SearchSettings(
-        dead_band_rad=configuration.servo.dead_band_rad,
-        still_rad=1.5 * resolution_rad(configuration),
-        onset_rad=search.onset_counts * resolution_rad(configuration),
-        free_play_rad=free_play_rad,
-        excursion_rad=search.excursion_rad,
-        current_step_a=search.current_step_a,
-        step_cycles=max(1, round(search.step_s / period_s)),
-        ceiling_a=search.ceiling_a,
-        settled_cycles=configuration.motion.settled_cycles,
-        settle_timeout_cycles=ceil(configuration.motion.settle_timeout_s / period_s),
-        creep_timeout_cycles=ceil(search.creep_timeout_s / period_s),
-    )

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from bench.configuration import BenchConfiguration
-from bench.experiments.at_rest import MOVES_S, RIGHT_ANGLE_RAD, SEARCH_S, measure_at_rest
+from bench.experiments.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.reflected_load import reflected_load_kg
@@ -55,9 +55,9 @@ def _refuse(parameters: LoadSweepParameters, configuration: BenchConfiguration) 
     reflected_load_kg(0.0, RIGHT_ANGLE_RAD, configuration.rig)
 
 
-def _duration_s(parameters: LoadSweepParameters, _configuration: BenchConfiguration) -> float:
+def _duration_s(parameters: LoadSweepParameters, configuration: BenchConfiguration) -> float:
     trials = len(parameters.loads_kg) * len(parameters.angles_rad) * parameters.repeats
-    return trials * (MOVES_S + SEARCH_S * parameters.searches)
+    return trials * duration_s(configuration, parameters.searches)
 
 
 def _summarise(_parameters: LoadSweepParameters, trials: list[FinishedTrial]) -> dict[str, Any]:

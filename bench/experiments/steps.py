@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import model_validator
 
 from bench.configuration import BenchConfiguration
-from bench.experiments.at_rest import MOVES_S, RIGHT_ANGLE_RAD, SEARCH_S, measure_at_rest
+from bench.experiments.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.reflected_load import reflected_load_kg
@@ -79,8 +79,8 @@ def _refuse(parameters: StepsParameters, configuration: BenchConfiguration) -> N
     reflected_load_kg(0.0, parameters.angle_rad, configuration.rig)
 
 
-def _duration_s(parameters: StepsParameters, _configuration: BenchConfiguration) -> float:
-    return parameters.repeats * (MOVES_S + SEARCH_S * parameters.searches)
+def _duration_s(parameters: StepsParameters, configuration: BenchConfiguration) -> float:
+    return parameters.repeats * duration_s(configuration, parameters.searches)
 
 
 def _summarise(_parameters: StepsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from bench.configuration import BenchConfiguration
 from bench.errors import LimitError, quantity_message
-from bench.experiments.joint import Joint, Part, resolution_rad
+from bench.experiments.joint import Joint, Part
 from bench.experiments.profile import SetPoint, Trapezoid
+from bench.experiments.resolution import resolution_rad
 from bench.experiments.saturation import LEAST_READINGS, Stroke, motion_of
 from bench.loop import Reading
 from drivers.contract import Command, Mode

@@ -11,10 +11,16 @@ from bench.errors import ConfigurationError, LimitError, ParameterError, Unknown
 from bench.experiments.reflected_load import reflected_load_kg
 from bench.experiments.registry import KINDS, find_kind, parse_parameters
 from bench.quantities import unit_of
+from bench.rest import RestSettings
 from bench.rig import Arm, Gear, Motor, Rig
 from tests.bench.bench_run import Ran
 
 CONFIGURATION = default_configuration()
+
+
+def _method(name):
+    search = CONFIGURATION.search.model_copy(update={"method": name})
+    return CONFIGURATION.model_copy(update={"search": search})
 
 
 @pytest.fixture(scope="module")
@@ -59,8 +65,41 @@ def test_the_compensated_current_is_on_record(steps):
 
 def test_the_phases_of_the_search_are_events(steps):
     details = [detail for _, name, detail in steps.events[0] if name == "search"]
-    assert details[0] == "raising the current"
+    assert details[:2] == ["stand before a ramp", "ramp"]
     assert details[-1] == "done"
+
+
+def test_the_flow_chart_of_the_paper_can_be_chosen():
+    ran = Ran(_method("paper"), "steps", repeats=2)
+    details = [detail for _, name, detail in ran.events[0] if name == "search"]
+    assert (details[0], details[-1]) == ("raising the current", "done")
+    assert ran.summary["spread_load_current_a"] < 0.025
+    assert ran.outcomes[0].results["load_interval_a"] is None  # one breakaway each way shows no scatter
+
+
+def test_the_improved_search_takes_less_time_and_motion_than_the_flow_chart(steps):
+    plain = Ran(_method("paper"), "steps", repeats=1).outcomes[0].results
+    for outcome in steps.outcomes:
+        assert outcome.results["search_s"] < 0.5 * plain["search_s"]
+        assert outcome.results["search_travel_rad"] < 0.5 * plain["search_travel_rad"]
+
+
+def test_the_interval_of_the_reflected_load_is_given_where_there_is_one(sweep):
+    for row in sweep.summary["rows"]:
+        assert row["load_interval_a"][0] < row["load_current_a"] < row["load_interval_a"][1]
+        if row["reflected_load_kg"] is None:
+            assert row["reflected_interval_kg"] is None
+        else:
+            low_kg, high_kg = row["reflected_interval_kg"]
+            assert low_kg < row["reflected_load_kg"] < high_kg
+
+
+def test_what_known_loads_told_corrects_the_load():
+    told = RestSettings(gain=2.0, step_a=0.0, asymmetry=0.0)
+    plain = Ran(CONFIGURATION, "steps", repeats=1).outcomes[0].results
+    corrected = Ran(CONFIGURATION.model_copy(update={"rest": told}), "steps", repeats=1).outcomes[0].results
+    assert corrected["load_current_a"] == pytest.approx(plain["load_current_a"] / 2.0)
+    assert corrected["min_current_a"] == plain["min_current_a"]
 
 
 def test_the_load_is_reflected_better_than_in_the_paper(sweep):

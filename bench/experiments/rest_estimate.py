@@ -1,0 +1,47 @@
+"""Load and friction of a joint at rest from zero-speed searches, corrected where known loads have told how."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isnan
+
+from bench.configuration import BenchConfiguration
+from bench.experiments.search import Found
+from compensator.breakaway_fit import BreakawayFit, fit
+from compensator.interval import Interval
+
+
+@dataclass(frozen=True, slots=True)
+class RestFinding:
+    """What searches in a row found.
+
+    Attributes:
+        min_current_a, max_current_a: at which the joint lets go, at rate 0 where two rates tell.
+        load_current_a, friction_current_a: eqs (9), (10), corrected.
+        load_interval_a, friction_interval_a: 95 %, [low, high]; None where the searches do not tell.
+    """
+
+    min_current_a: float
+    max_current_a: float
+    load_current_a: float
+    friction_current_a: float
+    load_interval_a: list[float] | None
+    friction_interval_a: list[float] | None
+
+
+def finding(found: Sequence[Found], configuration: BenchConfiguration) -> RestFinding:
+    """Of searches that each have an estimate."""
+    plain = fitted(found)
+    mean_a, half_a = plain.load_current_a.value, plain.friction_current_a.value
+    load, friction = plain.load_current_a, plain.friction_current_a
+    if configuration.rest is not None:
+        load, friction = configuration.rest.calibration().estimate(plain)
+    return RestFinding(mean_a - half_a, mean_a + half_a, load.value, friction.value, _ends(load), _ends(friction))
+
+
+def fitted(found: Sequence[Found]) -> BreakawayFit:
+    """All breakaways of the searches together, without corrections."""
+    return fit([breakaway for one in found for breakaway in one.breakaways])
+
+
+def _ends(interval: Interval) -> list[float] | None:
+    return None if isnan(interval.low) else [interval.low, interval.high]

@@ -1,0 +1,183 @@
+"""What eqs (9), (10) leave in the load, found once on known loads: asymmetry, gear loss, scatter; and taken out again.
+
+Let F be the friction of the joint at rest without a moment on it, growing with the weight W on its axis, and L the
+current of the load. Then the two currents of breakaway have mean and half difference
+
+    M = a L + c sgn(L) + r F        eq. (9) would have M = L
+    D = F + b |L| + e [L != 0]      eq. (10) would have D = F whatever the angle
+    F = f0 + f1 W
+
+r: friction is (1 + r) F forwards, (1 - r) F backwards. a, b, c: gear loss (`gear_loss`); the teeth lose b L on average,
+(a - 1) L more in driving than in being driven, and pass on c of the friction behind them. e: friction behind the teeth,
+which does not show where they are free. L = 0 shows r and F alone; another angle under the same loads shows the rest.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import copysign, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from compensator.breakaway_fit import BreakawayFit
+from compensator.errors import CalibrationError
+from compensator.gear_loss import GearLoss
+from compensator.interval import Interval
+
+BAND = 1.959964
+FLOOR_A = 1e-6  # least scatter, where a joint shows none
+LEAST_POINTS = 6
+
+
+class RestPoint(NamedTuple):
+    """One search under a known load.
+
+    Attributes:
+        load_current_a: L, by weight, lever, gear ratio and torque constant [A]; 0 where the load hangs straight down.
+        load_kg: W.
+        found: M and D, with their scatter.
+    """
+
+    load_current_a: float
+    load_kg: float
+    found: BreakawayFit
+
+
+class RestEstimate(NamedTuple):
+    """Load and friction of a joint at rest.
+
+    Attributes:
+        load_current_a: I_load [A] with its 95 % interval.
+        friction_current_a: F [A], what eq. (10) would give without a moment; selects the friction curve.
+    """
+
+    load_current_a: Interval
+    friction_current_a: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class RestCalibration:
+    """What known loads told.
+
+    Attributes:
+        gain, step_a, asymmetry: a, c, r.
+        covariance: of the three, in that order; rows of A, A, 1.
+        slope, offset_a: b, e.
+        floor_a, scatter: standard deviation of one breakaway: sqrt(floor^2 + (scatter F)^2).
+        asymmetry_told: 95 % interval of r.
+    """
+
+    gain: float = 1.0
+    step_a: float = 0.0
+    asymmetry: float = 0.0
+    covariance: tuple[tuple[float, ...], ...] = ((0.0,) * 3,) * 3
+    slope: float = 0.0
+    offset_a: float = 0.0
+    floor_a: float = FLOOR_A
+    scatter: float = 0.0
+
+    @property
+    def asymmetry_told(self) -> Interval:
+        """r with its 95 % interval."""
+        half = BAND * sqrt(self.covariance[2][2])
+        return Interval(self.asymmetry, self.asymmetry - half, self.asymmetry + half)
+
+    def gear_loss(self) -> GearLoss:
+        """The same loss as it acts on a joint in motion, never below 0."""
+        more = self.gain - 1.0
+        return GearLoss(
+            max(self.slope + more, 0.0), min(max(self.slope - more, 0.0), 0.99), 2.0 * max(self.step_a, 0.0)
+        )
+
+    def scatter_a(self, friction_a: float) -> float:
+        """Standard deviation of one breakaway [A]."""
+        return sqrt(self.floor_a**2 + (self.scatter * friction_a) ** 2)
+
+    def estimate(self, found: BreakawayFit) -> RestEstimate:
+        """Load and friction from the breakaways of one search."""
+        mean_a, half_a = found.load_current_a.value, found.friction_current_a.value
+        # less than that, and friction behind the teeth explains it: they may be free
+        touches = 1.0 if abs(mean_a - self.asymmetry * half_a) > 2.0 * self.step_a else 0.0
+        load_a = self._load_a(mean_a, half_a) if touches else (mean_a - self.asymmetry * half_a) / 2.0 / self.gain
+        friction_a = max(half_a - self.slope * abs(load_a) - self.offset_a * touches, 0.0)
+        noise_a = self.scatter_a(half_a)
+        mean_noise_a, half_noise_a = noise_a * sqrt(found.load_variance), noise_a * sqrt(found.friction_variance)
+        gradient = np.array([load_a, copysign(touches, load_a), friction_a])
+        known_a2 = float(gradient @ np.array(self.covariance) @ gradient)
+        width_a = BAND * sqrt(mean_noise_a**2 + (self.asymmetry * half_noise_a) ** 2 + known_a2) / self.gain
+        friction_width_a = BAND * sqrt(half_noise_a**2 + (self.slope * mean_noise_a) ** 2)
+        return RestEstimate(
+            Interval(load_a, load_a - width_a, load_a + width_a),
+            Interval(friction_a, friction_a - friction_width_a, friction_a + friction_width_a),
+        )
+
+    def _load_a(self, mean_a: float, half_a: float) -> float:
+        """L from M and D, where the teeth touch."""
+        way = copysign(1.0, mean_a - self.asymmetry * half_a)
+        left_a = mean_a - way * self.step_a - self.asymmetry * (half_a - self.offset_a)
+        return left_a / (self.gain - self.asymmetry * self.slope * way)
+
+
+def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
+    """From searches at angle 0 and at another angle, each under two loads or more.
+
+    Raises:
+        CalibrationError: too few points, or no angle with (or without) a moment, or one load only.
+    """
+    _check(points)
+    load_a = np.array([point.load_current_a for point in points])
+    found = [point.found for point in points]
+    floor_a, scatter = _scatter(found)
+    half_a = np.array([one.friction_current_a.value for one in found])
+    noise_a = np.hypot(floor_a, scatter * half_a)
+    touches = (load_a != 0.0).astype(float)
+    weights = 1.0 / (noise_a * np.sqrt([one.friction_variance for one in found]))
+    weight_kg = np.array([point.load_kg for point in points])
+    (f0, f1, slope, offset_a), _ = _fit([np.ones_like(load_a), weight_kg, np.abs(load_a), touches], half_a, weights)
+    friction_a = f0 + f1 * weight_kg
+    weights = 1.0 / (noise_a * np.sqrt([one.load_variance for one in found]))
+    mean_a = np.array([one.load_current_a.value for one in found])
+    (gain, step_a, asymmetry), covariance = _fit([load_a, np.sign(load_a), friction_a], mean_a, weights)
+    return RestCalibration(
+        gain, step_a, asymmetry, tuple(map(tuple, covariance.tolist())), slope, offset_a, floor_a, scatter
+    )
+
+
+def _fit(
+    columns: list[NDArray[np.float64]], values: NDArray[np.float64], weights: NDArray[np.float64]
+) -> tuple[list[float], NDArray[np.float64]]:
+    matrix = np.column_stack(columns) * weights[:, None]
+    if np.linalg.matrix_rank(matrix) < len(columns):
+        raise CalibrationError(
+            "the searches do not tell gear loss from asymmetry; allowed are two loads or more, hanging straight down "
+            "and at another angle such as 1.57 rad. Run a load sweep over more loads"
+        )
+    solution: list[float] = np.linalg.lstsq(matrix, values * weights, rcond=None)[0].tolist()
+    covariance = np.asarray(np.linalg.inv(matrix.T @ matrix), dtype=np.float64)
+    return solution, covariance
+
+
+def _scatter(found: Sequence[BreakawayFit]) -> tuple[float, float]:
+    """Floor and share of the scatter of a breakaway, from that within each search."""
+    variance = np.array([one.scatter_a**2 for one in found])
+    friction_a = np.array([one.friction_current_a.value for one in found])
+    scale = np.mean(variance) or FLOOR_A**2
+    # a variance is as uncertain as it is large: weighed by where the first fit puts it
+    columns = np.column_stack([np.ones_like(variance), friction_a**2])
+    weights = np.ones_like(variance)
+    for _ in range(5):
+        solution = nnls(columns * weights[:, None] / scale, variance * weights / scale)[0]
+        weights = scale / np.maximum(columns @ solution, 0.01 * scale)
+    return max(sqrt(solution[0]), FLOOR_A), sqrt(solution[1])
+
+
+def _check(points: Sequence[RestPoint]) -> None:
+    straight = {point.load_kg for point in points if point.load_current_a == 0.0}
+    aside = {point.load_kg for point in points if point.load_current_a != 0.0}
+    if len(points) < LEAST_POINTS or len(straight) < 2 or len(aside) < 2:
+        raise CalibrationError(
+            f"{len(points)} searches, with {len(straight)} loads straight down and {len(aside)} aside; allowed are "
+            f"{LEAST_POINTS} or more, two loads or more each. Run a load sweep over more loads and angles"
+        )

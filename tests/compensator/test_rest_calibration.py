@@ -1,0 +1,104 @@
+"""What known loads tell of a joint at rest, and what it corrects."""
+
+from math import copysign, pi, sin
+
+import numpy as np
+import pytest
+
+from compensator.breakaway_fit import Breakaway, fit
+from compensator.errors import CalibrationError
+from compensator.rest_calibration import RestCalibration, RestPoint, calibrate
+
+GAIN, STEP_A, ASYMMETRY, SLOPE, OFFSET_A = 1.03, 0.002, 0.15, 0.24, 0.004
+FULL_A, SCATTER = 4.9, 0.015  # A per kg at 90 degrees
+
+
+def searched(load_a, load_kg, generator=None, pairs=4):
+    """One search on a joint that is exactly as the calibration describes it, but for scatter."""
+    friction_a = 0.1 + 1.7 * load_kg
+    touches = 1.0 if load_a != 0.0 else 0.0
+    mean_a = GAIN * load_a + STEP_A * copysign(touches, load_a) + ASYMMETRY * friction_a
+    half_a = friction_a + SLOPE * abs(load_a) + OFFSET_A * touches
+    found = []
+    for pair in range(pairs):
+        for sign in (1.0, -1.0):
+            noise_a = SCATTER * half_a * generator.standard_normal() if generator else 0.0
+            rate = (0.6, 0.15)[pair % 2]
+            found.append(Breakaway(sign, mean_a + sign * (half_a + 0.03 * rate ** (2 / 3)) + noise_a, rate))
+    return fit(found)
+
+
+def points(generator=None, repeats=1, loads=(0.0, 0.03, 0.06, 0.1), angles=(0.0, pi / 2)):
+    return [
+        RestPoint(FULL_A * load_kg * sin(angle), load_kg, searched(FULL_A * load_kg * sin(angle), load_kg, generator))
+        for load_kg in loads
+        for angle in angles
+        for _ in range(repeats)
+    ]
+
+
+def test_every_constant_is_found_where_nothing_scatters():
+    found = calibrate(points())
+    assert found.gain == pytest.approx(GAIN)
+    assert found.step_a == pytest.approx(STEP_A)
+    assert found.asymmetry == pytest.approx(ASYMMETRY)
+    assert found.slope == pytest.approx(SLOPE)
+    assert found.offset_a == pytest.approx(OFFSET_A)
+
+
+@pytest.mark.parametrize("load_kg", [0.0, 0.02, 0.05, 0.09])
+@pytest.mark.parametrize("angle", [-pi / 2, 0.0, 1.0, pi / 2])
+def test_the_load_comes_out_under_any_load_at_any_angle(load_kg, angle):
+    load_a = FULL_A * load_kg * sin(angle)
+    estimate = calibrate(points()).estimate(searched(load_a, load_kg))
+    assert estimate.load_current_a.value == pytest.approx(load_a, abs=1e-9)
+    assert estimate.friction_current_a.value == pytest.approx(0.1 + 1.7 * load_kg, abs=1e-9)
+
+
+def test_asymmetry_is_reported_with_an_interval_that_holds_it():
+    generator, held = np.random.default_rng(2), 0
+    for _ in range(200):
+        told = calibrate(points(generator, repeats=3)).asymmetry_told
+        held += told.low <= ASYMMETRY <= told.high
+    assert held >= 180  # 190 expected; three standard deviations are 9
+
+
+def test_the_interval_of_the_load_holds_the_truth_in_95_of_100():
+    generator, held, trials = np.random.default_rng(4), 0, 0
+    for _ in range(60):
+        calibration = calibrate(points(generator, repeats=3))
+        for load_kg in (0.02, 0.05, 0.08):
+            load_a = FULL_A * load_kg
+            for _ in range(5):
+                told = calibration.estimate(searched(load_a, load_kg, generator)).load_current_a
+                held += told.low <= load_a <= told.high
+                trials += 1
+    assert 0.92 <= held / trials <= 0.98
+
+
+def test_gear_loss_in_motion_follows():
+    loss = calibrate(points()).gear_loss()
+    assert loss.driving == pytest.approx(SLOPE + GAIN - 1.0)
+    assert loss.back_driving == pytest.approx(SLOPE - GAIN + 1.0)
+    assert loss.carried_a == pytest.approx(2.0 * STEP_A)
+
+
+def test_nothing_known_is_eqs_9_and_10():
+    found = searched(0.3, 0.06)
+    estimate = RestCalibration().estimate(found)
+    assert estimate.load_current_a.value == pytest.approx(found.load_current_a.value)
+    assert estimate.friction_current_a.value == pytest.approx(found.friction_current_a.value)
+
+
+@pytest.mark.parametrize(
+    "few",
+    [
+        points(loads=(0.0, 0.05)),
+        points(angles=(0.0,), repeats=3),
+        points(loads=(0.05,), repeats=4),
+        points(angles=(pi / 2,), repeats=3),
+    ],
+)
+def test_searches_that_do_not_tell_are_refused(few):
+    with pytest.raises(CalibrationError, match="load sweep"):
+        calibrate(few)
