@@ -8,7 +8,7 @@ class Clock(Protocol):
     """Paces control cycles."""
 
     overruns: int
-    """Cycles that began more than a whole period late, since `start`."""
+    """Cycles that were lost because one began more than a whole period late, since the clock was made."""
 
     patience_s: float
     """How long a cycle may wait for the store [s]: nothing is lost by it where time itself waits."""
@@ -54,7 +54,6 @@ class WallClock:
 
     def start(self, period_s: float) -> None:
         """The first cycle begins now."""
-        self.overruns = 0
         self._period_s = period_s
         self._deadline_s = time.perf_counter()
 

@@ -19,8 +19,8 @@ class RoboclawSettings:
         watchdog_s: silence after which the controller stops the motor [s], in steps of 0.1 s.
         answer_timeout_s: longest wait for one answer [s].
         slow_every: cycles between two questions for status, supply voltage or temperature, in turn.
-        velocity: "drive": command 18, one question more per cycle, filtered by the controller over a while that the
-            manual does not state; "none": left to the control loop, which derives it from the position.
+        velocity: "drive": command 18, one question more per cycle, timed by the controller and filtered over a while
+            that the manual does not state; "none": left to the control loop, which derives it from the position.
         current: "signed" where the controller reports the current with the sign of the motor's torque, "magnitude"
             where it does not; then it takes the sign of the applied duty.
     """
@@ -32,5 +32,5 @@ class RoboclawSettings:
     watchdog_s: float = 0.2
     answer_timeout_s: float = 0.05
     slow_every: int = 4
-    velocity: Literal["drive", "none"] = "none"
+    velocity: Literal["drive", "none"] = "drive"
     current: Literal["signed", "magnitude"] = "signed"
