@@ -42,6 +42,10 @@ class BusyError(BenchError, RuntimeError):
     """Raised when an experiment is started while another one runs."""
 
 
+class NotCommissionedError(BenchError, RuntimeError):
+    """Raised when a real drive is to be used that has not passed the commissioning move with this configuration."""
+
+
 class PromptError(BenchError, RuntimeError):
     """Raised when a question is answered that is not the one asked now."""
 

@@ -4,6 +4,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from bench import commissioned
 from bench.calibration import with_friction
 from bench.clock import Clock, VirtualClock, WallClock
 from bench.configuration import BenchConfiguration
@@ -196,6 +197,8 @@ class Runner:
         self._description = None
         try:
             loop = self._open(equipment.drive, clock)
+            if kind.name != commissioned.KIND and not is_simulated(configuration):
+                commissioned.require_commissioned(self._store, provenance(configuration, self._description))
         except BaseException:
             equipment.drive.close()
             raise

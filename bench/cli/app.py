@@ -10,6 +10,7 @@ from bench.cli import (
     calibrate,
     challenge,
     demo,
+    doctor,
     effects,
     experiments,
     recordings,
@@ -27,6 +28,7 @@ from bench.cli.output import say
 _ORDER = (
     "demo",
     "serve",
+    "doctor",
     "run",
     "status",
     "stop",
@@ -94,6 +96,7 @@ def options(
 
 
 app.command("serve")(serve.serve)
+app.command("doctor")(doctor.doctor)
 app.add_typer(run.app, name="run")
 app.command("status")(service.status)
 app.command("stop")(service.stop)

@@ -22,7 +22,9 @@ class RoboclawDriveSettings(RealDriveSettings):
         4, "cycles", "Cycles between questions for status, supply voltage or temperature, in turn", ge=1, le=100
     )
     velocity: Literal["drive", "none"] = quantity(
-        "drive", "", "'drive': its own, filtered speed (command 18); 'none': derived from the position, one question less"
+        "drive",
+        "",
+        "'drive': its own, filtered speed (command 18); 'none': derived from the position, one question less",
     )
     current: Literal["signed", "magnitude"] = quantity(
         "signed", "", "'magnitude' where it reports the current without the sign of the torque"

@@ -1,0 +1,1 @@
+"""What `friction-bench doctor` finds out about a drive, before and without an experiment."""
