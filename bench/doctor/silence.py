@@ -56,5 +56,7 @@ def _silence(drive: Drive, period_s: float) -> Silence:
         raise
     except DriveError as error:
         return Silence(True, f"after {silent_s:.2g} s of silence: {error}")
-    text = f"after {silent_s:.2g} s of silence its state is {status.name}; it has to stop after {description.watchdog_s:g} s"
-    return Silence(status is not Status.ENABLED, text)
+    wanted = f"it has to stop after {description.watchdog_s:g} s"
+    return Silence(
+        status is not Status.ENABLED, f"after {silent_s:.2g} s of silence its state is {status.name}; {wanted}"
+    )

@@ -17,7 +17,7 @@ from sim_backend.devices.roboclaw.settings import Settings
 from sim_backend.devices.roboclaw.status import WARM_C, Flag, flag_of
 from sim_backend.parameters import PlantParameters
 
-VERSION = b"USB Roboclaw 2x15a v4.1.34\n\0"
+VERSION = b"USB Roboclaw 2x15a v4.1.34 simulated\n\0"  # so that no record of it is taken for one of hardware
 SPEED_WINDOW_S = 1.0 / 300.0  # of commands 30, 31
 MEASURED = {"encoder": {"speed_window_s": SPEED_WINDOW_S}}
 _SPEED_LAG_S = 0.02  # of commands 18, 19, which the manual calls filtered and does not say how

@@ -1,0 +1,25 @@
+"""`friction-bench doctor` on the simulated bench; on real drives see tests/drivers."""
+
+import json
+
+
+def test_it_says_what_the_drive_is_and_moves_nothing(command):
+    found = command("doctor", "--json")
+    assert found.exit_code == 0, found.output
+    connection = json.loads(found.stdout)["connection"]
+    assert connection["description"]["modes"] == ["duty"]
+    assert connection["sample"]["status"] == "DISABLED"
+    assert connection["sample"]["current_a"] is None
+    assert command("experiments", "--json").stdout.strip() == "[]"
+
+
+def test_the_move_is_an_experiment_on_record(command):
+    found = command("doctor", "--move", "--operator", "R. Saini")
+    assert found.exit_code == 0, found.output
+    assert "commissioning move: completed" in found.output
+    [experiment] = json.loads(command("experiments", "--json").stdout)
+    assert (experiment["kind"], experiment["outcome"], experiment["operator"]) == (
+        "commissioning",
+        "completed",
+        "R. Saini",
+    )
