@@ -40,11 +40,11 @@ class Telemetry:
         self._channel = commands.CHANNELS[settings.motor]
         self._index = self._channel.index
         self._is_signed = settings.current == "signed"
-        self._reads_speed = settings.velocity == "drive"
         self._slow_every = settings.slow_every
         self._encoder = EncoderCount(link.read(self._channel.encoder)[0])
         self._status, self._flags = _status_layout(link)
         self.faults: list[str] = []
+        self._has_speed = settings.velocity == "drive" and _answers(link, self._channel.speed)
         self.has_current = _answers(link, commands.CURRENTS)
         self.has_supply = _answers(link, commands.SUPPLY)
         self.has_temperature = _answers(link, commands.TEMPERATURE)
@@ -59,7 +59,7 @@ class Telemetry:
     def measured(self) -> frozenset[str]:
         """Names of the `Sample` fields that are measured."""
         optional = {
-            "velocity_rad_s": self._reads_speed,
+            "velocity_rad_s": self._has_speed,
             "current_a": self.has_current,
             "supply_v": self.has_supply,
             "temperature_c": self.has_temperature,
@@ -89,7 +89,7 @@ class Telemetry:
         position_rad = joint.position_rad(self._encoder.follow(link.read(channel.encoder)[0]))
         position_at_s = time.perf_counter()
         velocity_rad_s, velocity_at_s = nan, position_at_s
-        if self._reads_speed:
+        if self._has_speed:
             velocity_rad_s = joint.velocity_rad_s(link.read(channel.speed)[0])
             velocity_at_s = time.perf_counter()
         duty = joint.motor_sign * link.read(commands.APPLIED_DUTY)[index] / DUTY_FULL
@@ -101,7 +101,7 @@ class Telemetry:
         now_s = time.perf_counter()
         ages = Ages(
             now_s - position_at_s,
-            now_s - velocity_at_s if self._reads_speed else 0.0,
+            now_s - velocity_at_s if self._has_speed else 0.0,
             now_s - duty_at_s,
             now_s - duty_at_s if self.has_current else 0.0,
             now_s - self._supply_at_s if self.has_supply else 0.0,

@@ -25,6 +25,8 @@ class Answers:
         self.data = {
             15: bytes([2]),
             16: bytes(5),
+            18: bytes(5),
+            19: bytes(5),
             21: VERSION,
             24: (240).to_bytes(2, "big"),
             48: bytes(4),

@@ -57,7 +57,7 @@ def test_a_cycle_asks_in_this_order(answers):
     drive.enable(Mode.DUTY)
     answers.sent.clear()
     drive.exchange(duty(0.5))
-    assert [packet.hex(" ") for packet in answers.sent] == ["80 20 40 00 56 32", "80 10", "80 30", "80 31"]
+    assert [packet.hex(" ") for packet in answers.sent] == ["80 20 40 00 56 32", "80 10", "80 12", "80 30", "80 31"]
 
 
 def test_a_sample_in_si_units(answers):
@@ -72,7 +72,6 @@ def test_a_sample_in_si_units(answers):
     assert sample.current_a == pytest.approx(-1.5)
     assert (sample.supply_v, sample.temperature_c) == (pytest.approx(24.0), pytest.approx(30.5))
     assert sample.status is Status.ENABLED
-    assert isnan(sample.velocity_rad_s)  # left to the loop, which derives it
     assert 0.0 < sample.ages.duty_s <= sample.ages.position_s == sample.age_s
     assert answers.duties[-1] == 16384
 
@@ -98,12 +97,12 @@ def test_a_current_without_sign_takes_that_of_the_duty(answers):
 
 def test_speed_where_it_is_wanted(answers):
     answers.data[18] = (-2000).to_bytes(4, "big", signed=True) + b"\x01"
-    sample = opened(velocity="drive").exchange(OFF)
-    assert sample.velocity_rad_s == pytest.approx(-2000 * COUNT_RAD)
+    assert opened().exchange(OFF).velocity_rad_s == pytest.approx(-2000 * COUNT_RAD)
+    assert isnan(opened(velocity="none").exchange(OFF).velocity_rad_s)  # left to the loop, which derives it
 
 
 def test_what_is_not_answered_is_not_measured(answers):
-    answers.data |= {49: None, 82: None}
+    answers.data |= {18: None, 49: None, 82: None}
     drive = opened()
     sample = drive.exchange(OFF)
     assert isnan(sample.current_a)
