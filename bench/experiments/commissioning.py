@@ -9,9 +9,10 @@ from bench.cycle import OFF, Procedure, Reading
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.commissioning_checks import Push, findings
 from bench.experiments.conditions import conditions
-from bench.experiments.joint import Joint, Part, resolution_rad
+from bench.experiments.joint import Joint, Part
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.refusal import refuse_angles, refuse_currents
+from bench.experiments.resolution import resolution_rad
 from bench.quantities import quantity
 from drivers.contract import Command, Mode
 
