@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from bench.configuration import BenchConfiguration
+from bench.drives.canopen import CanopenDriveSettings
 from bench.drives.real import RealDriveSettings, joint_scale
 from bench.drives.roboclaw import RoboclawDriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
@@ -47,6 +48,8 @@ def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equi
             return _simulated(settings)
         case RoboclawDriveSettings() as settings:
             return _roboclaw(settings, configuration.rig, ask)
+        case CanopenDriveSettings() as settings:
+            return _canopen(settings, configuration.rig, ask)
 
 
 def is_simulated(configuration: BenchConfiguration) -> bool:
@@ -86,6 +89,19 @@ def _roboclaw(settings: RoboclawDriveSettings, rig: Rig, ask: Ask) -> Equipment:
 
     line = RoboclawSettings(**_driver_values(settings))
     return Equipment(RoboclawDrive(line, joint_scale(settings, rig)), PersonTechnician(ask))
+
+
+def _canopen(settings: CanopenDriveSettings, rig: Rig, ask: Ask) -> Equipment:
+    from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+    from drivers.errors import DriveConfigurationError
+
+    values = _driver_values(settings)
+    bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    try:
+        drive = CanopenDrive(CanopenSettings(bus=bus, **values), joint_scale(settings, rig))
+    except DriveConfigurationError as error:
+        raise ConfigurationError(str(error)) from error
+    return Equipment(drive, PersonTechnician(ask))
 
 
 def _driver_values(settings: RealDriveSettings) -> dict[str, Any]:

@@ -4,10 +4,11 @@ from typing import Annotated, Any
 
 from pydantic import Discriminator, Tag
 
+from bench.drives.canopen import CanopenDriveSettings
 from bench.drives.roboclaw import RoboclawDriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
 
-KINDS = ("sim", "roboclaw")
+KINDS = ("sim", "roboclaw", "canopen")
 
 
 def _tag(section: Any) -> str:
@@ -17,6 +18,8 @@ def _tag(section: Any) -> str:
 
 
 DriveSettings = Annotated[
-    Annotated[SimulatedDriveSettings, Tag("tagged-sim")] | Annotated[RoboclawDriveSettings, Tag("tagged-roboclaw")],
+    Annotated[SimulatedDriveSettings, Tag("tagged-sim")]
+    | Annotated[RoboclawDriveSettings, Tag("tagged-roboclaw")]
+    | Annotated[CanopenDriveSettings, Tag("tagged-canopen")],
     Discriminator(_tag, custom_error_type="kind", custom_error_message=f"kind should be one of {', '.join(KINDS)}"),
 ]

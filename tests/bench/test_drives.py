@@ -8,6 +8,7 @@ from bench.errors import ConfigurationError
 from bench.technician import PersonTechnician
 from drivers.errors import DriveConnectionError
 
+CANOPEN = {"kind": "canopen", "interface": "slcan", "channel": "/dev/absent", "node_id": 5, "watchdog_s": 0.2}
 ROBOCLAW = {"kind": "roboclaw", "port": "/dev/absent", "motor_sign": -1, "watchdog_s": 0.3}
 
 
@@ -28,6 +29,20 @@ def test_kind_chooses_the_drive():
         drive.open(0.01)
 
 
+def test_a_canopen_drive_is_made_of_flat_settings():
+    drive, technician = make_equipment(configured(CANOPEN), lambda _sentence: True)
+    assert isinstance(technician, PersonTechnician)
+    assert drive.describe().device == "/dev/absent node 5"
+    assert drive.describe().watchdog_s == pytest.approx(0.2)
+    with pytest.raises(DriveConnectionError, match=r"the bus slcan /dev/absent does not open"):
+        drive.open(0.01)
+
+
+def test_settings_that_contradict_each_other_are_a_configuration_error():
+    with pytest.raises(ConfigurationError, match=r"answer_s = 0.3: more than 0 s and less than the watchdog"):
+        make_equipment(configured(CANOPEN | {"answer_s": 0.3}))
+
+
 def test_the_simulated_drive_has_a_seed():
     assert seed_of(default_configuration()) == 1
 
@@ -35,9 +50,12 @@ def test_the_simulated_drive_has_a_seed():
 @pytest.mark.parametrize(
     ("drive", "message"),
     [
-        ({"kind": "roboclaws"}, r"drive: found .*roboclaws.*; kind should be one of sim, roboclaw"),
+        ({"kind": "roboclaws"}, r"drive: found .*roboclaws.*; kind should be one of sim, roboclaw, canopen"),
         ({"kind": "roboclaw"}, r"bench.toml: drive.port: missing"),
         (ROBOCLAW | {"address": 5}, r"address: found 5; should be greater than or equal to 128"),
+        (CANOPEN | {"channnel": "can0"}, r"channnel: unknown key"),
+        (CANOPEN | {"bitrate": 123456}, r"bitrate: found 123456"),
+        (CANOPEN | {"velocity_unit": "rmp"}, r"velocity_unit: found 'rmp'"),
         (ROBOCLAW | {"seed": 3}, r"seed: unknown key"),
         (ROBOCLAW | {"encoder_sign": 2}, r"encoder_sign: found 2; should be 1 or -1"),
     ],

@@ -1,0 +1,267 @@
+"""The fault table: what goes wrong between driver and drive, and how it ends."""
+
+import time
+
+import pytest
+
+from drivers.contract import Command, Mode, Status
+from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
+
+OFF = Command(Mode.OFF)
+PUSH = Command(Mode.CURRENT, 0.2)
+PATIENCE_S = 5.0  # of a test on a busy machine; the time limits themselves are far below
+
+
+def _moving(drive):
+    drive.open(0.005)
+    drive.enable(Mode.CURRENT)
+    drive.exchange(PUSH)
+    return drive
+
+
+def _run(drive, command=PUSH):
+    """Exchange until it raises."""
+    deadline_s = time.perf_counter() + PATIENCE_S
+    while time.perf_counter() < deadline_s:
+        drive.exchange(command)
+        time.sleep(0.002)
+    pytest.fail("nothing was raised")
+
+
+def _await_off(node):
+    deadline_s = time.perf_counter() + PATIENCE_S
+    while node.enabled:
+        assert time.perf_counter() < deadline_s, "it is still on"
+        time.sleep(0.001)
+
+
+def _reconnects(drive):
+    drive.close()
+    drive.open(0.005)
+    drive.enable(Mode.CURRENT)
+    assert drive.exchange(PUSH).status is Status.ENABLED
+
+
+def test_cable_out_ends_in_an_error_and_the_drives_own_stop(node, drive_of):
+    drive = _moving(drive_of())
+    node.silent = True
+    with pytest.raises(DriveConnectionError, match=r"no answer to SYNC for .* s; at most 0.05 s is allowed"):
+        _run(drive)
+    with pytest.raises(DriveConnectionError, match="power-off is not confirmed"):
+        drive.disable()
+    _await_off(node)
+    node.silent = False
+    _reconnects(drive)
+
+
+def test_a_host_that_falls_silent_is_stopped_for_within_the_watchdog(node, drive_of):
+    drive = _moving(drive_of())
+    start_s = time.perf_counter()
+    _await_off(node)
+    # the double looks at its clock every 2 ms; the last heartbeat may be a quarter of the watchdog old
+    assert 0.07 < node.off_at_s - start_s < 0.1 + PATIENCE_S
+    with pytest.raises(DriveFault, match="0x8130, no heartbeat from the host in time"):
+        _run(drive)
+    drive.clear_fault()
+    drive.enable(Mode.CURRENT)
+    assert drive.exchange(PUSH).status is Status.ENABLED
+
+
+def test_a_watchdog_that_takes_the_drive_out_of_operational_is_named(node, drive_of):
+    node.absent.add((0x1029, 1))  # its value is 0: leave OPERATIONAL
+    drive = _moving(drive_of())
+    _await_off(node)
+    with pytest.raises(DriveFault, match=r"left OPERATIONAL, it is PRE_OPERATIONAL: 0x8130"):
+        _run(drive)
+    drive.clear_fault()
+    drive.enable(Mode.CURRENT)
+    assert drive.exchange(PUSH).status is Status.ENABLED
+
+
+def test_a_host_that_went_away_leaves_a_fault_that_its_successor_clears(node, drive_of):
+    killed = _moving(drive_of())
+    _await_off(node)
+    successor = drive_of()
+    successor.open(0.005)
+    assert successor.exchange(OFF).status is Status.DISABLED
+    killed.close()
+
+
+def test_another_fault_is_not_cleared_by_connecting(node, drive_of):
+    node.fail(0x2310)
+    drive = drive_of()
+    drive.open(0.005)
+    assert drive.exchange(OFF).status is Status.FAULT
+    with pytest.raises(DriveStateError, match="continuous over-current"):
+        drive.enable(Mode.CURRENT)
+
+
+def test_a_fault_during_motion_has_a_name_and_clears_to_off(node, drive_of):
+    drive = _moving(drive_of())
+    node.fail(0x8611)
+    with pytest.raises(DriveFault, match="0x8611, following error"):
+        _run(drive)
+    with pytest.raises(DriveFault, match="following error"):
+        drive.exchange(PUSH)
+    assert drive.exchange(OFF).status is Status.FAULT
+    drive.clear_fault()
+    assert node.get(0x6041) & 0x6F == 0x40, "it stops at SWITCH ON DISABLED"
+    assert drive.exchange(OFF).status is Status.DISABLED
+    drive.enable(Mode.CURRENT)
+
+
+def test_a_fault_without_emcy_is_read_from_the_drive(node, drive_of):
+    drive = _moving(drive_of())
+    node.put(0x603F, 0, 0x3210)
+    node.put(0x6041, 0, 0x0208)
+    with pytest.raises(DriveFault, match="0x3210, over-voltage"):
+        _run(drive)
+
+
+def test_a_fault_that_stays_cannot_be_cleared(node, drive_of):
+    drive = _moving(drive_of())
+    node.fail(0x4310)
+    node._become = lambda _word: None
+    with pytest.raises(DriveFault):
+        _run(drive)
+    with pytest.raises(DriveFault, match="cannot be cleared: 0x4310, drive temperature too high"):
+        drive.clear_fault()
+
+
+def test_a_stage_that_is_taken_away_without_a_fault_is_noticed(node, drive_of):
+    drive = _moving(drive_of())
+    node._control = lambda: None
+    node.put(0x6041, 0, 0x0240)
+    with pytest.raises(DriveFault, match=r"switched itself off, state 'switch on disabled'.*safe torque off"):
+        _run(drive)
+
+
+def test_a_drive_that_does_not_switch_on_says_where_it_stays(node, drive_of):
+    drive = drive_of()
+    drive.open(0.005)
+    node._control = lambda: None
+    with pytest.raises(DriveStateError, match="state is 'switch on disabled' 1 s after enabling began"):
+        drive.enable(Mode.CURRENT)
+    assert node.get(0x1016, 1) == 0
+
+
+@pytest.mark.parametrize("read_only", [False, True])
+def test_a_mode_that_is_refused_leaves_the_power_off(node, drive_of, read_only):
+    drive = drive_of()
+    drive.open(0.005)
+    node.refuse_mode = True
+    if read_only:
+        node.read_only.add((0x6060, 0))
+    with pytest.raises(DriveConfigurationError, match=r"mode 10 is refused: .*; 10 is wanted"):
+        drive.enable(Mode.CURRENT)
+    assert not node.enabled
+    with pytest.raises(DriveStateError):
+        drive.exchange(PUSH)
+
+
+def test_a_mode_that_the_drive_does_not_list_is_not_tried(node, drive_of):
+    node.put(0x6502, 0, 1 << 7)
+    drive = drive_of()
+    drive.open(0.005)
+    assert drive.describe().modes == {Mode.POSITION}
+    with pytest.raises(DriveConfigurationError, match="has no mode 'current', only position"):
+        drive.enable(Mode.CURRENT)
+
+
+def test_a_lost_answer_gives_the_old_sample_with_its_age_and_is_counted(node, drive_of):
+    drive = _moving(drive_of())
+    before = drive.exchange(PUSH)
+    node.drop_answers = 1
+    stale = drive.exchange(PUSH)
+    assert stale.number == before.number
+    assert stale.time_s == before.time_s
+    assert stale.age_s > before.age_s + 0.009, "it waited"
+    fresh = drive.exchange(PUSH)
+    assert fresh.number == before.number + 2
+    assert fresh.age_s < stale.age_s
+    assert (drive.counts.missed, drive.counts.late, drive.counts.surplus) == (1, 0, 0)
+
+
+def test_an_answer_that_comes_late_is_not_taken_for_the_next_one(node, drive_of):
+    drive = _moving(drive_of())
+    node.delay_s = 0.014  # the cycle waits 10 ms
+    before = drive.exchange(PUSH)
+    after = drive.exchange(PUSH)
+    assert after.number == before.number + 1
+    assert after.age_s > 0.01
+    assert drive.counts.late >= 1
+    assert drive.counts.missed == drive.counts.surplus == 0
+
+
+def test_feedback_that_stays_stale_is_an_error(node, drive_of):
+    drive = _moving(drive_of())
+    node.drop_answers = 10**6
+    with pytest.raises(DriveConnectionError, match="no answer to SYNC"):
+        _run(drive)
+
+
+def test_frames_that_are_not_what_they_should_be_are_counted_and_not_believed(node, drive_of):
+    drive = _moving(drive_of())
+    before = drive.exchange(PUSH)
+    node.drop_answers = 1
+    node._send(0x185, b"\x37\x02")  # too short
+    node._send(0x285, bytes(7))
+    node._send(0x85, b"\x10")
+    node._send(0x705, b"\x33")
+    node._send(0x1FF, bytes(8))  # nobody's
+    stale = drive.exchange(PUSH)
+    assert stale.number == before.number
+    assert drive.garbled == 4
+    assert drive.exchange(PUSH).number == before.number + 2
+
+
+def test_a_drive_that_restarts_in_motion_is_noticed(node, drive_of):
+    drive = _moving(drive_of())
+    node.restart()
+    with pytest.raises(DriveConnectionError, match="has restarted"):
+        _run(drive)
+    _reconnects(drive)
+
+
+def test_a_heartbeat_that_stays_away_is_an_error(node, drive_of):
+    drive = _moving(drive_of())
+    node.mute_heartbeat = True
+    with pytest.raises(DriveConnectionError, match=r"no heartbeat for 0\.1\d+ s"):
+        _run(drive)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "changes", "match"),
+    [
+        ((0x1000, 0), 0x00020191, {}, "device profile is 401; 402, a drive, is wanted"),
+        ((0x1018, 4), 0xBEEF, {"serial_number": 0xCAFE}, "serial_number is 0xBEEF; 0xCAFE is wanted"),
+        ((0x1018, 1), 0x12345, {"profile": "epos4"}, "vendor ID is 0x12345; profile 'epos4' is for 0xFB"),
+        ((0x60A9, 0), 0xFFB44700, {"velocity_unit": "rpm"}, "is 0.1 rpm; the settings say rpm"),
+        ((0x60A9, 0), 0x00010300, {}, "is 0x00010300: no angle per time"),
+        ((0x6075, 0), 0, {}, "does not tell its rated current"),
+    ],
+)
+def test_the_wrong_drive_or_unit_is_refused_before_anything_is_written(node, drive_of, key, value, changes, match):
+    node.put(*key, value)
+    with pytest.raises(DriveConfigurationError, match=match):
+        drive_of(**changes).open(0.005)
+    assert node.get(0x6007) == 1
+
+
+def test_another_encoder_than_configured_is_refused(node, drive_of):
+    node.objects |= {(0x608F, 1): ["<I", 2000], (0x608F, 2): ["<I", 1]}
+    with pytest.raises(DriveConfigurationError, match=r"counts per motor turn are 2000 .* the rig says 4096"):
+        drive_of().open(0.005)
+
+
+def test_nobody_at_the_node_id_is_said_in_bounded_time(node, drive_of):
+    start_s = time.perf_counter()
+    with pytest.raises(DriveConnectionError, match="is the drive on, the cable in, node ID and bit rate right"):
+        drive_of(node_id=6).open(0.005)
+    assert time.perf_counter() - start_s < PATIENCE_S
+
+
+def test_a_drive_that_does_not_answer_sync_is_not_opened(node, drive_of):
+    node.drop_answers = 10**6
+    with pytest.raises(DriveConnectionError, match="0 of 15 SYNC frames were answered"):
+        drive_of().open(0.005)
