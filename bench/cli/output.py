@@ -4,12 +4,20 @@ import json
 import math
 from collections.abc import Iterable, Sequence
 from datetime import datetime
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
+
+from bench.errors import BenchError
+
+
+class FileError(BenchError, OSError):
+    """Raised when a file that a command writes cannot be written."""
+
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
 _MOST_COLUMNS = 200
@@ -73,6 +81,25 @@ def share_interval(value: float | None, low: float | None, high: float | None) -
 def conditions(values: dict[str, Any]) -> str:
     """Conditions of a trial on one line."""
     return ", ".join(f"{key}={text(value)}" for key, value in values.items())
+
+
+def write_whole(path: Path, chunks: Iterable[bytes]) -> None:
+    """Write a file: all of it appears, or nothing.
+
+    Raises:
+        FileError: the place is taken or cannot be written.
+    """
+    if path.exists():
+        raise FileError(f"{path}: is there already; name another file, or remove it")
+    unfinished = path.with_name(f".{path.name}.part")
+    try:
+        with unfinished.open("wb") as file:
+            file.writelines(chunks)
+        unfinished.rename(path)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def _finite(value: Any) -> Any:

@@ -6,19 +6,22 @@ from typing import Annotated
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.output import Json, print_json, say
+from bench.cli.output import Json, print_json, say, write_whole
 
 
 def export(
     context: typer.Context,
     experiment: Annotated[int, typer.Argument(help="Number of the experiment.")],
-    path: Annotated[Path, typer.Argument(help="A folder to make, or a file that ends in .zip.")],
+    path: Annotated[Path, typer.Argument(help="A folder to make, or a file that ends in .zip or .parquet.")],
 ) -> None:
-    """Write all trials of an experiment as a recording set: rig.toml, trials.csv, one CSV per trial."""
-    from bench.recording_set import export_experiment
+    """Write all trials of an experiment: a recording set (rig.toml, trials.csv, one CSV per trial), or one Parquet."""
+    from bench.recording_set import export_experiment, export_parquet
 
     with session_of(context).open_store() as store:
-        export_experiment(store, experiment, path)
+        if path.suffix.lower() == ".parquet":
+            write_whole(path, export_parquet(store, experiment))
+        else:
+            export_experiment(store, experiment, path)
     say(f"experiment {experiment} is in {path}")
 
 

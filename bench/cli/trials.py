@@ -1,11 +1,12 @@
 """`friction-bench trials` and `trial`: what was recorded."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.output import Json, conditions, print_json, table
+from bench.cli.output import Json, conditions, print_json, say, table, write_whole
 
 
 def trials(
@@ -37,17 +38,24 @@ def trial(
     context: typer.Context,
     trial_id: Annotated[int, typer.Argument(metavar="ID", help="Number of the trial.")],
     csv: Annotated[bool, typer.Option("--csv", help="Print all its samples as CSV and nothing else.")] = False,
+    parquet: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write all its samples to a Parquet file instead.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Show one trial: conditions, results, events; or all its samples as CSV."""
-    from bench.recording_set import csv_chunks
+    """Show one trial: conditions, results, events; or all its samples as CSV or Parquet."""
+    from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
     from bench.service.trials import represent
 
     with session_of(context).open_store() as store:
         found = store.trial(trial_id)
         if csv:
-            for chunk in csv_chunks(store.recording(found.id)):
+            for chunk in csv_chunks(stream_of_trial(store, found)):
                 typer.echo(chunk, nl=False)
+            return
+        if parquet is not None:
+            write_whole(parquet, parquet_chunks([stream_of_trial(store, found)]))
+            say(f"trial {found.id} is in {parquet}")
             return
         events = store.events(trial_id)
     if as_json:

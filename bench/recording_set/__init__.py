@@ -1,22 +1,30 @@
 """Recording sets: the one format in which trials enter and leave."""
 
+from bench.recording_set.csv_text import csv_chunks
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping, read_mapping
+from bench.recording_set.parquet import parquet_chunks
 from bench.recording_set.read import read_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.rig_file import read_rig
-from bench.recording_set.transfer import export_experiment, import_recording_set
-from bench.recording_set.write import csv_chunks, write_recording_set
+from bench.recording_set.stream import RecordingStream, stream_of, stream_of_trial
+from bench.recording_set.transfer import export_experiment, export_parquet, import_recording_set
+from bench.recording_set.write import write_recording_set
 
 __all__ = [
     "Mapping",
     "RecordingSet",
     "RecordingSetError",
+    "RecordingStream",
     "csv_chunks",
     "export_experiment",
+    "export_parquet",
     "import_recording_set",
+    "parquet_chunks",
     "read_mapping",
     "read_recording_set",
     "read_rig",
+    "stream_of",
+    "stream_of_trial",
     "write_recording_set",
 ]

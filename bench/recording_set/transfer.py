@@ -1,14 +1,18 @@
 """Recording sets into the store, and experiments out of it."""
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from bench.provenance import software
 from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.parquet import parquet_chunks
 from bench.recording_set.recording_set import RecordingSet
-from bench.recording_set.write import write_recordings
+from bench.recording_set.stream import RecordingStream, stream_of_trial
+from bench.recording_set.write import write_streams
 from bench.rig import Rig
 from bench.store import Store, Trial
 from bench.store.records import OUTCOMES
@@ -52,18 +56,33 @@ def export_experiment(store: Store, experiment_id: int, path: Path) -> None:
         rig = Rig.model_validate(experiment.rig)
     except ValidationError as error:
         raise RecordingSetError(where, "its rig cannot be written: " + "; ".join(problems(error))) from error
-    trials = [trial for trial in store.trials(experiment_id) if trial.rows >= FEWEST_ROWS]
-    if not trials:
+    trials = _trials(store, experiment_id)
+    write_streams(rig, map(partial(_stream, store), trials), path)
+
+
+def export_parquet(store: Store, experiment_id: int) -> Iterator[bytes]:
+    """The trials of an experiment as the bytes of one Parquet file; which trials, see `export_experiment`.
+
+    Raises:
+        NotFoundError, RecordingSetError: as there, and where pyarrow is not installed; before the first byte.
+    """
+    store.experiment(experiment_id)
+    return parquet_chunks([_stream(store, trial) for trial in _trials(store, experiment_id)])
+
+
+def _trials(store: Store, experiment_id: int) -> list[Trial]:
+    found = [trial for trial in store.trials(experiment_id) if trial.rows >= FEWEST_ROWS]
+    if not found:
+        where = f"experiment {experiment_id}"
         raise RecordingSetError(where, f"has no trial of at least {FEWEST_ROWS} rows; there is nothing to write")
-    write_recordings(rig, _recordings(store, trials), path)
+    return found
 
 
-def _recordings(store: Store, trials: list[Trial]) -> Iterator[Recording]:
-    for trial in trials:
-        recording = store.recording(trial.id)
-        if trial.outcome != "completed":
-            recording.conditions.update(outcome=trial.outcome, reason=trial.reason)
-        yield recording
+def _stream(store: Store, trial: Trial) -> RecordingStream:
+    stream = stream_of_trial(store, trial)
+    if trial.outcome == "completed":
+        return stream
+    return replace(stream, conditions={**stream.conditions, "outcome": trial.outcome, "reason": trial.reason})
 
 
 def _with_outcome(recording: Recording) -> tuple[Recording, str, str]:

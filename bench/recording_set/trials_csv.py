@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import IO
 
 from bench.recording_set import known_conditions, values
 from bench.recording_set.container import check_name
@@ -55,8 +54,8 @@ def read_trials_csv(table: Table, mapping: Mapping) -> list[TrialEntry]:
     return entries
 
 
-def write_trials_csv(file: IO[str], entries: Sequence[TrialEntry]) -> None:
-    """Write a trials.csv; `name` only where a file could not be called so.
+def trials_csv_lines(entries: Sequence[TrialEntry]) -> list[str]:
+    """The lines of a trials.csv; `name` only where a file could not be called so.
 
     Raises:
         RecordingSetError: a condition whose name cannot be a column.
@@ -66,12 +65,12 @@ def write_trials_csv(file: IO[str], entries: Sequence[TrialEntry]) -> None:
         if key in RESERVED or key != key.strip() or not key or not key.isprintable():
             raise RecordingSetError(TRIALS_FILE, f"a condition cannot be called {key!r}; rename it")
     named = ["name"] if any(entry.name != name_of(entry.file) for entry in entries) else []
-    lines = [["file", *named, "kind", *keys, "rows"]]
+    lines = [["file", *named, "kind", *map(values.shield, keys), "rows"]]
     for entry in entries:
         conditions = [values.write(entry.conditions.get(key)) for key in keys]
         names = [values.shield(entry.name) for _ in named]
         lines.append([entry.file, *names, values.shield(entry.kind), *conditions, str(entry.rows)])
-    file.writelines(",".join(map(quoted, line)) + "\n" for line in lines)
+    return [",".join(map(quoted, line)) + "\n" for line in lines]
 
 
 def _places(table: Table, mapping: Mapping) -> dict[str, tuple[int, Column]]:
@@ -99,7 +98,9 @@ def _entry(table: Table, line: int, cells: Row, places: dict[str, tuple[int, Col
     for name, (_, column) in places.items():
         value = values.parse(text[name], mapping.decimal)
         if name not in RESERVED and name not in mapping.ignore and value is not None:
-            conditions[name] = _checked(table, line, name, _converted(table, line, value, column), column)
+            conditions[values.unshield(name)] = _checked(
+                table, line, name, _converted(table, line, value, column), column
+            )
     name = values.unshield(text.get("name", "")) or name_of(file)
     rows = _rows(table, line, values.parse(text.get("rows", "")))
     return TrialEntry(file, name, values.unshield(text.get("kind", DEFAULT_KIND)), conditions, rows, line)

@@ -6,17 +6,18 @@ from pathlib import Path as FilePath
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
-from fastapi.responses import FileResponse
+from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.background import BackgroundTask
 
 from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
-from bench.recording_set import export_experiment
+from bench.recording_set import export_experiment, export_parquet
 from bench.service.access import allow_read, require_token
 from bench.service.json_numbers import plain
 from bench.service.problems import FieldProblem, InvalidFieldsError, field_problems, problems
 from bench.service.services import RunnerOf, StoreOf
+from bench.service.trials import PARQUET, PARQUET_ANSWER
 from bench.store.records import Experiment as StoredExperiment
 
 router = APIRouter(tags=["experiments"], dependencies=[Depends(allow_read)])
@@ -180,3 +181,16 @@ def recording_set(store: StoreOf, experiment_id: ExperimentId) -> FileResponse:
     return FileResponse(
         path, media_type="application/zip", filename=path.name, background=BackgroundTask(folder.cleanup)
     )
+
+
+@router.get(
+    "/experiments/{experiment_id}/parquet",
+    summary="All its trials as one Parquet table",
+    response_class=StreamingResponse,
+    responses={200: PARQUET_ANSWER, **problems(404, 422)},
+)
+def parquet(store: StoreOf, experiment_id: ExperimentId) -> StreamingResponse:
+    """Columns trial_id, trial, one per channel and condition. 422 where it has no rows, or pyarrow is not installed."""
+    chunks = export_parquet(store, experiment_id)
+    headers = {"Content-Disposition": f'attachment; filename="experiment-{experiment_id}.parquet"'}
+    return StreamingResponse(chunks, media_type=PARQUET, headers=headers)

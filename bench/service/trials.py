@@ -7,7 +7,7 @@ from fastapi import APIRouter, Depends, Path, Query
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 
-from bench.recording_set import csv_chunks
+from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service.access import allow_read
 from bench.service.json_numbers import column, plain
 from bench.service.problems import problems
@@ -16,6 +16,11 @@ from bench.store.records import Trial as StoredTrial
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
+PARQUET = "application/vnd.apache.parquet"
+PARQUET_ANSWER = {
+    "description": "SI, the unit in the column's name; numbers are exact.",
+    "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
+}
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
 
 
@@ -137,5 +142,19 @@ def csv(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
     found = store.trial(trial_id)
     headers = {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
     return StreamingResponse(
-        csv_chunks(store.recording(trial_id)), media_type="text/csv; charset=utf-8", headers=headers
+        csv_chunks(stream_of_trial(store, found)), media_type="text/csv; charset=utf-8", headers=headers
     )
+
+
+@router.get(
+    "/{trial_id}/parquet",
+    summary="The whole trial as Parquet",
+    response_class=StreamingResponse,
+    responses={200: PARQUET_ANSWER, **problems(404, 422)},
+)
+def parquet(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
+    """One column per channel and condition; null where not measured. 422 where pyarrow is not installed."""
+    found = store.trial(trial_id)
+    chunks = parquet_chunks([stream_of_trial(store, found)])
+    headers = {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
+    return StreamingResponse(chunks, media_type=PARQUET, headers=headers)

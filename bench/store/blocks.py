@@ -11,15 +11,21 @@ from numpy.typing import NDArray
 from compensator.lab.recording import FloatArray
 
 STORED = np.dtype("<f8")
+SAMPLE_BYTES = STORED.itemsize
 
 
-def encode(rows: FloatArray) -> bytes:
+def columns_of(rows: FloatArray) -> FloatArray:
+    """Rows, shape (rows, channels), as columns in memory, shape (channels, rows)."""
+    return np.ascontiguousarray(np.asarray(rows, dtype=STORED).T)
+
+
+def encode(columns: FloatArray) -> bytes:
     """Bytes of a block.
 
     Args:
-        rows: shape (rows, channels).
+        columns: shape (channels, rows).
     """
-    return np.asarray(rows, dtype=STORED).tobytes(order="F")
+    return np.asarray(columns, dtype=STORED).tobytes(order="C")
 
 
 def decode(data: bytes, channels: int) -> NDArray[np.float64]:

@@ -1,13 +1,17 @@
 """Rows of the table of experiments. Each function works inside the caller's transaction."""
 
+from dataclasses import fields
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, Table, insert, select, update
+from sqlalchemy import Connection, Table, insert, select, update
 
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
-from bench.store.records import OUTCOMES, SOURCES, Experiment
+from bench.store.provenance_columns import facts_of
+from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment
 from bench.store.schema import EXPERIMENT, TRIAL
+
+COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment))
 
 
 def now() -> datetime:
@@ -21,7 +25,7 @@ def insert_row(connection: Connection, table: Table, row: dict[str, Any]) -> int
     return row_id
 
 
-def add(connection: Connection, owner: str | None, **values: Any) -> int:
+def add(connection: Connection, owner: str | None, values: dict[str, Any], outcome: str = "running") -> int:
     """Insert an experiment that starts now. Returns its id.
 
     Raises:
@@ -29,8 +33,8 @@ def add(connection: Connection, owner: str | None, **values: Any) -> int:
     """
     if values["source"] not in SOURCES:
         raise StoreValueError(f"source of an experiment is '{values['source']}'; wanted {', '.join(SOURCES)}")
-    row = values | {"owner": owner, "started_utc": now(), "outcome": "running", "reason": "", "results": {}}
-    return insert_row(connection, EXPERIMENT, row)
+    row = values | {"owner": owner, "started_utc": now(), "outcome": outcome, "reason": "", "results": {}}
+    return insert_row(connection, EXPERIMENT, row | facts_of(values["provenance"]))
 
 
 def finish(connection: Connection, experiment_id: int, outcome: str, reason: str, results: dict[str, Any]) -> None:
@@ -51,10 +55,17 @@ def finish(connection: Connection, experiment_id: int, outcome: str, reason: str
     connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end, results=results))
 
 
-def running(connection: Connection) -> dict[int, str | None]:
-    """The owner of each experiment that is marked running."""
-    query = select(EXPERIMENT.c.id, EXPERIMENT.c.owner).where(EXPERIMENT.c.outcome == "running")
-    return {row.id: row.owner for row in connection.execute(query)}
+def show(connection: Connection, experiment_id: int) -> None:
+    """Let an import be seen that is complete."""
+    end = {"finished_utc": now(), "outcome": "completed", "owner": None}
+    connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end))
+
+
+def unfinished(connection: Connection) -> list[tuple[int, str | None, str]]:
+    """id, owner and outcome of each experiment that is marked running, or that nobody sees."""
+    columns = EXPERIMENT.c
+    query = select(columns.id, columns.owner, columns.outcome).where(columns.outcome.in_(("running", *HIDDEN)))
+    return [(row.id, row.owner, row.outcome) for row in connection.execute(query)]
 
 
 def get(connection: Connection, experiment_id: int) -> Experiment:
@@ -63,10 +74,11 @@ def get(connection: Connection, experiment_id: int) -> Experiment:
     Raises:
         NotFoundError: no such experiment.
     """
-    row = connection.execute(select(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id)).one_or_none()
+    query = select(*COLUMNS).where(EXPERIMENT.c.id == experiment_id, EXPERIMENT.c.outcome.not_in(HIDDEN))
+    row = connection.execute(query).one_or_none()
     if row is None:
         raise NotFoundError(f"experiment {experiment_id} is not in the store; list the experiments to see which are")
-    return _record(row)
+    return Experiment(**row._asdict())
 
 
 def find(
@@ -78,12 +90,18 @@ def find(
     offset: int,
 ) -> list[Experiment]:
     """Experiments, newest first."""
-    query = select(EXPERIMENT).order_by(EXPERIMENT.c.id.desc()).limit(limit).offset(offset)
+    query = (
+        select(*COLUMNS)
+        .where(EXPERIMENT.c.outcome.not_in(HIDDEN))
+        .order_by(EXPERIMENT.c.id.desc())
+        .limit(limit)
+        .offset(offset)
+    )
     wanted = {"kind": kind, "outcome": outcome, "source": source}
     for name, value in wanted.items():
         if value is not None:
             query = query.where(EXPERIMENT.c[name] == value)
-    return [_record(row) for row in connection.execute(query)]
+    return [Experiment(**row._asdict()) for row in connection.execute(query)]
 
 
 def check_outcome(outcome: str) -> None:
@@ -95,9 +113,3 @@ def check_outcome(outcome: str) -> None:
     if outcome == "running" or outcome not in OUTCOMES:
         wanted = ", ".join(name for name in OUTCOMES if name != "running")
         raise StoreValueError(f"outcome is '{outcome}'; wanted {wanted}")
-
-
-def _record(row: Row[Any]) -> Experiment:
-    values = row._asdict()
-    del values["owner"]
-    return Experiment(**values)

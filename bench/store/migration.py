@@ -8,7 +8,7 @@ from sqlalchemy import Connection, inspect, text
 from bench.store.database import Database
 from bench.store.errors import StoreFileError, StoreVersionError
 
-HEAD = "0002"  # the newest revision in migrations/versions
+HEAD = "0003"  # the newest revision in migrations/versions
 MIGRATIONS = Path(__file__).parent / "migrations"
 
 
@@ -36,7 +36,7 @@ def _revision(connection: Connection) -> str | None:
     return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
 
 
-def _upgrade(connection: Connection, where: str, found: str | None) -> None:
+def _upgrade(connection: Connection, where: str, found: str | None, target: str = "head") -> None:
     from alembic import command
     from alembic.config import Config
     from alembic.script import ScriptDirectory
@@ -50,4 +50,4 @@ def _upgrade(connection: Connection, where: str, found: str | None) -> None:
             f"store '{where}' was made by a newer version (schema {found}; version {version('friction-bench')} knows "
             f"up to {HEAD}); install the newer version, or name another"
         )
-    command.upgrade(config, "head")
+    command.upgrade(config, target)

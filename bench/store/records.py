@@ -6,9 +6,24 @@ from typing import Any
 
 from compensator.lab.recording import Condition, Event
 
-__all__ = ["OUTCOMES", "SOURCES", "CalibrationRow", "Condition", "Event", "Experiment", "ModelRow", "StudyRow", "Trial"]
+__all__ = [
+    "HIDDEN",
+    "IMPORTING",
+    "OUTCOMES",
+    "REMOVING",
+    "SOURCES",
+    "CalibrationRow",
+    "Condition",
+    "Event",
+    "Experiment",
+    "ModelRow",
+    "StudyRow",
+    "Trial",
+]
 
 OUTCOMES = ("running", "completed", "stopped", "tripped", "failed", "interrupted", "refused")
+IMPORTING, REMOVING = "importing", "removing"
+HIDDEN = (IMPORTING, REMOVING)  # outcomes of what is not there yet, or not any more: nobody sees it
 SOURCES = ("simulated", "real", "imported")
 
 

@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 
 from sqlalchemy import (
     JSON,
+    BigInteger,
     Boolean,
     Column,
     DateTime,
@@ -77,12 +78,19 @@ EXPERIMENT = Table(
     Column("note", PlainText, nullable=False),
     Column("provenance", JSON, nullable=False),
     Column("rig", JSON, nullable=False),
-    Column("owner", PlainText, nullable=True),  # who runs it, see owner.py; empty for an import
+    Column("owner", PlainText, nullable=True),  # who runs it, see owner.py
     Column("started_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
     Column("outcome", PlainText, nullable=False),
     Column("reason", PlainText, nullable=False),
     Column("results", JSON, nullable=False),
+    # out of the provenance, so that they can be asked for; empty where it does not say
+    Column("bench", PlainText, nullable=True),
+    Column("software_version", PlainText, nullable=True),
+    Column("software_commit", PlainText, nullable=True),
+    Column("drive", PlainText, nullable=True),
+    Column("firmware", PlainText, nullable=True),
+    Column("seed", BigInteger, nullable=True),
     Index(None, "outcome"),
     Index(None, "kind"),
 )
@@ -129,6 +137,15 @@ SAMPLE_BLOCK = Table(
     Column("data", LargeBinary, nullable=False),  # see blocks.py
 )
 
+SAMPLE_OVERVIEW = Table(
+    "sample_overview",
+    METADATA,
+    _parent("trial", "trial_id", primary_key=True),
+    Column("first_row", Integer, primary_key=True, autoincrement=False),
+    Column("rows", Integer, nullable=False),  # of the trial that it stands for
+    Column("data", LargeBinary, nullable=False),  # as a block, with two more columns before it: see overview.py
+)
+
 EVENT = Table(
     "event",
     METADATA,
@@ -167,8 +184,8 @@ CALIBRATION = Table(
     "calibration",
     METADATA,
     Column("id", Integer, primary_key=True),
-    Column("note", Text, nullable=False),
-    Column("source", Text, nullable=False),  # as that of its experiments
+    Column("note", PlainText, nullable=False),
+    Column("source", PlainText, nullable=False),  # as that of its experiments
     Column("rig", JSON, nullable=False),
     Column("drive", JSON, nullable=False),
     Column("provenance", JSON, nullable=False),

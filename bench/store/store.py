@@ -11,13 +11,17 @@ from bench.store.calibrations import Calibrations
 from bench.store.conditions import Wanted
 from bench.store.database import Database
 from bench.store.errors import StoreError, StoreValueError
+from bench.store.importing import Import
 from bench.store.migration import migrate
+from bench.store.overview import GROUP_ROWS
 from bench.store.records import Condition, Event, Experiment, ModelRow, StudyRow, Trial
 from bench.store.reduction import MIN_POINTS, rows_to_keep
+from bench.store.removal import remove
 from bench.store.trial_writer import TrialWriter
 from compensator.lab.recording import FloatArray, Recording
 
 BUSY_TIMEOUT_S = 10.0
+GROUPS_PER_POINT = 1.5  # fewer, and a plot is made from all rows: MinMaxLTTB wants about two
 LEFT_RUNNING = "the process that ran it ended without closing it (killed, crashed, or the power went)"
 
 
@@ -49,7 +53,7 @@ class Store:
         store = cls(Database(url, busy_timeout_s))
         try:
             migrate(store._database)
-            store._interrupt(LEFT_RUNNING, lambda token: not store._database.backend.lives(token))
+            store._settle(LEFT_RUNNING, lambda token: not store._database.backend.lives(token))
         except BaseException:
             store.close()
             raise
@@ -60,7 +64,7 @@ class Store:
         if self._owner is not None:
             mine = self._owner.token
             with suppress(StoreError):  # a full or locked database: the next to open it marks them
-                self._interrupt("the store was closed while it ran", lambda token: token == mine)
+                self._settle("the store was closed while it ran", lambda token: token == mine)
             self._owner.release()
             self._owner = None
         self._database.close()
@@ -99,7 +103,7 @@ class Store:
             "note": note,
         }
         with self._database.writing() as connection:
-            return experiments.add(connection, self._claim(), **values)
+            return experiments.add(connection, self._claim(), values)
 
     def finish_experiment(
         self, experiment_id: int, outcome: str, reason: str = "", results: dict[str, Any] | None = None
@@ -143,17 +147,15 @@ class Store:
         Each recording comes with its trial's outcome and reason.
         """
         values = {"kind": kind, "parameters": parameters, "provenance": provenance, "rig": rig}
-        with self._database.writing() as connection:
-            experiment_id = experiments.add(connection, None, **values, source="imported", operator="", note="")
+        found = Import(self._database, self._claimed(), values)
+        try:
             for recording, outcome, reason in recordings:
-                names = tuple(recording.channels)
-                what = (recording.name, recording.kind, recording.conditions, names)
-                trial_id = trials.add(connection, experiment_id, *what)
-                samples.add_channels(connection, trial_id, recording.channels)
-                trials.add_events(connection, trial_id, recording.events)
-                trials.finish(connection, trial_id, outcome, reason, {})
-            experiments.finish(connection, experiment_id, "completed", "", {})
-        return experiment_id
+                found.add(recording, outcome, reason)
+            return found.finish()
+        except BaseException:
+            with suppress(StoreError):  # a full or locked database: the next to open it removes what came in
+                found.abandon()
+            raise
 
     # trials
 
@@ -234,6 +236,15 @@ class Store:
         trial = self.trial(trial_id)
         return Recording(trial.name, trial.kind, dict(trial.conditions), self.samples(trial_id), self.events(trial_id))
 
+    def part(self, trial: Trial, first_row: int, rows: int) -> FloatArray:
+        """Some rows of a trial, all its channels, shape (channels, up to `rows`): for whoever goes through all of it.
+
+        Raises:
+            NotFoundError: the trial was removed meanwhile.
+        """
+        with self._database.reading() as connection:
+            return samples.read_part(connection, trial, first_row, rows)
+
     def samples_reduced(self, trial_id: int, channels: Sequence[str] | None, points: int) -> dict[str, FloatArray]:
         """As `samples`, always with time_s, reduced to the rows that a plot needs.
 
@@ -248,9 +259,15 @@ class Store:
         """
         if points < MIN_POINTS:
             raise StoreValueError(f"points is {points}; wanted at least {MIN_POINTS}")
-        names = None if channels is None else list(dict.fromkeys(["time_s", *channels]))
-        found = self.samples(trial_id, names)
-        rows = rows_to_keep(found, points)
+        with self._database.reading() as connection:
+            trial = trials.get(connection, trial_id)
+            names = list(dict.fromkeys(["time_s", *(trial.channels if channels is None else channels)]))
+            if trial.rows < GROUPS_PER_POINT * points * GROUP_ROWS:
+                found = samples.read(connection, trial, names)
+                rows = rows_to_keep(found, points)
+            else:
+                found, asked = samples.read_overview(connection, trial, names)
+                rows = rows_to_keep(found, points, asked)
         return {name: values[rows] for name, values in found.items()}
 
     # studies
@@ -298,12 +315,21 @@ class Store:
             self._owner = self._database.claim()
         return self._owner.token
 
-    def _interrupt(self, reason: str, chosen: Callable[[str | None], bool]) -> None:
-        """Close the experiments that are marked running and whose owner's token is chosen."""
+    def _claimed(self) -> str:
+        with self._database.writing():
+            return self._claim()
+
+    def _settle(self, reason: str, chosen: Callable[[str | None], bool]) -> None:
+        """Close the experiments that are marked running, and remove imports, whose owner's token is chosen."""
         with self._database.reading() as connection:
-            if not experiments.running(connection):
+            if not experiments.unfinished(connection):
                 return
+        hidden = []
         with self._database.writing() as connection:
-            for experiment_id, token in experiments.running(connection).items():
-                if chosen(token):
+            for experiment_id, token, outcome in experiments.unfinished(connection):
+                if outcome == "running" and chosen(token):
                     experiments.finish(connection, experiment_id, "interrupted", reason, {})
+                elif outcome != "running" and chosen(token):
+                    hidden.append(experiment_id)
+        for experiment_id in hidden:
+            remove(self._database, experiment_id)

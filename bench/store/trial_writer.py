@@ -24,6 +24,7 @@ class TrialWriter:
         self.rows = 0
         self._database = database
         self._channels = channels
+        self._pending: FloatArray | None = None  # the newest rows, which the overview does not cover yet
         self._finished = False
 
     def append(self, rows: FloatArray) -> None:
@@ -42,7 +43,8 @@ class TrialWriter:
         if len(rows) == 0:
             return
         with self._database.writing() as connection:
-            samples.add(connection, self.trial_id, self.rows, rows)
+            pending = samples.add(connection, self.trial_id, self.rows, rows, self._pending)
+        self._pending = pending
         self.rows += len(rows)
 
     def event(self, time_s: float, name: str, detail: str = "") -> None:

@@ -10,7 +10,7 @@ from bench.store import conditions as condition_rows
 from bench.store.conditions import Wanted
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.experiments import check_outcome, insert_row, now
-from bench.store.records import Condition, Event, Trial
+from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
 from compensator.lab.channels import CHANNELS
 
@@ -22,6 +22,7 @@ def add(
     kind: str,
     conditions: Mapping[str, Condition],
     channels: Sequence[str],
+    outcome: str = "running",
 ) -> int:
     """Insert a trial that starts now. Returns its id.
 
@@ -29,7 +30,7 @@ def add(
         StoreStateError: there is no such experiment, or it is finished.
         StoreValueError: a second trial of that name, a channel or condition that cannot be kept.
     """
-    _check_experiment(connection, experiment_id)
+    _check_experiment(connection, experiment_id, outcome)
     _check_channels(name, channels)
     values = {
         "experiment_id": experiment_id,
@@ -38,7 +39,7 @@ def add(
         "channels": list(channels),
         "rows": 0,
         "started_utc": now(),
-        "outcome": "running",
+        "outcome": outcome,
         "reason": "",
         "results": {},
     }
@@ -84,7 +85,8 @@ def get(connection: Connection, trial_id: int) -> Trial:
     Raises:
         NotFoundError: no such trial.
     """
-    row = connection.execute(select(TRIAL).where(TRIAL.c.id == trial_id)).one_or_none()
+    query = select(TRIAL).where(TRIAL.c.id == trial_id, TRIAL.c.outcome.not_in(HIDDEN))
+    row = connection.execute(query).one_or_none()
     if row is None:
         raise NotFoundError(f"trial {trial_id} is not in the store; list the trials to see which are")
     return _record(row, condition_rows.of_trials(connection, [row.id]))
@@ -101,7 +103,7 @@ def find(
     offset: int,
 ) -> list[Trial]:
     """Trials in the order in which they were made."""
-    query = select(TRIAL).order_by(TRIAL.c.id).limit(limit).offset(offset)
+    query = select(TRIAL).where(TRIAL.c.outcome.not_in(HIDDEN)).order_by(TRIAL.c.id).limit(limit).offset(offset)
     filters: list[ColumnElement[bool]] = [condition_rows.match(key, wanted) for key, wanted in conditions.items()]
     if experiment_id is not None:
         filters.append(TRIAL.c.experiment_id == experiment_id)
@@ -117,12 +119,12 @@ def find(
     return [_record(row, found) for row in rows]
 
 
-def _check_experiment(connection: Connection, experiment_id: int) -> None:
+def _check_experiment(connection: Connection, experiment_id: int, wanted: str) -> None:
     query = select(EXPERIMENT.c.outcome).where(EXPERIMENT.c.id == experiment_id)
     outcome = connection.execute(query).scalar_one_or_none()
     if outcome is None:
         raise NotFoundError(f"experiment {experiment_id} is not in the store; begin one before its trials")
-    if outcome != "running":
+    if outcome != wanted:
         raise StoreStateError(f"experiment {experiment_id} is finished ({outcome}); begin a new one for more trials")
 
 

@@ -196,3 +196,14 @@ def test_a_full_disk_is_reported(store: Store, tmp_path: Path, monkeypatch: pyte
         export_experiment(store, measured(store), tmp_path / "out")
     assert not (tmp_path / "out").exists()
     shutil.rmtree(tmp_path)
+
+
+def test_no_name_of_a_condition_nor_event_is_run_as_a_formula(tmp_path: Path) -> None:
+    channels = {"time_s": np.arange(2.0), "duty": np.zeros(2)}
+    events = [Event(0.0, "=1+1", "x"), Event(1.0, "'@sum", "")]
+    found = [Recording("a", "step", {"=2+2": 1.0, "+x": "-y"}, channels, events)]
+    write_recording_set(RecordingSet("set", RIG, found), tmp_path / "set")
+    for file in ("trials.csv", "a.csv"):
+        cells = (tmp_path / "set" / file).read_text().replace("\n", ",").split(",")
+        assert not [cell for cell in cells if cell.startswith(("=", "+", "-", "@"))]
+    assert_same(read_recording_set(tmp_path / "set").recordings, found)

@@ -1,0 +1,103 @@
+"""Imports: whole or not at all, in transactions that others can get between."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from bench.store import Event, Store
+from bench.store.errors import NotFoundError, StoreValueError
+from bench.store.importing import Import
+from compensator.lab.recording import Recording
+from tests.store.examples import begin, begin_trial, rows
+
+
+def recording(name: str, count: int = 10) -> Recording:
+    channels = {"time_s": np.arange(float(count)), "duty": np.linspace(0.0, 1.0, count)}
+    return Recording(name, "step", {"load_kg": 0.1}, channels, [Event(0.0, "begin", "")])
+
+
+def begin_import(store: Store) -> Import:
+    values = {"kind": "import", "parameters": {}, "provenance": {}, "rig": {}}
+    return Import(store._database, store._claimed(), values)
+
+
+def tables(store: Store) -> dict[str, int]:
+    """How many rows each table has."""
+    names = ("experiment", "trial", "trial_condition", "sample_block", "sample_overview", "event")
+    with store._database.reading() as connection:
+        return {name: connection.exec_driver_sql(f"SELECT count(*) FROM {name}").scalar_one() for name in names}
+
+
+def test_nobody_sees_an_import_before_it_is_complete(store: Store, store_url: str) -> None:
+    found = begin_import(store)
+    found.add(recording("a"), "completed", "")
+    with Store.open(store_url) as other:
+        assert other.experiments() == other.trials() == []
+        with pytest.raises(NotFoundError):
+            other.experiment(found.experiment_id)
+        with pytest.raises(NotFoundError):
+            other.samples(1)
+        found.add(recording("b"), "stopped", "stop was pressed")
+        assert other.experiment(found.finish()).outcome == "completed"
+        assert [(trial.outcome, trial.reason) for trial in other.trials()] == [
+            ("completed", ""),
+            ("stopped", "stop was pressed"),
+        ]
+        assert all(trial.finished_utc for trial in other.trials())
+
+
+def test_a_bench_records_while_an_import_comes_in(store: Store) -> None:
+    experiment_id = begin(store)
+    writer = begin_trial(store, experiment_id)
+
+    def recordings() -> Iterator[tuple[Recording, str, str]]:
+        for name in "abc":
+            writer.append(rows(writer.rows, 25))  # would wait for ever inside one transaction
+            yield recording(name), "completed", ""
+
+    store.add_imported("import", {}, {}, {}, recordings())
+    assert store.trial(writer.trial_id).rows == 75
+    assert len(store.trials()) == 4
+
+
+def test_an_import_that_fails_leaves_no_row_in_any_table(store: Store) -> None:
+    def recordings() -> Iterator[tuple[Recording, str, str]]:
+        yield recording("a", 20_000), "completed", ""
+        yield recording("a"), "completed", ""
+
+    with pytest.raises(StoreValueError, match="has a trial 'a' already"):
+        store.add_imported("import", {}, {}, {}, recordings())
+    assert set(tables(store).values()) == {0}
+
+
+@pytest.mark.parametrize("dies", ["closes", "was killed"])
+def test_what_a_dead_import_left_is_removed_by_the_next_to_open(store_url: str, dies: str) -> None:
+    store = Store.open(store_url)
+    found = begin_import(store)
+    found.add(recording("a", 20_000), "completed", "")
+    if dies == "was killed":  # nothing of the store's own end happens
+        assert store._owner is not None
+        store._owner.release()
+        store._database.close()
+    else:
+        store.close()
+    with Store.open(store_url) as other:
+        assert set(tables(other).values()) == {0}
+
+
+def test_an_import_of_a_living_process_is_left_alone(store: Store, store_url: str) -> None:
+    found = begin_import(store)
+    found.add(recording("a"), "completed", "")
+    Store.open(store_url).close()
+    found.finish()
+    assert len(store.samples(store.trials()[0].id)["time_s"]) == 10
+
+
+def test_a_long_trial_comes_in_by_several_transactions(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("bench.store.importing.TRANSACTION_BYTES", 16 * 700)
+    store.add_imported("import", {}, {}, {}, [(recording("a", 20_000), "completed", "")])
+    (trial,) = store.trials()
+    assert trial.rows == 20_000
+    assert np.array_equal(store.samples(trial.id)["time_s"], np.arange(20_000.0))
+    assert tables(store)["sample_block"] == -(-20_000 // 700)
