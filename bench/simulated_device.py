@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import Any, Protocol, Self
+from typing import Any, Protocol, Self, TypeVar
 
 from bench.errors import ConfigurationError
 
@@ -33,6 +33,9 @@ class SimulatedDevice(Protocol):
     def __enter__(self) -> Self: ...
 
     def __exit__(self, *error: object) -> None: ...
+
+
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,21 @@ def start_roboclaw(joint: Joint, **settings: Any) -> SimulatedDevice:
     """Start a RoboClaw; the settings are those of `RoboClawSettings`."""
     from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 
-    return _started(lambda: serve_roboclaw(RoboClawSettings(**joint.values(), **settings)))
+    return _made(lambda: serve_roboclaw(RoboClawSettings(**joint.values(), **settings)))
+
+
+def start_canopen(joint: Joint, **settings: Any) -> SimulatedDevice:
+    """Start a CiA 402 drive; the settings are those of `CanOpenSettings`."""
+    from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
+
+    return _made(lambda: serve_canopen(CanOpenSettings(**joint.values(), **settings)))
+
+
+def electronic_data_sheet(family: str) -> str:
+    """The EDS of a simulated CiA 402 drive of a family, on the joint of the paper."""
+    from sim_backend.devices.canopen.serve import data_sheet
+
+    return _made(lambda: data_sheet(family))
 
 
 @contextmanager
@@ -92,10 +109,10 @@ def until_told_to_end() -> Iterator[threading.Event]:
             signal.signal(number, handler)
 
 
-def _started(start: Callable[[], SimulatedDevice]) -> SimulatedDevice:
+def _made(make: Callable[[], Made]) -> Made:
     from sim_backend.errors import ParameterError
 
     try:
-        return start()
+        return make()
     except (ParameterError, OSError) as error:
         raise ConfigurationError(f"simulated device: {error}") from error

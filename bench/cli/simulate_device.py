@@ -47,7 +47,48 @@ def roboclaw(
         Joint(preset, plant, seed), address=address, usb=usb, baud=baud or None, link=link, side_port=side_port
     )
     section: Section = {"kind": "roboclaw", "port": device.path, "address": address}
+    if baud:
+        section["baud_rate"] = baud
     _serve(device, "RoboClaw", section, json)
+
+
+@app.command()
+def canopen(
+    family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic",
+    node: Annotated[int, typer.Option(min=1, max=127, help="Node number.")] = 5,
+    interface: Annotated[
+        str,
+        typer.Option(
+            help="slcan (a pseudo-terminal), socketcand (a TCP server here), or socketcan (the kernel's CAN)."
+        ),
+    ] = "slcan",
+    channel: Annotated[
+        str, typer.Option(help="socketcand: TCP port, 0 is any free one; socketcan: the interface, such as vcan0.")
+    ] = "0",
+    link: Link = None,
+    preset: Preset = "paper",
+    plant: Plant = None,
+    seed: Seed = 1,
+    side_port: SidePort = 0,
+    json: Json = False,
+) -> None:
+    """A CiA 402 servo drive on a CAN bus (CANopen)."""
+    from bench.simulated_device import Joint, start_canopen
+
+    device = start_canopen(
+        Joint(preset, plant, seed),
+        family=family, node_id=node, interface=interface, channel=channel, link=link, side_port=side_port,
+    )  # fmt: skip
+    section: Section = {"kind": "canopen", "interface": interface, "channel": device.path, "node_id": node}
+    _serve(device, f"CiA 402 drive ({family})", section, json)
+
+
+@app.command()
+def eds(family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic") -> None:
+    """Print the electronic data sheet of the simulated CiA 402 drive, for masters that want a file."""
+    from bench.simulated_device import electronic_data_sheet
+
+    typer.echo(electronic_data_sheet(family), nl=False)
 
 
 def _serve(device: "SimulatedDevice", name: str, section: Section, json: bool) -> None:

@@ -7,6 +7,8 @@ import select
 import tty
 from pathlib import Path
 
+from sim_backend.devices.link.unwritten import Unwritten
+
 
 class PseudoTerminal:
     """The device's end of a pseudo-terminal; hosts open `path`.
@@ -25,6 +27,7 @@ class PseudoTerminal:
             link.unlink(missing_ok=True)
             link.symlink_to(name)
         self.path = str(link or name)
+        self._unwritten = Unwritten(lambda data: os.write(self._ours, data))
 
     def read(self, timeout_s: float) -> bytes:
         """Return what the host has written, after waiting for it no longer than this; b'' for nothing.
@@ -35,9 +38,8 @@ class PseudoTerminal:
         return os.read(self._ours, 4096) if ready else b""
 
     def write(self, data: bytes) -> None:
-        """Write; what a host that does not read has no room for is lost, as on a wire."""
-        with contextlib.suppress(BlockingIOError):
-            os.write(self._ours, data)
+        """Write without waiting; what a host that does not read has no room for is lost, as on a wire."""
+        self._unwritten.put(data)
 
     def close(self) -> None:
         """Close both ends. A host that has it open gets an error at its next read."""

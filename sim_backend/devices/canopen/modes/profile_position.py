@@ -1,0 +1,99 @@
+"""Profile position (1): the drive plans the move to a target by itself."""
+
+from collections.abc import Callable
+
+from sim_backend.devices.canopen.dictionary import Dictionary
+from sim_backend.devices.canopen.modes.mode import HALT, SET_POINT_TAKEN, TARGET_REACHED, Seen
+from sim_backend.devices.canopen.modes.position_loop import PositionLoop
+from sim_backend.devices.canopen.modes.trapezoid import Trapezoid
+from sim_backend.devices.canopen.objects.drive_profile import NO_WINDOW
+
+_NEW_SET_POINT, _AT_ONCE, _RELATIVE = 1 << 4, 1 << 5, 1 << 6
+
+
+class ProfilePosition:
+    """Target position (0x607A) in a trapezoid of 0x6081, 0x6083, 0x6084.
+
+    A rising new-set-point bit hands over a target; the drive acknowledges in statusword bit 12 until the bit falls.
+    With change-at-once the target counts now, else after the move under way; one target can wait.
+
+    Args:
+        dictionary: the drive's.
+        loop: its position controller.
+        counts_per_s: speed of a number in the drive's unit of velocity.
+    """
+
+    def __init__(self, dictionary: Dictionary, loop: PositionLoop, counts_per_s: Callable[[int], float]) -> None:
+        self._dictionary = dictionary
+        self._loop = loop
+        self._counts_per_s = counts_per_s
+        self._profile = Trapezoid()
+        self._waiting: float | None = None
+        self._controlword = 0
+        self._taken = False
+        self._moving = False
+        self._within_s = 0.0
+        self._reached = False
+
+    def start(self, seen: Seen) -> None:
+        """Hold the position until a target comes."""
+        self._profile.start(seen.counts)
+        self._waiting = None
+        self._controlword = self._dictionary.number(0x6040)
+        self._taken = self._reached = False
+        self._within_s = seen.time_s
+        self._loop.start()
+
+    def command(self, controlword: int) -> None:
+        """Take a controlword."""
+        rising = controlword & ~self._controlword
+        self._controlword = controlword
+        if not controlword & _NEW_SET_POINT:
+            self._taken = self._waiting is not None
+        elif rising & _NEW_SET_POINT and self._waiting is None:
+            self._take(controlword)
+
+    def torque(self, seen: Seen) -> float:
+        """Return the torque [permille]."""
+        top, acceleration, deceleration = (
+            self._counts_per_s(self._dictionary.number(index)) for index in (0x6081, 0x6083, 0x6084)
+        )
+        if self._dictionary.number(0x6040) & HALT:
+            self._profile.halt(deceleration)
+        else:
+            self._profile.step(top, acceleration, deceleration)
+        if self._profile.done and self._waiting is not None:
+            self._profile.target, self._waiting = self._waiting, None
+            self._taken = bool(self._controlword & _NEW_SET_POINT)
+        self._look_whether_reached(seen)
+        return self._loop.torque(self._profile.position, self._profile.speed, seen) + self._dictionary.number(0x60B2)
+
+    def position(self) -> float | None:
+        """Return the position that is demanded [counts]."""
+        return self._profile.position
+
+    def status(self) -> int:
+        """Whether a set point was taken, and the last one reached."""
+        return (SET_POINT_TAKEN if self._taken else 0) | (TARGET_REACHED if self._reached else 0)
+
+    def _take(self, controlword: int) -> None:
+        target = float(self._dictionary.number(0x607A))
+        if controlword & _RELATIVE:
+            target += self._profile.target
+        self._taken, self._reached = True, False
+        if controlword & _AT_ONCE or self._profile.done:
+            self._profile.target = target
+        else:
+            self._waiting = target
+
+    def _look_whether_reached(self, seen: Seen) -> None:
+        window = self._dictionary.number(0x6067)
+        if self._dictionary.number(0x6040) & HALT:
+            self._reached = self._profile.speed == 0.0
+            return
+        near = window == NO_WINDOW or abs(self._profile.target - seen.counts) <= window
+        if not (self._profile.done and near):
+            self._within_s = seen.time_s
+            self._reached = False
+        elif seen.time_s - self._within_s >= self._dictionary.number(0x6068) * 1e-3:
+            self._reached = True

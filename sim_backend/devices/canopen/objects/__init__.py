@@ -1,0 +1,1 @@
+"""The tables of the object dictionary, as data."""

@@ -1,0 +1,86 @@
+"""A family of drives: which objects it has, and what their numbers mean."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import pi
+
+from sim_backend.devices.canopen.objects.entry import Object
+from sim_backend.parameters import PlantParameters
+
+Place = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Rating:
+    """The motor as the drive was set up for it.
+
+    Attributes:
+        current_a: rated current [A].
+        peak_a: largest current [A].
+        torque_constant_n_m_a: torque of a current [N m/A].
+        counts_per_turn: of the encoder.
+    """
+
+    current_a: float
+    peak_a: float
+    torque_constant_n_m_a: float
+    counts_per_turn: float
+
+    @classmethod
+    def of(cls, parameters: PlantParameters) -> "Rating":
+        """Return the rating of a plant's motor and stage."""
+        overload, motor = parameters.overload, parameters.motor
+        return cls(
+            overload.continuous_a, overload.peak_a, motor.torque_constant_n_m_a, parameters.encoder.counts_per_turn
+        )
+
+    @property
+    def torque_n_m(self) -> float:
+        """Rated torque [N m]."""
+        return self.current_a * self.torque_constant_n_m_a
+
+
+@dataclass(frozen=True)
+class Family:
+    """What distinguishes drives.
+
+    Attributes:
+        name: as the command line has it.
+        device_name: 0x1008.
+        modes: numbers of 0x6060 that it has.
+        objects: its dictionary, for a rating.
+        velocity_rad_s: motor speed of one unit of velocity [rad/s], for the encoder's counts per turn.
+        torque_unit_n_m: torque of one unit of 0x6076 [N m].
+        peak: where the largest current is, and what its unit is in A, for a rating.
+    """
+
+    name: str
+    device_name: str
+    modes: frozenset[int]
+    objects: Callable[[Rating], list[Object]]
+    velocity_rad_s: Callable[[float], float]
+    torque_unit_n_m: float
+    peak: tuple[tuple[Place, Callable[[Rating], float]], ...]
+
+
+def mode_bits(modes: frozenset[int]) -> int:
+    """Return 0x6502: mode n is bit n - 1."""
+    return sum(1 << (mode - 1) for mode in modes)
+
+
+def with_defaults(objects: list[Object], defaults: dict[int, int]) -> list[Object]:
+    """Return objects, some of them with another default."""
+    return [
+        replace(one, entries=(replace(one.entries[0], default=defaults[one.index]),)) if one.index in defaults else one
+        for one in objects
+    ]
+
+
+def rpm(_counts_per_turn: float) -> float:
+    """Return the motor speed of 1 rpm [rad/s]."""
+    return 2.0 * pi / 60.0
+
+
+def increments_per_s(counts_per_turn: float) -> float:
+    """Return the motor speed of one increment a second [rad/s]."""
+    return 2.0 * pi / counts_per_turn

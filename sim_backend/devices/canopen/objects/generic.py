@@ -1,0 +1,59 @@
+"""A drive that keeps to CiA 402, with two objects of its own for duty and temperature."""
+
+from sim_backend.devices.canopen.data_types import I8, I16, U8, U16, U32
+from sim_backend.devices.canopen.objects.communication import communication
+from sim_backend.devices.canopen.objects.drive_profile import drive_profile
+from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record, variable
+from sim_backend.devices.canopen.objects.family import Family, Rating, increments_per_s, mode_bits, with_defaults
+
+RO, RW = Access.RO, Access.RW
+VELOCITY_UNIT_INCREMENTS_PER_S = 0x00B50300
+_MODES = frozenset({1, 4, 8, 10})
+_NAME = "friction-bench CiA 402 drive, simulated"
+
+
+def _objects(rating: Rating) -> list[Object]:
+    peak = round(rating.peak_a / rating.current_a * 1000.0)
+    turn = rating.counts_per_turn
+    profile = drive_profile(mode_bits(_MODES), VELOCITY_UNIT_INCREMENTS_PER_S, quick_stop=2)
+    defaults = {
+        0x6076: max(round(rating.torque_n_m * 1e3), 1),  # mN m
+        0x6081: round(10.0 * turn),
+        0x6083: round(200.0 * turn),
+        0x6084: round(200.0 * turn),
+        0x6085: round(1000.0 * turn),
+    }
+    return [
+        *communication(0, 0x402, 1, 1, _NAME, "1.0"),
+        variable(0x2001, "PWM duty cycle actual value", I16, RO, mappable=True),  # signed, permille
+        variable(0x2002, "Power stage temperature", I16, RO, mappable=True),  # 0.1 degC
+        *with_defaults(profile, defaults),
+        variable(0x605D, "Halt option code", I16, RW, 1, low=1, high=1),
+        variable(0x6072, "Max torque", U16, RW, peak, mappable=True),
+        variable(0x6073, "Max current", U16, RW, peak),
+        variable(0x6074, "Torque demand", I16, RO, mappable=True),
+        variable(0x6075, "Motor rated current", U32, RW, round(rating.current_a * 1e3)),  # mA
+        variable(0x6078, "Current actual value", I16, RO, mappable=True),  # permille of rated current
+        variable(0x6079, "DC link circuit voltage", U32, RO, mappable=True),  # mV
+        variable(0x6087, "Torque slope", U32, RW, 100_000),  # permille/s
+        record(
+            0x60C2,
+            "Interpolation time period",
+            Entry(1, "Interpolation time period value", U8, RW, 10),
+            Entry(2, "Interpolation time index", I8, RW, -3, low=-4, high=0),
+        ),
+    ]
+
+
+GENERIC = Family(
+    name="generic",
+    device_name=_NAME,
+    modes=_MODES,
+    objects=_objects,
+    velocity_rad_s=increments_per_s,
+    torque_unit_n_m=1e-3,
+    peak=(
+        ((0x6072, 0), lambda rating: rating.current_a * 1e-3),
+        ((0x6073, 0), lambda rating: rating.current_a * 1e-3),
+    ),
+)

@@ -1,0 +1,88 @@
+"""Starts a CiA 402 drive on a CAN bus."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sim_backend.devices.canopen.drive import ServoDrive
+from sim_backend.devices.canopen.eds import eds_text
+from sim_backend.devices.canopen.objects.epos4 import EPOS4
+from sim_backend.devices.canopen.objects.family import Family, Rating
+from sim_backend.devices.canopen.objects.generic import GENERIC
+from sim_backend.devices.canopen.transport.bus_port import BusPort
+from sim_backend.devices.canopen.transport.stream_port import SlcanPort, SocketcandPort
+from sim_backend.devices.link.line import Line
+from sim_backend.devices.plant_tables import behind_a_drive
+from sim_backend.devices.process import Port, RunningDevice, Workplace
+from sim_backend.errors import ParameterError
+
+FAMILIES = {family.name: family for family in (GENERIC, EPOS4)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class CanOpenSettings:
+    """A drive, its joint and its bus.
+
+    Attributes:
+        family: "generic" or "epos4".
+        node_id: 1 .. 127.
+        interface: "slcan" (a pseudo-terminal), "socketcand" (a TCP server here), or an interface of python-can.
+        channel: of such an interface; TCP port of the server, 0 is any free one; not used by slcan.
+        link: symbolic link to put on the pseudo-terminal; None: none.
+        preset, plant, seed: the joint.
+        side_port: TCP port of the side channel; 0 is any free one.
+    """
+
+    family: str = "generic"
+    node_id: int = 5
+    interface: str = "slcan"
+    channel: str = "0"
+    link: Path | None = None
+    preset: str = "paper"
+    plant: Mapping[str, Any] | None = None
+    seed: int = 1
+    side_port: int = 0
+
+
+def serve_canopen(settings: CanOpenSettings) -> RunningDevice:
+    """Start one. It boots when its port does.
+
+    Raises:
+        ParameterError: the joint cannot be, or the family is not known.
+        OSError: a port is taken.
+    """
+    parameters = behind_a_drive(settings.preset, None, settings.plant)
+    drive = ServoDrive(parameters, _family(settings.family), settings.node_id, settings.seed)
+    return RunningDevice(drive, _port(drive, settings), settings.side_port)
+
+
+def data_sheet(family: str) -> str:
+    """Return the EDS of a drive on the joint of the paper.
+
+    Raises:
+        ParameterError: the family is not known.
+    """
+    found = _family(family)
+    objects = found.objects(Rating.of(behind_a_drive()))
+    vendor = next(one for one in objects if one.index == 0x1018).entries[1].default
+    assert isinstance(vendor, int)
+    return eds_text(objects, found.device_name, vendor)
+
+
+def _family(name: str) -> Family:
+    if name not in FAMILIES:
+        raise ParameterError(f"drive family '{name}' is unknown; known are {', '.join(FAMILIES)}")
+    return FAMILIES[name]
+
+
+def _port(drive: ServoDrive, settings: CanOpenSettings) -> Callable[[Workplace], Port]:
+    def make(place: Workplace) -> Port:
+        line = Line(None, place.faults, settings.seed)
+        if settings.interface == "slcan":
+            return SlcanPort(drive, place.clock, line, settings.link)
+        if settings.interface == "socketcand":
+            return SocketcandPort(drive, place.clock, line, int(settings.channel))
+        return BusPort(drive, place.clock, settings.interface, settings.channel)
+
+    return make
