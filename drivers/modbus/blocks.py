@@ -1,0 +1,79 @@
+"""Registers that are read or written in one request."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from drivers.modbus.register import Register, Space
+
+LONGEST_READ = 125  # words in one request (Modbus Application Protocol V1.1b3, 6.3)
+LONGEST_WRITE = 121  # of function 23 (6.17)
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Words at consecutive addresses.
+
+    Attributes:
+        space: of all of them.
+        address: of the first.
+        words: how many.
+        registers: that lie in it.
+    """
+
+    space: Space
+    address: int
+    words: int
+    registers: tuple[Register, ...]
+
+    def decode(self, words: Sequence[int]) -> dict[str, float]:
+        """Scaled values by name."""
+        start = self.address
+        return {
+            register.name: register.decode(words[register.address - start : register.end - start])
+            for register in self.registers
+        }
+
+    def encode(self, values: Mapping[str, float]) -> list[int]:
+        """The words of scaled values; 0 for the registers that are left out.
+
+        Raises:
+            ValueError: a value that its register does not hold.
+        """
+        words = [0] * self.words
+        for register in self.registers:
+            if register.name in values:
+                at = register.address - self.address
+                words[at : at + register.words] = register.encode(values[register.name])
+        return words
+
+
+def blocks(registers: Iterable[Register], longest_gap: int = 0, longest: int = LONGEST_READ) -> list[Block]:
+    """The fewest blocks that hold all registers.
+
+    Args:
+        registers: in any order.
+        longest_gap: words without a meaning that a request may span; not every drive answers for those.
+        longest: most words in a request.
+    """
+    found: list[Block] = []
+    group: list[Register] = []
+    for register in sorted(registers, key=lambda one: (one.space.value, one.address)):
+        if group and not _fits(group, register, longest_gap, longest):
+            found.append(_block(group))
+            group = []
+        group.append(register)
+    return [*found, _block(group)] if group else found
+
+
+def _fits(group: list[Register], register: Register, longest_gap: int, longest: int) -> bool:
+    last = group[-1]
+    return (
+        register.space is last.space
+        and register.address - last.end <= longest_gap
+        and register.end - group[0].address <= longest
+    )
+
+
+def _block(group: list[Register]) -> Block:
+    first, last = group[0], group[-1]
+    return Block(first.space, first.address, last.end - first.address, tuple(group))

@@ -1,0 +1,185 @@
+"""Every call of pymodbus: requests in bounded time. pymodbus renames its calls now and then; they are all here."""
+
+import logging
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+from pymodbus import FramerType
+from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+from pymodbus.exceptions import ModbusException
+from pymodbus.pdu import ModbusPDU
+
+from drivers.errors import DriveConnectionError, DriveStateError
+from drivers.modbus.blocks import Block, blocks
+from drivers.modbus.register import Register, Space
+from drivers.modbus.settings import ModbusSettings
+
+ATTEMPTS = 2
+RESYNC_S = 0.005  # more than 3.5 characters of silence at 9600 baud and above: whoever listens starts anew
+_REFUSALS = {
+    1: "the drive does not know this function",
+    2: "the drive has no such register, or not for this access",
+    3: "the drive does not take this value",
+    4: "the drive failed to do it",
+    6: "the drive is busy",
+    10: "the gateway has no way to the drive",
+    11: "the drive does not answer its gateway",
+}
+
+
+class QuickSerialClient(ModbusSerialClient):
+    """pymodbus' own client looks for bytes once a millisecond, twice for each answer; this one waits for the first."""
+
+    def recv(self, size: int | None) -> bytes:
+        """The bytes that have come; b"" after the time limit."""
+        if size is not None or self.socket is None:
+            return super().recv(size)
+        try:
+            first: bytes = self.socket.read(1)
+            return first + self.socket.read(self.socket.in_waiting) if first else first
+        except OSError:
+            self.close()  # type: ignore[no-untyped-call]
+            raise ModbusException("the port is gone") from None
+
+
+class Link:
+    """A connection to one drive.
+
+    Args:
+        settings: where it is, and the time limit.
+
+    Raises:
+        DriveConnectionError: the port is not there or in use, or nobody listens.
+    """
+
+    def __init__(self, settings: ModbusSettings) -> None:
+        logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)  # what it logs is raised here
+        self._settings, self._device = settings, settings.device
+        self._unit = settings.unit
+        self._deadline_s = 0.0
+        self._client: ModbusSerialClient | ModbusTcpClient
+        timeout_s = settings.answer_timeout_s
+        if settings.transport == "rtu":
+            self._client = QuickSerialClient(
+                settings.port, framer=FramerType.RTU, baudrate=settings.baud_rate, parity=settings.parity,
+                stopbits=settings.stop_bits, timeout=timeout_s, retries=0,
+            )  # fmt: skip
+        else:
+            self._client = ModbusTcpClient(settings.host, port=int(settings.port), timeout=timeout_s, retries=0)
+        if not self._client.connect():
+            self.close()
+            hint = "is it plugged in, and not open elsewhere?" if settings.transport == "rtu" else "is the drive on?"
+            raise DriveConnectionError(self._device, f"cannot be opened; {hint}")
+
+    @staticmethod
+    def longest_call_s(settings: ModbusSettings) -> float:
+        """By then whoever has called `begin` has his answers, or an error [s]."""
+        # an answer in pieces may take the limit twice
+        return (ATTEMPTS + 1) * (2.0 * settings.answer_timeout_s + RESYNC_S)
+
+    def begin(self) -> None:
+        """A call of the contract begins: from now on its requests share one time limit."""
+        self._deadline_s = time.perf_counter() + ATTEMPTS * (2.0 * self._settings.answer_timeout_s + RESYNC_S)
+
+    def close(self) -> None:
+        """Give the port back. Safe to call twice."""
+        self._client.close()  # type: ignore[no-untyped-call]
+
+    def read(self, block: Block) -> list[int]:
+        """The words of a block.
+
+        Raises:
+            DriveConnectionError: no valid answer in time.
+            DriveStateError: the drive refuses.
+        """
+        call = self._client.read_input_registers if block.space is Space.INPUT else self._client.read_holding_registers
+        return self._words(block, lambda: call(block.address, count=block.words, device_id=self._unit))
+
+    def write(self, block: Block, words: Sequence[int]) -> None:
+        """Write the words of a block.
+
+        Raises:
+            DriveConnectionError, DriveStateError: as `read`.
+        """
+        if len(words) == 1:
+            self._ask(block, lambda: self._client.write_register(block.address, words[0], device_id=self._unit))
+        else:
+            self._ask(block, lambda: self._client.write_registers(block.address, list(words), device_id=self._unit))
+
+    def write_then_read(self, written: Block, words: Sequence[int], block: Block) -> list[int]:
+        """Write one block and read another, in one request (function 23).
+
+        Raises:
+            DriveConnectionError, DriveStateError: as `read`.
+        """
+        return self._words(
+            block,
+            lambda: self._client.readwrite_registers(
+                read_address=block.address, read_count=block.words, write_address=written.address,
+                values=list(words), device_id=self._unit,
+            ),
+        )  # fmt: skip
+
+    def read_one(self, register: Register) -> float:
+        """The scaled value of one register.
+
+        Raises:
+            DriveConnectionError, DriveStateError: as `read`.
+        """
+        [block] = blocks([register])
+        return block.decode(self.read(block))[register.name]
+
+    def _words(self, block: Block, call: Callable[[], ModbusPDU]) -> list[int]:
+        words = self._ask(block, call).registers
+        if len(words) != block.words:
+            raise self._no_answer(f"{len(words)} of {block.words} words", block)
+        return list(words)
+
+    def _ask(self, block: Block, call: Callable[[], ModbusPDU]) -> ModbusPDU:
+        """One request, asked again once where it was not answered."""
+        found = "nothing"
+        for _ in range(ATTEMPTS):
+            try:
+                answer = call()
+            except (ModbusException, OSError) as error:
+                found = _short(error)
+                if not self._recover():
+                    break
+                continue
+            if answer.isError():
+                raise self._refused(answer, block)
+            return answer
+        raise self._no_answer(found, block)
+
+    def _recover(self) -> bool:
+        """Leave half an answer behind; False where the time is up."""
+        if self._settings.transport == "tcp":
+            self.close()  # the next request connects anew: an answer that comes late has nowhere to go
+        with suppress(OSError):
+            time.sleep(RESYNC_S)
+        return time.perf_counter() < self._deadline_s
+
+    def _refused(self, answer: ModbusPDU, block: Block) -> DriveStateError:
+        code = getattr(answer, "exception_code", 0)
+        why = _REFUSALS.get(code, "an exception that the standard does not name")
+        return DriveStateError(
+            self._device,
+            f"{_place(block)}: refused with exception {code}, {why}; compare the register map with its manual",
+        )
+
+    def _no_answer(self, found: str, block: Block) -> DriveConnectionError:
+        return DriveConnectionError(
+            self._device,
+            f"{_place(block)}: found {found} within {self._settings.answer_timeout_s:g} s, asked {ATTEMPTS} times at "
+            f"most; check the cable, the power, the unit ({self._unit}) and the line's settings",
+        )
+
+
+def _place(block: Block) -> str:
+    names = ", ".join(register.name for register in block.registers)
+    return f"{names} ({block.space.value} registers {block.address} .. {block.address + block.words - 1})"
+
+
+def _short(error: Exception) -> str:
+    return "nothing" if "No response" in str(error) or "No Response" in str(error) else f"'{error}'"

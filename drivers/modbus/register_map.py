@@ -1,0 +1,106 @@
+"""What a family of drives keeps in its registers, and what the driver does with them; read from TOML.
+
+A map names its registers freely, and then says which of them plays which part:
+
+    [demand]     duty, current_a, position_counts        what is written each cycle, by mode
+    [measured]   position_counts, velocity_counts_s, duty, current_a, supply_v, temperature_c
+    [control]    register, and the words for off, quick_stop, clear_fault and each mode; left out where a demand of
+                 zero is all that switches the motor off
+    [status]     register, mask, and the words that mean enabled, quick_stop and fault
+    [fault]      register, and names of its numbers
+    [watchdog]   register (its unit is s), or `fixed_s` where it is set in the drive alone
+    [identity]   vendor, product; registers of firmware and serial; register and word that tell the family
+    [mode]       register and the words of the modes, where it is not part of the control word
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from drivers.contract import Mode
+from drivers.modbus.register import Register
+
+DEMANDS = {Mode.DUTY: "duty", Mode.CURRENT: "current_a", Mode.POSITION: "position_counts"}
+MEASURED = ("position_counts", "velocity_counts_s", "duty", "current_a", "supply_v", "temperature_c")
+SLOW = frozenset({"supply_v", "temperature_c"})
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """A register, and which word in it means what."""
+
+    register: Register
+    words: Mapping[str, int]
+    mask: int = 0xFFFF
+
+
+@dataclass(frozen=True, slots=True)
+class Watchdog:
+    """Where the drive is told how long it may be left alone.
+
+    Attributes:
+        register: None where it is set in the drive alone, with its own tools.
+        fixed_s: that time [s].
+    """
+
+    register: Register | None
+    fixed_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """Who the drive is.
+
+    Attributes:
+        vendor, product: as shown.
+        firmware, serial: registers; None where it does not tell.
+        family: register and word by which the map and the drive recognise each other; None: not checked.
+        simulated: register whose value is not 0 where no hardware is behind it; None: it is taken for real.
+    """
+
+    vendor: str
+    product: str
+    firmware: Register | None = None
+    serial: Register | None = None
+    family: Words | None = None
+    simulated: Register | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RegisterMap:
+    """A family of drives.
+
+    Attributes:
+        name: of the family.
+        source: where the register table was published.
+        identity, control, mode, status, fault, watchdog: see the module.
+        demand: register of each mode's demand.
+        measured: registers by quantity.
+        read_write: whether one request may write and read (function 23).
+        longest_gap: words without a meaning that a read may span.
+    """
+
+    name: str
+    source: str
+    identity: Identity
+    demand: Mapping[Mode, Register]
+    measured: Mapping[str, Register]
+    watchdog: Watchdog
+    control: Words | None = None
+    mode: Words | None = None
+    status: Words | None = None
+    fault: Register | None = None
+    fault_names: Mapping[int, str] = field(default_factory=dict)
+    fault_is_bits: bool = False
+    read_write: bool = False
+    longest_gap: int = 0
+
+    @property
+    def modes(self) -> frozenset[Mode]:
+        """The modes that it has."""
+        return frozenset(self.demand)
+
+    def fault_name(self, number: int) -> str:
+        """A fault in words."""
+        if self.fault_is_bits:
+            return ", ".join(name for bit, name in self.fault_names.items() if number & bit) or f"bits {number:#06x}"
+        return self.fault_names.get(number, f"number {number:#06x}, which the map does not name")

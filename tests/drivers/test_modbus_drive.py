@@ -1,0 +1,308 @@
+"""The Modbus driver against registers behind a socket, and against bytes on a serial line."""
+
+import os
+import time
+import tty
+from math import isnan, pi
+from struct import pack
+
+import pytest
+
+from drivers.contract import Command, Mode, Status
+from drivers.errors import (
+    DriveConfigurationError,
+    DriveConnectionError,
+    DriveFault,
+    DriveStateError,
+    WatchdogError,
+)
+from drivers.joint import JointScale
+from drivers.modbus.blocks import Block
+from drivers.modbus.drive import ModbusDrive
+from drivers.modbus.link import Link
+from drivers.modbus.map_file import load_map, parse_map
+from drivers.modbus.register import Number, Register, Space
+from drivers.modbus.settings import ModbusSettings
+from tests.drivers.modbus_answers import MAP, Answers
+
+JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
+COUNT_RAD = 2 * pi / 4096 / 20
+OFF = Command(Mode.OFF)
+TIMEOUT_S = 0.2
+
+
+@pytest.fixture
+def answers():
+    with Answers() as server:
+        yield server
+        server.shutdown()
+
+
+@pytest.fixture
+def made(answers):
+    """Makes drives, and closes them."""
+    drives = []
+
+    def make(joint=JOINT, text=MAP, **settings):
+        found = ModbusSettings("test", "tcp", answers.port, answer_timeout_s=TIMEOUT_S, **settings)
+        drives.append(ModbusDrive(found, parse_map(text, "map"), joint))
+        return drives[-1]
+
+    yield make
+    for drive in drives:
+        drive.close()
+
+
+@pytest.fixture
+def drive(made):
+    opened = made()
+    opened.open(0.01)
+    return opened
+
+
+def test_the_conversation_of_opening(answers, drive):
+    assert [pdu.hex(" ") for pdu in answers.sent[:6]] == [
+        "04 00 00 00 01",  # family
+        "04 00 01 00 01",  # firmware
+        # off, and the state: function 23 reads 8 words at 20 and writes 6 at 10
+        "17 00 14 00 08 00 0a 00 06 0c 00 00 00 00 00 00 00 00 00 00 00 00",
+        "06 00 64 00 c8",  # watchdog 200 ms
+        "03 00 64 00 01",  # and read back
+        "04 00 05 00 02",  # supply and temperature
+    ]
+    assert drive.describe().firmware == "2.07"
+    assert drive.describe().watchdog_s == 0.2
+    assert drive.describe().max_rate_hz > 0.0
+
+
+def test_a_cycle_is_one_request(answers, drive):
+    drive.enable(Mode.DUTY)
+    answers.sent.clear()
+    drive.exchange(Command(Mode.DUTY, -0.25))
+    assert [pdu.hex(" ") for pdu in answers.sent] == [
+        "17 00 14 00 08 00 0a 00 06 0c 00 01 00 01 f6 3c 00 00 00 00 00 00"
+    ]
+
+
+def test_a_drive_without_that_function_takes_two(answers, made):
+    drive = made(text=MAP.replace("read_write = true", ""))
+    drive.open(0.01)
+    drive.enable(Mode.CURRENT)
+    answers.sent.clear()
+    drive.exchange(Command(Mode.CURRENT, 1.5))
+    assert [pdu.hex(" ") for pdu in answers.sent] == [
+        "10 00 0a 00 06 0c 00 01 00 02 00 00 05 dc 00 00 00 00",
+        "03 00 14 00 08",
+    ]
+
+
+def test_a_sample_in_si_units(answers, drive):
+    velocity = pack(">f", 2000.0)
+    answers.holding |= {22: 0xFFFF, 23: 0xFC18}  # -1000 counts
+    answers.holding |= {24: int.from_bytes(velocity[2:], "big"), 25: int.from_bytes(velocity[:2], "big")}
+    answers.holding |= {26: 2500, 27: 0xFA24}
+    sample = drive.exchange(OFF)
+    assert sample.position_rad == pytest.approx(-1000 * COUNT_RAD)
+    assert sample.velocity_rad_s == pytest.approx(2000 * COUNT_RAD)
+    assert (sample.duty, sample.current_a) == (pytest.approx(0.25), pytest.approx(-1.5))
+    assert (sample.supply_v, sample.temperature_c) == (pytest.approx(24.0), pytest.approx(25.0))
+    assert 0.0 <= sample.age_s < sample.ages.supply_s
+
+
+def test_signs_and_zero(answers, made):
+    drive = made(JointScale(4096, 20.0, motor_sign=-1, encoder_sign=-1, zero_rad=0.1))
+    drive.open(0.01)
+    answers.holding |= {23: 1000, 26: 2500}
+    sample = drive.exchange(OFF)
+    assert sample.position_rad == pytest.approx(-1000 * COUNT_RAD - 0.1)
+    assert sample.duty == pytest.approx(-0.25)
+    drive.enable(Mode.POSITION)
+    drive.exchange(Command(Mode.POSITION, 0.2))
+    counts = round(-0.3 / COUNT_RAD)
+    assert (answers.holding[14] << 16 | answers.holding[15]) == counts % 2**32
+
+
+def test_enabling_a_position_loop_holds_the_joint_where_it_is(answers, drive):
+    answers.holding[23] = 1234
+    drive.enable(Mode.POSITION)
+    assert (answers.holding[14], answers.holding[15]) == (0, 1234)
+
+
+def test_what_is_not_in_the_map_is_not_measured(answers, made):
+    text = MAP.replace('current_a = "current"\n', "").replace('temperature_c = "temperature"\n', "")
+    drive = made(text=text)
+    drive.open(0.01)
+    sample = drive.exchange(OFF)
+    assert isnan(sample.current_a)
+    assert isnan(sample.temperature_c)
+    assert "current_a" not in drive.describe().measured
+
+
+def test_states_follow_what_the_drive_says(answers, drive):
+    with pytest.raises(DriveStateError, match="a duty was demanded in state disabled; enable duty mode first"):
+        drive.exchange(Command(Mode.DUTY, 0.1))
+    drive.enable(Mode.DUTY)
+    assert drive.exchange(Command(Mode.DUTY, 0.1)).status is Status.ENABLED
+    with pytest.raises(DriveStateError, match="enable current mode first"):
+        drive.exchange(Command(Mode.CURRENT, 0.1))
+    drive.quick_stop()
+    assert drive.exchange(OFF).status is Status.QUICK_STOP
+    assert answers.holding[10] == 2  # an OFF of the loop does not end the braking
+    answers.obeys, answers.holding[20] = False, 0
+    assert drive.exchange(OFF).status is Status.DISABLED
+    drive.exchange(OFF)
+    assert answers.holding[10] == 0
+
+
+def test_a_drive_that_does_not_switch_on(answers, drive):
+    answers.obeys = False
+    with pytest.raises(DriveStateError, match="cannot be enabled: disabled; remove the cause"):
+        drive.enable(Mode.DUTY)
+    with pytest.raises(DriveStateError):
+        drive.exchange(Command(Mode.DUTY, 0.1))
+
+
+def test_a_fault_is_named_and_cleared(answers, drive):
+    drive.enable(Mode.DUTY)
+    answers.obeys = False
+    answers.holding |= {20: 4, 21: 0x2310}
+    assert drive.exchange(Command(Mode.DUTY, 0.1)).status is Status.FAULT
+    with pytest.raises(DriveFault, match="has switched itself off: over-current; remove the cause, then clear the"):
+        drive.exchange(Command(Mode.DUTY, 0.1))
+    with pytest.raises(DriveFault, match="cannot be cleared: over-current"):
+        drive.clear_fault()
+    answers.obeys = True
+    answers.holding |= {20: 0, 21: 0}
+    drive.clear_fault()
+    assert answers.sent[-2].hex(" ").split()[10:12] == ["00", "08"]
+    assert drive.exchange(OFF).status is Status.DISABLED
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (Command(Mode.DUTY, 1.5), r"duty demand is 1.5; -1 .. 1 is allowed"),
+        (Command(Mode.DUTY, float("nan")), "duty demand is nan"),
+    ],
+)
+def test_an_impossible_demand_is_not_sent(answers, drive, command, message):
+    drive.enable(Mode.DUTY)
+    answers.sent.clear()
+    with pytest.raises(DriveConfigurationError, match=message):
+        drive.exchange(command)
+    assert answers.sent == []
+
+
+def test_a_demand_that_its_register_does_not_hold_is_not_sent(answers, drive):
+    drive.enable(Mode.CURRENT)
+    answers.sent.clear()
+    with pytest.raises(DriveConfigurationError, match=r"current_demand is 40 A; its register holds -32.768 .. 32.767"):
+        drive.exchange(Command(Mode.CURRENT, 40.0))
+    assert answers.sent == []
+
+
+def test_another_family_is_refused(answers, made):
+    answers.input[0] = 0x1111
+    with pytest.raises(DriveConfigurationError, match="family is 0x1111; a test drive has 0x4242"):
+        made().open(0.01)
+
+
+def test_the_watchdog_is_read_back(answers, made):
+    answers.slips = 100
+    with pytest.raises(WatchdogError, match=r"reads back as 0.3 s, set was 0.2 s"):
+        made().open(0.01)
+
+
+def test_a_watchdog_that_the_drive_refuses(answers, made):
+    del answers.holding[100]
+    with pytest.raises(WatchdogError, match="cannot be set to 0.2 s: .*exception 2, the drive has no such register"):
+        made().open(0.01)
+
+
+def test_a_map_without_watchdog_needs_somebody_to_vouch_for_it(made):
+    text = MAP.replace('[watchdog]\nregister = "watchdog"', "[watchdog]\nfixed_s = 0.5")
+    with pytest.raises(WatchdogError, match=r"Set it to 0.5 s with the drive's own tools"):
+        made(text=text).open(0.01)
+    drive = made(text=text, watchdog_is_set_in_drive=True)
+    drive.open(0.01)
+    assert drive.describe().watchdog_s == 0.5
+
+
+def test_a_host_that_was_late_is_told_that_the_watchdog_has_acted(answers, made):
+    drive = made(watchdog_s=0.1)
+    drive.open(0.01)
+    drive.enable(Mode.DUTY)
+    drive.exchange(Command(Mode.DUTY, 0.1))
+    time.sleep(0.15)
+    with pytest.raises(DriveFault, match=r"its watchdog has stopped the motor: no demand for .* 0.1 s are allowed"):
+        drive.exchange(Command(Mode.DUTY, 0.1))
+    assert answers.holding[10] == 0
+
+
+def test_one_answer_that_is_no_modbus_is_asked_for_again(answers, drive):
+    answers.corrupt = 1
+    assert drive.exchange(OFF).status is Status.DISABLED
+
+
+def test_a_silent_drive_is_an_error_in_bounded_time_and_comes_back(answers, drive):
+    answers.silent = True
+    began_s = time.perf_counter()
+    with pytest.raises(
+        DriveConnectionError, match=r"status, fault, position.*found nothing within 0.2 s.*the unit \(1\)"
+    ):
+        drive.exchange(OFF)
+    assert time.perf_counter() - began_s < drive.describe().longest_call_s + 2.0  # a busy machine's share
+    answers.silent = False
+    drive.exchange(OFF)
+
+
+def test_a_wrong_unit_is_named(made):
+    with pytest.raises(DriveConnectionError, match=r"unit 9.*found nothing.*the unit \(9\)"):
+        made(unit=9).open(0.01)
+
+
+def test_nobody_listens(answers):
+    free = Answers()
+    port = free.port
+    free.server_close()
+    with pytest.raises(DriveConnectionError, match="cannot be opened; is the drive on"):
+        ModbusDrive(ModbusSettings("test", "tcp", port), parse_map(MAP, "map"), JOINT).open(0.01)
+    free.shutdown()
+
+
+def test_calls_before_open(made):
+    with pytest.raises(DriveStateError, match="exchange before open"):
+        made().exchange(OFF)
+
+
+# a serial line: what the manual prints, byte by byte
+
+
+@pytest.fixture
+def line():
+    """A pty: our end of it, and the path of the driver's."""
+    ours, theirs = os.openpty()
+    tty.setraw(theirs)
+    yield ours, os.ttyname(theirs)
+    os.close(ours)
+    os.close(theirs)
+
+
+def test_a_request_as_the_manual_prints_it(line):
+    """Roboteq GDC3660E data sheet, 2.2.1: VAR1 is asked for with 01 04 20 C1 00 02 2B F7."""
+    ours, path = line
+    link = Link(ModbusSettings("roboteq", "rtu", path, answer_timeout_s=TIMEOUT_S))
+    variable = Register("var1", Space.INPUT, 0x20C1, Number.INT32)
+    link.begin()
+    os.write(ours, b"")
+    with pytest.raises(DriveConnectionError, match="found nothing"):
+        link.read(Block(variable.space, variable.address, variable.words, (variable,)))
+    link.close()
+    assert os.read(ours, 100) == bytes.fromhex("01 04 20 C1 00 02 2B F7") * 2  # asked twice
+
+
+def test_the_roboteq_map_has_no_demand_but_zero_to_switch_off():
+    drive = ModbusDrive(ModbusSettings("roboteq", "rtu", "/dev/absent"), load_map("roboteq"), JOINT)
+    assert drive.describe().modes == {Mode.DUTY}
+    with pytest.raises(DriveConnectionError, match="is it plugged in, and not open elsewhere"):
+        drive.open(0.01)

@@ -1,0 +1,114 @@
+"""Registers, blocks and maps: numbers worked out by hand."""
+
+import pytest
+
+from drivers.contract import Mode
+from drivers.modbus.blocks import blocks
+from drivers.modbus.map_file import MapError, known_maps, load_map, parse_map
+from drivers.modbus.register import Number, Register, Space
+from drivers.modbus.requests import plan
+from tests.drivers.modbus_answers import MAP
+
+
+def register(number, **changes):
+    return Register(**{"name": "x", "space": Space.HOLDING, "address": 0, "number": number, **changes})
+
+
+@pytest.mark.parametrize(
+    ("made", "value", "words"),
+    [
+        (register(Number.INT16, scale=1e-3), -1.5, [0xFA24]),
+        (register(Number.UINT16, scale=0.1, offset=-40.0), 25.0, [650]),
+        (register(Number.INT32), -2, [0xFFFF, 0xFFFE]),
+        (register(Number.INT32, low_word_first=True), 0x12345678, [0x5678, 0x1234]),
+        (register(Number.UINT32), 4294967295, [0xFFFF, 0xFFFF]),
+        (register(Number.FLOAT32), 1.5, [0x3FC0, 0x0000]),
+        (register(Number.LOW_INT16, scale=0.1), -0.7, [0x0000, 0xFFF9]),
+    ],
+)
+def test_words_of_a_value_and_back(made, value, words):
+    assert made.encode(value) == words
+    assert made.decode(words) == pytest.approx(value)
+
+
+def test_the_more_significant_word_of_a_low_number_has_no_meaning():
+    assert register(Number.LOW_INT16).decode([0xFFFF, 0xFFF9]) == register(Number.LOW_INT16).decode([0, 0xFFF9]) == -7
+
+
+@pytest.mark.parametrize(
+    ("made", "value", "message"),
+    [
+        (register(Number.INT16, scale=1e-3, unit="A"), 40.0, r"x is 40 A; its register holds -32.768 .. 32.767"),
+        (register(Number.UINT16), -1, r"x is -1 ; its register holds 0 .. 65535"),
+        (register(Number.FLOAT32), float("nan"), "a finite number is wanted"),
+    ],
+)
+def test_a_value_that_does_not_fit_is_refused(made, value, message):
+    with pytest.raises(ValueError, match=message):
+        made.encode(value)
+
+
+def test_blocks_hold_what_lies_side_by_side():
+    registers = [register(Number.UINT16, name=str(at), address=at) for at in (7, 0, 1, 3)]
+    assert [(block.address, block.words) for block in blocks(registers)] == [(0, 2), (3, 1), (7, 1)]
+    assert [(block.address, block.words) for block in blocks(registers, longest_gap=1)] == [(0, 4), (7, 1)]
+    assert [(block.address, block.words) for block in blocks(registers, longest_gap=9, longest=4)] == [(0, 4), (7, 1)]
+
+
+def test_one_request_where_the_drive_can():
+    found = plan(parse_map(MAP, "map"))
+    assert found.in_one
+    assert [(block.address, block.words) for block in found.written] == [(10, 6)]
+    assert [(block.address, block.words) for block in found.read] == [(20, 8)]
+    assert [(block.space, block.address, block.words) for block in found.slow] == [(Space.INPUT, 5, 2)]
+    assert not plan(parse_map(MAP.replace("read_write = true", ""), "map")).in_one
+
+
+def test_the_maps_that_come_with_the_package_can_be_used():
+    assert "roboteq" in known_maps()
+    for name in known_maps():
+        found = load_map(name)
+        assert found.source
+        assert plan(found).read
+
+
+def test_the_published_map_of_roboteq():
+    found = load_map("roboteq")
+    assert found.modes == {Mode.DUTY}
+    assert found.watchdog.register is None
+    requests = plan(found)
+    assert not requests.in_one
+    # each quantity is two words at an address of its own, in requests of their own
+    assert [(hex(block.address), block.words) for block in requests.read] == [
+        ("0x2001", 2), ("0x2041", 2), ("0x2081", 2), ("0x2240", 2),
+    ]  # fmt: skip
+    assert requests.written[0].encode({"go": -0.5}) == [0xFFFF, 0xFE0C]
+    assert found.fault_name(0x11) == "overheat, emergency stop"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        ('name = "test drive"', "", "map: name is missing"),
+        ("read_write = true", "read_wirte = true", "map: read_wirte: unknown; known are control"),
+        ('duty = "duty_demand"', 'duty = "nowhere"', "demand.duty names register 'nowhere', which is not in the map"),
+        ('position_counts = "position"\n', "", "measured: position_counts is missing"),
+        ('type = "float32"', 'type = "float64"', "register 'velocity': FLOAT64 is missing or not known"),
+        ("address = 24", "adress = 24", "register 'velocity': address is missing"),
+        ('name = "velocity"', 'name = "position"', "register 'position' is there twice"),
+        ('unit = "counts/s"', 'unti = "counts/s"', "register 'velocity': unti: unknown key"),
+        ("quick_stop = 2\nclear_fault", "stop = 2\nclear_fault", "control: stop: unknown; known are off"),
+        ("[mode]", "[mode", "is no TOML"),
+    ],
+)
+def test_a_map_that_is_not_as_wanted(before, after, message):
+    assert before in MAP
+    with pytest.raises(MapError, match=message):
+        parse_map(MAP.replace(before, after), "map")
+
+
+def test_a_map_that_is_not_there():
+    with pytest.raises(MapError, match=r"there is no register map 'robotec'; known are .*roboteq"):
+        load_map("robotec")
+    with pytest.raises(MapError, match=r"nowhere.toml: cannot be read: No such file"):
+        load_map("nowhere.toml")
