@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from bench.configuration import BenchConfiguration
 from bench.drives.canopen import CanopenDriveSettings
+from bench.drives.modbus import ModbusDriveSettings
 from bench.drives.real import RealDriveSettings, joint_scale
 from bench.drives.roboclaw import RoboclawDriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
@@ -48,6 +49,8 @@ def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equi
             return _simulated(settings)
         case RoboclawDriveSettings() as settings:
             return _roboclaw(settings, configuration.rig, ask)
+        case ModbusDriveSettings() as settings:
+            return _modbus(settings, configuration.rig, ask)
         case CanopenDriveSettings() as settings:
             return _canopen(settings, configuration.rig, ask)
 
@@ -101,6 +104,21 @@ def _canopen(settings: CanopenDriveSettings, rig: Rig, ask: Ask) -> Equipment:
         drive = CanopenDrive(CanopenSettings(bus=bus, **values), joint_scale(settings, rig))
     except DriveConfigurationError as error:
         raise ConfigurationError(str(error)) from error
+    return Equipment(drive, PersonTechnician(ask))
+
+
+def _modbus(settings: ModbusDriveSettings, rig: Rig, ask: Ask) -> Equipment:
+    from drivers.modbus.drive import ModbusDrive
+    from drivers.modbus.map_file import MapError, load_map
+    from drivers.modbus.settings import ModbusSettings
+
+    if settings.transport == "tcp" and not settings.port.isdigit():
+        raise ConfigurationError(f"drive.port is '{settings.port}'; with drive.transport = 'tcp' a number is wanted")
+    try:
+        register_map = load_map(settings.map)
+    except MapError as error:
+        raise ConfigurationError(f"drive.map: {error}") from error
+    drive = ModbusDrive(ModbusSettings(**_driver_values(settings)), register_map, joint_scale(settings, rig))
     return Equipment(drive, PersonTechnician(ask))
 
 

@@ -5,10 +5,11 @@ from typing import Annotated, Any
 from pydantic import Discriminator, Tag
 
 from bench.drives.canopen import CanopenDriveSettings
+from bench.drives.modbus import ModbusDriveSettings
 from bench.drives.roboclaw import RoboclawDriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
 
-KINDS = ("sim", "roboclaw", "canopen")
+KINDS = ("sim", "canopen", "roboclaw", "modbus")
 
 
 def _tag(section: Any) -> str:
@@ -20,6 +21,7 @@ def _tag(section: Any) -> str:
 DriveSettings = Annotated[
     Annotated[SimulatedDriveSettings, Tag("tagged-sim")]
     | Annotated[RoboclawDriveSettings, Tag("tagged-roboclaw")]
-    | Annotated[CanopenDriveSettings, Tag("tagged-canopen")],
+    | Annotated[CanopenDriveSettings, Tag("tagged-canopen")]
+    | Annotated[ModbusDriveSettings, Tag("tagged-modbus")],
     Discriminator(_tag, custom_error_type="kind", custom_error_message=f"kind should be one of {', '.join(KINDS)}"),
 ]

@@ -10,6 +10,7 @@ from drivers.errors import DriveConnectionError
 
 CANOPEN = {"kind": "canopen", "interface": "slcan", "channel": "/dev/absent", "node_id": 5, "watchdog_s": 0.2}
 ROBOCLAW = {"kind": "roboclaw", "port": "/dev/absent", "motor_sign": -1, "watchdog_s": 0.3}
+MODBUS = {"kind": "modbus", "map": "roboteq", "port": "/dev/absent"}
 
 
 def configured(drive, **rig):
@@ -50,13 +51,17 @@ def test_the_simulated_drive_has_a_seed():
 @pytest.mark.parametrize(
     ("drive", "message"),
     [
-        ({"kind": "roboclaws"}, r"drive: found .*roboclaws.*; kind should be one of sim, roboclaw, canopen"),
+        (
+            {"kind": "roboclaws"},
+            r"drive: found .*roboclaws.*; kind should be one of sim, canopen, roboclaw, modbus",
+        ),
         ({"kind": "roboclaw"}, r"bench.toml: drive.port: missing"),
         (ROBOCLAW | {"address": 5}, r"address: found 5; should be greater than or equal to 128"),
         (CANOPEN | {"channnel": "can0"}, r"channnel: unknown key"),
         (CANOPEN | {"bitrate": 123456}, r"bitrate: found 123456"),
         (CANOPEN | {"velocity_unit": "rmp"}, r"velocity_unit: found 'rmp'"),
         (ROBOCLAW | {"seed": 3}, r"seed: unknown key"),
+        (MODBUS | {"unit": 300}, r"unit: found 300; should be less than or equal to 247"),
         (ROBOCLAW | {"encoder_sign": 2}, r"encoder_sign: found 2; should be 1 or -1"),
     ],
 )
@@ -68,3 +73,15 @@ def test_a_section_that_is_not_as_wanted(drive, message):
 def test_a_real_drive_needs_to_know_the_gear():
     with pytest.raises(ConfigurationError, match=r"needs sensor.counts_per_turn and gear.ratio"):
         make_equipment(configured(ROBOCLAW, gear={"backlash_rad": 0.01}))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"map": "robotec"}, "drive.map: there is no register map 'robotec'"),
+        ({"transport": "tcp"}, "drive.port is '/dev/absent'; with drive.transport = 'tcp' a number is wanted"),
+    ],
+)
+def test_a_modbus_drive_that_cannot_be_made(changes, message):
+    with pytest.raises(ConfigurationError, match=message):
+        make_equipment(configured(MODBUS | changes))

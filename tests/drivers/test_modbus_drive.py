@@ -215,7 +215,7 @@ def test_the_watchdog_is_read_back(answers, made):
 
 def test_a_watchdog_that_the_drive_refuses(answers, made):
     del answers.holding[100]
-    with pytest.raises(WatchdogError, match="cannot be set to 0.2 s: .*exception 2, the drive has no such register"):
+    with pytest.raises(WatchdogError, match=r"cannot be set to 0.2 s: .*exception 2, the drive has no such register"):
         made().open(0.01)
 
 
