@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo serve test benchmark check format clean help
+.PHONY: demo paper serve test benchmark check format clean help
 
 help:            ## this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
@@ -18,6 +18,10 @@ $(STAMP): pyproject.toml constraints.txt
 
 demo: $(STAMP)   ## the main job, end to end: tables on the terminal, one HTML report in out/
 	$(BIN)/friction-bench demo --report out/demo.html
+
+paper: $(STAMP)  ## every figure and table of the paper, ours beside it: one HTML report in out/
+	mkdir -p out
+	$(BIN)/friction-bench --store out/paper.sqlite paper --report out/paper.html
 
 serve: $(STAMP)  ## the service and the page on the simulated bench
 	$(BIN)/friction-bench serve

@@ -13,6 +13,7 @@ from bench.cli import (
     doctor,
     effects,
     experiments,
+    paper,
     recordings,
     run,
     serve,
@@ -27,6 +28,7 @@ from bench.cli.output import say
 
 _ORDER = (
     "demo",
+    "paper",
     "serve",
     "doctor",
     "run",
@@ -109,6 +111,7 @@ app.add_typer(calibrate.app, name="calibrate")
 app.add_typer(study.app, name="study")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
+app.command("paper")(paper.paper)
 app.add_typer(simulate_device.app, name="simulate-device")
 app.command("challenge")(challenge.challenge)
 app.command("reveal")(challenge.reveal)

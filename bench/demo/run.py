@@ -5,9 +5,8 @@ from functools import partial
 from pathlib import Path
 
 from bench.configuration import default_configuration
+from bench.demo.at_rest import load_sweep, repeated_steps
 from bench.demo.hidden_effect import hidden_effect
-from bench.demo.load_sweep import load_sweep
-from bench.demo.repeated_steps import repeated_steps
 from bench.report import Section, write_html
 from bench.store import Store
 

@@ -5,28 +5,34 @@ from dataclasses import dataclass
 from typing import Any
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+_DARK, _LIGHT = (68, 1, 84), (253, 190, 60)  # of a row of shades: from a dark violet over green to a light orange
+_MIDDLE = (33, 145, 140)
+MANY_POINTS = 30
 Numbers = Sequence[float | None]
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line through points; dashed for references."""
+    """A line through points; dashed for references. Without a colour it has the next one."""
 
     name: str
     x: Numbers
     y: Numbers
     dashed: bool = False
+    colour: str = ""
 
 
 @dataclass(frozen=True)
 class Points:
-    """Points, with bars from low to high where given."""
+    """Points, with bars from low to high where given. Without a colour they have the next one."""
 
     name: str
     x: Numbers
     y: Numbers
     low: Sequence[float] = ()
     high: Sequence[float] = ()
+    colour: str = ""
+    in_legend: bool = True
 
 
 @dataclass(frozen=True)
@@ -65,8 +71,20 @@ class Figure:
         }
 
 
+def shades(count: int) -> list[str]:
+    """Colours of a quantity that rises, from dark to light: told apart by lightness too."""
+    return [_shade(index / max(count - 1, 1)) for index in range(count)]
+
+
+def _shade(share: float) -> str:
+    low, high, part = (_DARK, _MIDDLE, 2.0 * share) if share < 0.5 else (_MIDDLE, _LIGHT, 2.0 * share - 1.0)
+    return "#" + "".join(f"{round(one + part * (two - one)):02x}" for one, two in zip(low, high, strict=True))
+
+
 def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
     common: dict[str, Any] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
+    if not isinstance(one, Bars):
+        colour = one.colour or colour
     if isinstance(one, Line):
         dash = "dash" if one.dashed else "solid"
         return {**common, "type": "scatter", "mode": "lines", "line": {"color": colour, "dash": dash}}
@@ -79,5 +97,7 @@ def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
             "arrayminus": [value - low for low, value in zip(one.low, measured, strict=True)],
         }
     if isinstance(one, Points):
-        return {**common, "type": "scatter", "mode": "markers", "marker": {"color": colour, "size": 7}}
+        # many points in one figure: small ones
+        marker = {"color": colour, "size": 7 if len(one.x) <= MANY_POINTS else 5}
+        return {**common, "type": "scatter", "mode": "markers", "showlegend": one.in_legend, "marker": marker}
     return {**common, "type": "bar", "marker": {"color": colour}}

@@ -1,0 +1,65 @@
+"""One row of the page: a figure or table of the paper, ours beside it, and the trials behind it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+from typing import Any
+
+from bench.report import Section
+
+Number = float | int | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One figure or table.
+
+    Attributes:
+        name: as the paper counts ("fig-4").
+        section: words, tables, figures.
+        ours, paper: the numbers that are compared, by the same names, units in them; None where the paper gives none.
+        experiment_ids, trial_ids: what it was drawn from.
+    """
+
+    name: str
+    section: Section
+    ours: dict[str, Number]
+    paper: dict[str, Number] = field(default_factory=dict)
+    experiment_ids: tuple[int, ...] = ()
+    trial_ids: tuple[int, ...] = ()
+
+    def to_json(self) -> dict[str, Any]:
+        """The numbers, and where they come from."""
+        return {
+            "name": self.name,
+            "title": self.section.title,
+            "ours": self.ours,
+            "paper": {name: self.paper.get(name) for name in self.ours},
+            "experiment_ids": list(self.experiment_ids),
+            "trial_ids": list(self.trial_ids),
+        }
+
+    def lines(self) -> list[tuple[str, str, str, str]]:
+        """Name, quantity, ours, the paper's: one line for each number that is compared."""
+        cells = {name: (_cell(value), _cell(self.paper.get(name))) for name, value in self.ours.items()}
+        return [(self.name, name, *pair) for name, pair in cells.items()]
+
+    def with_source(self) -> Section:
+        """The section, and a sentence that names its trials."""
+        where = f"Drawn from trials {spans(self.trial_ids)} of {_experiments(self.experiment_ids)}."
+        return replace(self.section, sentences=[*self.section.sentences, where])
+
+
+def _cell(value: Number) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+def spans(numbers: Sequence[int]) -> str:
+    """1, 2, 3, 5 as "1 .. 3, 5"."""
+    ordered = sorted(set(numbers))
+    runs = [[number for _, number in run] for _, run in groupby(enumerate(ordered), lambda pair: pair[1] - pair[0])]
+    return ", ".join(f"{run[0]} .. {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
+
+
+def _experiments(ids: Sequence[int]) -> str:
+    return f"experiment{'s' if len(ids) > 1 else ''} {spans(ids)}"

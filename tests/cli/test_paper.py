@@ -1,0 +1,33 @@
+"""`friction-bench paper`."""
+
+import json
+
+import pytest
+
+from bench.paper import reproduction
+from bench.paper.measurements import Plan
+from tests.paper.test_reproduction import SWEEP
+
+TINY = Plan(loads_kg=(0.0, 0.1), steps=2, trials=1, speed_sweep=tuple(SWEEP.items()))
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    monkeypatch.setattr(reproduction.reproduce, "__defaults__", (False, TINY, *reproduction.reproduce.__defaults__[2:]))
+
+
+def test_the_same_seed_gives_the_same_numbers_and_another_seed_others(command):
+    def numbers(seed, store):
+        done = command("--store", store, "paper", "--json", "--seed", seed, "--report", "out.html")
+        assert done.exit_code == 0, done.output
+        return [row["ours"] for row in json.loads(done.stdout)["rows"]]
+
+    one = numbers(3, "a.sqlite")
+    assert numbers(3, "b.sqlite") == one
+    assert numbers(4, "c.sqlite") != one
+
+
+def test_without_trials_it_says_what_to_run(command):
+    missing = command("paper", "--from-store", "--report", "out.html")
+    assert missing.exit_code == 3
+    assert "friction-bench paper" in missing.stderr
