@@ -73,6 +73,7 @@ class PowerStage:
             self.switch_off()
         session.keep_alive()
         session.watchdog.arm()
+        session.heartbeat.hurry()
         self._select(session.found.modes[mode])
         demand = Demand(self._device, session.found, session.data, mode, self._position_counts)
 
