@@ -80,6 +80,9 @@ def canopen(
         family=family, node_id=node, interface=interface, channel=channel, link=link, side_port=side_port,
     )  # fmt: skip
     section: Section = {"kind": "canopen", "interface": interface, "channel": device.path, "node_id": node}
+    if interface == "socketcand":
+        host, _, tcp_port = device.path.rpartition(":")
+        section |= {"channel": "can0", "host": host, "port": int(tcp_port)}
     _serve(device, f"CiA 402 drive ({family})", section, json)
 
 

@@ -4,10 +4,10 @@ import socket
 from contextlib import suppress
 
 import can
-from can.interfaces.slcan import slcanBus
 
 from drivers.canopen.bounded import bounded
 from drivers.canopen.settings import BusSettings
+from drivers.canopen.slcan_bus import SlcanBus
 from drivers.errors import DriveConnectionError
 
 _OPEN_S = 3.0
@@ -20,21 +20,6 @@ _NEXT_STEP = {
     "socketcand": "does socketcand run at {host}:{port}, and does it offer {channel}?",
     "virtual": "it exists inside one process only",
 }
-
-
-class _SlcanBus(slcanBus):
-    """Serial adapter whose writes never wait for the line to drain: that wait has no time limit."""
-
-    def _write(self, string: str) -> None:
-        with can.exceptions.error_check("Could not write to serial device"):
-            self.serialPortOrig.write(string.encode() + self.LINE_TERMINATOR)
-
-    def shutdown(self) -> None:
-        try:
-            super().shutdown()
-        finally:
-            # the port may be gone, and the farewell fails: give the file back all the same
-            self.serialPortOrig.close()
 
 
 def open_bus(settings: BusSettings, device: str) -> can.BusABC:
@@ -52,7 +37,7 @@ def open_bus(settings: BusSettings, device: str) -> can.BusABC:
         if settings.interface != "slcan":
             return bounded(lambda: can.Bus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
         del arguments["interface"], arguments["ignore_config"]
-        return bounded(lambda: _SlcanBus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
+        return bounded(lambda: SlcanBus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
     except (can.CanError, OSError, ValueError) as error:
         step = _NEXT_STEP[settings.interface].format(
             channel=settings.channel, bitrate=settings.bitrate, host=settings.host, port=settings.port

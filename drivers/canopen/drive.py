@@ -172,8 +172,7 @@ class CanopenDrive:
         session, power = self._opened("exchange")
         self._mode = Mode.OFF
         word = towards_standstill(power.state) if self._stopping else 0
-        pdo = session.data.torque
-        answered = self._run(session, pdo.cob_id, pdo.layout.pack(word, 0))
+        answered = self._run(session, session.data.torque.cob_id, session.data.nothing(word))
         sample = self._sample(session, power)
         if answered and sample.status is not Status.QUICK_STOP:
             self._stopping = self._stopping and power.state is State.ENABLED

@@ -5,7 +5,6 @@ thread: no frame waits for a thread switch, and what a handler raises is raised 
 """
 
 import errno
-import select
 import struct
 import time
 from time import perf_counter
@@ -39,7 +38,6 @@ class CanLink(canopen.Network):
         super().__init__()
         self._settings = settings
         self._device = device
-        self._line: int | None = None
         self.garbled = 0
         self.waited = 0
 
@@ -50,8 +48,6 @@ class CanLink(canopen.Network):
             DriveConnectionError: it is not there, or does not open in time.
         """
         self.bus = open_bus(self._settings, self._device)
-        # python-can's slcan waits 1 ms for a first byte even when told not to wait: ask its port beforehand
-        self._line = self.bus.fileno() if self._settings.interface == "slcan" else None
 
     def close(self) -> None:
         """Close the bus, also a broken one. Never raises."""
@@ -96,8 +92,8 @@ class CanLink(canopen.Network):
             raise DriveConnectionError(self._device, "the bus is closed; open the drive first")
         try:
             message = self.bus.recv(timeout_s)
-        except (ValueError, IndexError):
-            self._skip_line()
+        except (ValueError, IndexError):  # a line that is no frame
+            self.garbled += 1
             return True
         except (can.CanError, OSError) as error:
             raise self._lost("receiving", error) from error
@@ -112,8 +108,6 @@ class CanLink(canopen.Network):
     def drain(self) -> None:
         """Hand out every frame that waits already, without waiting for more."""
         for _ in range(_MOST_WAITING):
-            if self._line is not None and not select.select([self._line], [], [], 0)[0]:
-                return
             if not self.receive(0.0):
                 return
 
@@ -122,13 +116,6 @@ class CanLink(canopen.Network):
             self.notify(message.arbitration_id, message.data, message.timestamp)
         except (ValueError, struct.error):
             self.garbled += 1
-
-    def _skip_line(self) -> None:
-        """Forget a line that is no frame; a serial adapter keeps undecodable bytes otherwise."""
-        self.garbled += 1
-        buffer = getattr(self.bus, "_buffer", None)
-        if buffer:
-            buffer.clear()
 
     def _check(self, message: can.Message) -> None:
         self.garbled += 1

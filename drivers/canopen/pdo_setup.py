@@ -37,6 +37,10 @@ class ProcessData:
     state: Pdo
     motion: Pdo
 
+    def nothing(self, controlword: int) -> bytes:
+        """Payload of `torque` that demands nothing."""
+        return self.torque.layout.pack(controlword, *[0] * (len(self.torque.layout.entries) - 1))
+
     @property
     def sizes(self) -> tuple[int, ...]:
         """Bytes of the frames of a cycle: SYNC, the longer RPDO, both TPDOs."""
@@ -49,10 +53,11 @@ def choose_pdos(node_id: int, found: Capabilities, with_duty: bool) -> ProcessDa
     duty = found.profile.duty if with_duty else None
     state = [STATUSWORD, *(item for item in (found.current, duty) if item in found.present and item is not None)]
     motion = [POSITION, *(item for item in (VELOCITY,) if item in found.present)]
-    position = [CONTROLWORD, TARGET_POSITION, *(item for item in (TORQUE_OFFSET,) if item in found.present)]
+    # in both: a drive adds the offset in cyclic torque mode too, and keeps the last one it was given
+    offset = [TORQUE_OFFSET] if TORQUE_OFFSET in found.present else []
     return ProcessData(
-        torque=Pdo(1, False, 0x200 + node_id, PdoLayout([CONTROLWORD, TARGET_TORQUE])),
-        position=Pdo(2, False, 0x300 + node_id, PdoLayout(position)),
+        torque=Pdo(1, False, 0x200 + node_id, PdoLayout([CONTROLWORD, TARGET_TORQUE, *offset])),
+        position=Pdo(2, False, 0x300 + node_id, PdoLayout([CONTROLWORD, TARGET_POSITION, *offset])),
         state=Pdo(1, True, 0x180 + node_id, PdoLayout(state)),
         motion=Pdo(2, True, 0x280 + node_id, PdoLayout(motion)),
     )

@@ -71,13 +71,14 @@ class PowerStage:
             )
         if self.state in (State.ENABLED, State.QUICK_STOP):
             self.switch_off()
-        session.keep_alive()
+        session.emergency = None
         session.watchdog.arm()
-        session.heartbeat.hurry()
         self._select(session.found.modes[mode])
         demand = Demand(self._device, session.found, session.data, mode, self._position_counts)
 
         def step() -> bool:
+            # a drive counts from the first heartbeat that it hears: it has heard some before the power comes
+            session.heartbeat.hurry()
             session.keep_alive()
             payload = demand.at_rest(towards_enabled(self.state), self._position_counts)
             answered = session.cycle.run(demand.pdo.cob_id, payload)
@@ -147,8 +148,8 @@ class PowerStage:
             raise DriveConnectionError(self._device, "does not answer SYNC; check the cable, then open it again")
 
     def _send(self, controlword: int) -> bool:
-        pdo = self._session.data.torque
-        return self._session.cycle.run(pdo.cob_id, pdo.layout.pack(controlword, 0))
+        data = self._session.data
+        return self._session.cycle.run(data.torque.cob_id, data.nothing(controlword))
 
     def _off_once(self) -> bool:
         answered = self._send(DISABLE_VOLTAGE)

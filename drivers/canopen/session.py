@@ -103,8 +103,8 @@ class Session:
             self.link.send_message(0x600 + self.settings.node_id, request)
 
     def fault_name(self) -> str:
-        """The fault in words, by the last EMCY or else by 0x603F."""
-        if self.emergency is not None and self.emergency.code:
+        """The fault in words, by the last EMCY since it was switched on or cleared, or else by 0x603F."""
+        if self.emergency is not None:
             return str(self.emergency)
         try:
             return error_name(self.access.read(ERROR_CODE))
@@ -137,7 +137,9 @@ class Session:
         link.subscribe(0x700 + node_id, lambda _id, data, _time: self.monitor.hear(bytes(data), perf_counter()))
 
     def _take_emergency(self, data: bytes) -> None:
-        self.emergency = Emergency.decode(data)
+        emergency = Emergency.decode(data)
+        if emergency.code:  # 0 tells that the cause is gone: it was the cause all the same
+            self.emergency = emergency
 
     def _take_sdo(self, data: bytes) -> None:
         if not self.poll.take(data, perf_counter()):
@@ -175,7 +177,7 @@ class Session:
         Raises:
             DriveConnectionError: the drive does not answer SYNC.
         """
-        off = self.data.torque.layout.pack(DISABLE_VOLTAGE, 0)
+        off = self.data.nothing(DISABLE_VOLTAGE)
         times_s = []
         for _ in range(_TRIAL_CYCLES):
             start_s = perf_counter()

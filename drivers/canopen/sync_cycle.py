@@ -70,8 +70,9 @@ class SyncCycle:
             payload: of the RPDO.
         """
         link, counts = self._link, self.counts
+        owing = bool(self._missing)
         link.drain()
-        if self._missing:
+        if owing:
             self._settle()
         self._missing = set(range(len(self._tpdos)))
         self._arrived.clear()

@@ -174,6 +174,8 @@ class NodeDouble:
         self._send(0x580 + self.node_id, data)
 
     def _written(self, key: tuple[int, int]) -> None:
+        if key == (0x1016, 1):
+            self._heard_host_s = None  # it counts from the first heartbeat after this
         if key == (0x6060, 0) and not self.refuse_mode:
             self.put(0x6061, 0, self.get(0x6060))
         if key == (0x6040, 0):

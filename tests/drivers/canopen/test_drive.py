@@ -77,7 +77,7 @@ def test_samples_are_si_at_the_joint_and_absent_is_nan(node, drive_of):
     assert 0.0 < sample.age_s < 0.5
 
 
-@pytest.mark.parametrize(("motor_sign", "demand"), [(1, "0f00c800"), (-1, "0f0038ff")])
+@pytest.mark.parametrize(("motor_sign", "demand"), [(1, "0f00c8000000"), (-1, "0f0038ff0000")])
 def test_a_current_command_is_one_frame_before_its_sync(node, drive_of, motor_sign, demand):
     drive = drive_of(replace(JOINT, motor_sign=motor_sign, encoder_sign=motor_sign, zero_rad=0.0))
     node.put(0x6064, 0, 0)
@@ -108,6 +108,17 @@ def test_cyclic_position_starts_where_the_drive_stands_and_carries_the_offset(no
     drive.exchange(Command(Mode.POSITION, 0.5, feed_forward_a=-0.2))
     _await(lambda: node.get(0x60B2) == -100)
     assert node.get(0x607A) == 1000 + round(0.5 / COUNT_RAD)
+
+
+def test_an_offset_of_position_mode_does_not_outlast_it(node, drive_of):
+    drive = drive_of()
+    drive.open(0.005)
+    drive.enable(Mode.POSITION)
+    drive.exchange(Command(Mode.POSITION, 0.0, feed_forward_a=0.2))
+    _await(lambda: node.get(0x60B2) == 100)
+    drive.disable()
+    drive.enable(Mode.CURRENT)
+    assert node.get(0x60B2) == 0
 
 
 def test_profile_position_offers_each_target_once(node, drive_of):
@@ -193,10 +204,23 @@ def test_quick_stop_ends_in_power_off_by_the_drive_itself(node, drive_of):
     drive.exchange(Command(Mode.CURRENT, 0.4))
     node.received.clear()
     drive.quick_stop()
-    assert next(data for cob, data in node.received if cob == 0x205) == bytes.fromhex("02000000")
+    assert next(data for cob, data in node.received if cob == 0x205) == bytes.fromhex("020000000000")
     _await(lambda: drive.exchange(OFF).status is Status.DISABLED)
     assert not node.enabled
     assert node.get(0x1016, 1) == 0, "the watchdog is off with the power"
+
+
+def test_the_drive_hears_the_host_between_arming_and_power(node, drive_of):
+    drive = drive_of(watchdog_s=1.0)
+    drive.open(0.005)
+    node.received.clear()
+    drive.enable(Mode.CURRENT)
+    frames = node.received
+    armed = next(place for place, (_, data) in enumerate(frames) if data == bytes.fromhex("23161001e8037f00"))
+    powered = next(place for place, (cob, data) in enumerate(frames) if cob == 0x205 and data[0] == 0x0F)
+    assert (0x77F, b"\x05") in frames[armed:powered]
+    node.silent = True
+    _await(lambda: not node.enabled, timeout_s=5.0)
 
 
 def test_time_may_pass_while_the_power_is_off(node, drive_of):
