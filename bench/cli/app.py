@@ -7,6 +7,7 @@ import typer
 from typer.core import TyperGroup
 
 from bench.cli import (
+    blind,
     calibrate,
     challenge,
     demo,
@@ -45,6 +46,7 @@ _ORDER = (
     "simulate-device",
     "challenge",
     "reveal",
+    "blind",
 )
 
 
@@ -115,6 +117,7 @@ app.command("paper")(paper.paper)
 app.add_typer(simulate_device.app, name="simulate-device")
 app.command("challenge")(challenge.challenge)
 app.command("reveal")(challenge.reveal)
+app.command("blind")(blind.blind)
 
 
 def main() -> None:

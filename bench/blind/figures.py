@@ -1,0 +1,191 @@
+"""The figures of a run: what is asked of the lab, and what was measured."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import nan
+
+import numpy as np
+from scipy.optimize import minimize
+from scipy.stats import beta
+
+from bench.blind.judge import Result
+from bench.blind.lab_answer import LabAnswer
+from bench.blind.oracle import Standing
+
+MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
+SHOWN = 0.15  # r from which an effect is expected in the class
+CLEAR = 0.3
+FEWEST = 20  # items that a threshold is fitted to
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One line of the table.
+
+    Attributes:
+        what: is measured.
+        asked: in words.
+        measured: a share, a ratio or a size; NaN where no item tells.
+        low, high: its 95 % interval, where it is a share.
+        items: it was measured on.
+        reached: whether it is what was asked.
+    """
+
+    what: str
+    asked: str
+    measured: float
+    low: float
+    high: float
+    items: int
+    reached: bool
+
+
+def figures(results: Sequence[Result]) -> list[Figure]:
+    """Every figure, from the results of a run."""
+    answered = [one for one in results if one.answer is not None]
+    singles = [one for one in answered if one.family == "single" and one.standings[0] is not None]
+    strong = [one for one in singles if _standing(one).detectability >= MUST_NAME]
+    right = [one for one in strong if _is_right(one)]
+    weak = [one for one in singles if _standing(one).detectability < MUST_NOT_NAME]
+    shown = [one for one in singles if _standing(one).ratio >= SHOWN]
+    pairs = [one for one in answered if one.family == "pair" and _both_clear(one)]
+    memory = [one for one in answered if one.family == "memory"]
+    return [
+        *_false_alarms(answered),
+        _share("named first where d' >= 6", 0.95, strong, _is_right),
+        _share("truth in the class, r >= 0.15", 0.97, shown, _in_class),
+        _class_size([one for one in shown if _in_class(one)]),
+        _share("a single name where d' < 3", 0.1, weak, lambda one: len(_first(one)) == 1, at_most=True),
+        _smallest_found(singles),
+        *_held_out(right),
+        _share("two effects of r >= 0.3, both and no other", 0.85, pairs, _is_exact),
+        _mean("two effects of r >= 0.3, recall", "at least 95 %", [_recall(one) for one in pairs], 0.95),
+        *_outside(answered),
+        _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
+        _share("memory effects named first", 0.9, memory, _is_right),
+    ]
+
+
+def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
+    families = {"complete": 0.02, "imperfect": 0.05}
+    words = {"complete": "false alarms, complete models", "imperfect": "the same, with delay, jitter, lost rows"}
+
+    def alarm(one: Result) -> bool:
+        return _answer(one).verdict != "nothing"
+
+    return [
+        _share(words[name], asked, [one for one in answered if one.family == name], alarm, at_most=True)
+        for name, asked in families.items()
+    ]
+
+
+def _outside(answered: Sequence[Result]) -> list[Figure]:
+    """What no name of the catalogue stands for: mechanisms outside it, and those that it does not have yet."""
+    outside = [one for one in answered if one.names == ("",) and one.unexplained is not None]
+    middle = [one for one in outside if 0.3 <= _unexplained_ratio(one) < 0.6]
+    large = [one for one in outside if _unexplained_ratio(one) >= 0.6]
+    return [
+        _share("outside the catalogue, flagged, r 0.3 .. 0.6", 0.8, middle, _flagged),
+        _share("outside the catalogue, flagged, r >= 0.6", 0.95, large, _flagged),
+    ]
+
+
+def _unexplained_ratio(one: Result) -> float:
+    """The r of what no effect of the catalogue stands for: by how much the base model leaves more because of it."""
+    return float(np.sqrt(max((one.unexplained or 1.0) ** 2 - 1.0, 0.0)))
+
+
+def _held_out(right: Sequence[Result]) -> list[Figure]:
+    ratios = [_answer(one).error / one.oracle_error for one in right]
+    worst = float(np.quantile(ratios, 0.95)) if ratios else nan
+    return [
+        _mean("held-out error over the oracle's, mean", "at most 1.01", ratios, 1.01, at_most=True),
+        Figure("the same, 95 % quantile", "at most 1.03", worst, nan, nan, len(ratios), worst <= 1.03),
+    ]
+
+
+def _class_size(named: Sequence[Result]) -> Figure:
+    return _mean("mean size of that class", "at most 2.0", [len(_first(one)) for one in named], 2.0, at_most=True)
+
+
+def _smallest_found(singles: Sequence[Result]) -> Figure:
+    """The r that is found nine times in ten, over what theory needs: a logistic curve in log r, by likelihood."""
+    what, asked = "smallest effect found 9 times in 10, over the bound", "at most 1.3"
+    found = np.array([_answer(one).verdict != "nothing" for one in singles], dtype=float)
+    if len(singles) < FEWEST or found.min() == found.max():
+        return Figure(what, asked, nan, nan, nan, len(singles), False)
+    size = np.log([max(_standing(one).ratio, 1e-6) / _standing(one).smallest for one in singles])
+
+    def unlikely(values: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> float:
+        steep, middle, guessed = np.exp(values[0]), values[1], 0.5 / (1.0 + np.exp(-values[2]))
+        chance = guessed + (1.0 - guessed) / (1.0 + np.exp(-np.clip(steep * (size - middle), -50, 50)))
+        chance = np.clip(chance, 1e-9, 1 - 1e-9)
+        return -float(np.sum(found * np.log(chance) + (1 - found) * np.log(1 - chance)))
+
+    best = minimize(unlikely, np.array([1.0, 0.0, -3.0]), method="Nelder-Mead", options={"maxiter": 2000}).x
+    ratio = float(np.exp(best[1] + np.log(9.0) / np.exp(best[0])))
+    return Figure(what, asked, ratio, nan, nan, len(singles), ratio <= 1.3)
+
+
+def _share(
+    what: str, limit: float, among: Sequence[Result], holds: Callable[[Result], bool], at_most: bool = False
+) -> Figure:
+    asked = f"{'at most' if at_most else 'at least'} {limit:.0%}"
+    count, hits = len(among), sum(holds(one) for one in among)
+    if not count:
+        return Figure(what, asked, nan, nan, nan, 0, False)
+    # Clopper and Pearson 1934
+    low = float(beta.ppf(0.025, hits, count - hits + 1)) if hits else 0.0
+    high = float(beta.ppf(0.975, hits + 1, count - hits)) if hits < count else 1.0
+    measured = hits / count
+    return Figure(what, asked, measured, low, high, count, measured <= limit if at_most else measured >= limit)
+
+
+def _mean(what: str, asked: str, values: Sequence[float], limit: float, at_most: bool = False) -> Figure:
+    measured = float(np.mean(values)) if values else nan
+    reached = measured <= limit if at_most else measured >= limit
+    return Figure(what, asked, measured, nan, nan, len(values), reached)
+
+
+def _answer(one: Result) -> LabAnswer:
+    assert one.answer is not None
+    return one.answer
+
+
+def _standing(one: Result) -> Standing:
+    standing = one.standings[0]
+    assert standing is not None
+    return standing
+
+
+def _first(one: Result) -> tuple[str, ...]:
+    return _answer(one).first
+
+
+def _is_right(one: Result) -> bool:
+    return bool(_first(one)) and _first(one)[0] == one.names[0]
+
+
+def _in_class(one: Result) -> bool:
+    return one.names[0] in _first(one)
+
+
+def _flagged(one: Result) -> bool:
+    return _answer(one).unknown
+
+
+def _both_clear(one: Result) -> bool:
+    return all(standing is not None and standing.ratio >= CLEAR for standing in one.standings)
+
+
+def _recall(one: Result) -> float:
+    named = {names[0] for names in _answer(one).named}
+    return sum(name in named for name in one.names) / len(one.names)
+
+
+def _is_exact(one: Result) -> bool:
+    return _recall(one) == 1.0 and not _extra(one)
+
+
+def _extra(one: Result) -> bool:
+    return any(names[0] not in one.names for names in _answer(one).named)

@@ -1,0 +1,109 @@
+"""What is asked of the lab: families of items, and how each is drawn. The same seed draws the same items."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bench.challenge.hidden_plant import MECHANISMS, DrawnPlant, Wanted, draw_plant
+from bench.challenge.names import ABSORBED, ACCEPTED, accepted
+from bench.challenge.session import Protocol
+
+MEMORY = ("bristle", "backlash", "dwell", "shaft")
+OUTSIDE = tuple(name for name, names in ACCEPTED.items() if not names)
+SINGLE = tuple(name for name in ACCEPTED if name not in (*MEMORY, *OUTSIDE, *ABSORBED, "latency"))
+SIZES = (-0.7, 1.0)  # share of the range: down to what no data of this length can show
+LARGE = (0.3, 1.0)
+NOISES = (0.002, 0.005, 0.02)  # of the current measurement, as a share of the peak current
+DURATION_S = 6.0
+PERIOD_S = 0.01
+
+
+@dataclass(frozen=True)
+class Family:
+    """A kind of item.
+
+    Attributes:
+        name: as in the table of results.
+        per_plant: how many for each plant asked for.
+        names: mechanisms that are drawn from.
+        count: how many are hidden.
+        sizes: part of each one's range, as shares of it (log).
+        memory: recorded by motions that show what happens at rest and at reversals.
+        imperfect: late, jittered and lossy recordings.
+    """
+
+    name: str
+    per_plant: int
+    names: tuple[str, ...]
+    count: int
+    sizes: tuple[float, float] = SIZES
+    memory: bool = False
+    imperfect: bool = False
+
+
+FAMILIES: dict[str, Family] = {
+    family.name: family
+    for family in (
+        Family("complete", 2, (), 0),
+        Family("imperfect", 1, (), 0, imperfect=True),
+        Family("single", 3, SINGLE, 1),
+        Family("pair", 1, SINGLE, 2, LARGE),
+        Family("outside", 1, OUTSIDE, 1, LARGE),
+        Family("memory", 1, MEMORY, 1, LARGE, memory=True),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Item:
+    """One joint to be diagnosed.
+
+    Attributes:
+        key: of the item, in a file of results.
+        family: its name.
+        seed: that everything of it is drawn from.
+        turn: which of its family's mechanisms is hidden: each in turn, so that all come equally often.
+    """
+
+    key: str
+    family: str
+    seed: int
+    turn: int
+
+
+def items_of(seed: int, plants: int) -> list[Item]:
+    """Every item of a run; a longer run begins with the items of a shorter one."""
+    found = []
+    for plant in range(plants):
+        for number, family in enumerate(FAMILIES.values()):
+            for repeat in range(family.per_plant):
+                drawn = np.random.SeedSequence((seed, plant, number, repeat)).generate_state(1)
+                turn = plant * family.per_plant + repeat
+                found.append(Item(f"{seed}-{plant}-{family.name}-{repeat}", family.name, int(drawn[0]), turn))
+    return found
+
+
+def draw_item(item: Item, attempt: int) -> DrawnPlant:
+    """The joint of an item; another one at each attempt."""
+    family = FAMILIES[item.family]
+    random = np.random.default_rng((item.seed, attempt))
+    noise = float(random.choice(NOISES))
+    names: tuple[str, ...] | None = family.names
+    if family.count > 1:
+        names = tuple(name for name in family.names if accepted(name))
+    if family.count == 1:
+        names = (family.names[item.turn % len(family.names)],)
+    wanted = Wanted(family.count, family.sizes, noise, names or tuple(MECHANISMS))
+    return draw_plant(int(random.integers(2**31)), wanted)
+
+
+def protocol_of(item: Item, heaviest_kg: float, top_rad_s: float) -> Protocol:
+    """What is recorded: three loads and all motions; for memory, reversals and steps."""
+    loads: dict[str, Any] = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4), heaviest_kg], "repeats": 1}
+    motions = {**loads, "speed_rad_s": round(top_rad_s, 2), "duration_s": DURATION_S}
+    if not FAMILIES[item.family].memory:
+        return [("excitation", motions)]
+    shown = ["slow-sine", "small-sine", "sweep", "triangles"]
+    steps = {"load_kg": heaviest_kg, "repeats": 4, "fastest_rad_s": round(top_rad_s, 2)}
+    return [("excitation", {**motions, "waveforms": shown}), ("steps", steps)]

@@ -1,0 +1,74 @@
+"""The lab's answer to recordings: what it names first, and what it names one after the other."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from bench.rig import Rig
+from bench.study.material import facts_of
+from compensator.lab.catalogue import default_effects
+from compensator.lab.dataset import Dataset, Processing, make_dataset
+from compensator.lab.diagnose import diagnose
+from compensator.lab.diagnosis import Diagnosis
+from compensator.lab.fit import Fit, fit_model
+from compensator.lab.recording import Recording
+from compensator.lab.validation import held_out
+
+Classes = tuple[tuple[str, ...], ...]
+CHAIN = "measurement_delay"  # a sample is taken at the end of the cycle whose effort it holds: half a cycle, at least
+STRUCTURE = "structure over"  # how a diagnosis says that something remains once the best effect is in
+
+
+@dataclass(frozen=True, slots=True)
+class LabAnswer:
+    """What the lab says.
+
+    Attributes:
+        verdict: of the first diagnosis.
+        first: the class that it names; empty where it names none.
+        named: classes of all steps, in order.
+        unknown: the last step says that none of the catalogue is it, or that something remains.
+        p_value, detectability: of the first diagnosis and its best candidate.
+        error: held-out, of the model with all that was named in it.
+    """
+
+    verdict: str
+    first: tuple[str, ...]
+    named: Classes
+    unknown: bool
+    p_value: float
+    detectability: float
+    error: float
+
+
+def base_fit(recordings: Sequence[Recording], rig: Rig) -> Fit:
+    """The model that a study starts from, and the delay that every control loop has, fitted."""
+    facts = facts_of(rig)
+    dataset: Dataset = make_dataset(recordings, facts, Processing())
+    return fit_model(dataset, [*default_effects(facts), CHAIN])
+
+
+def ask_lab(fit: Fit, steps: int) -> LabAnswer:
+    """Diagnose, add what is named, and diagnose again, so many times at most."""
+    first = found = diagnose(fit)
+    named: list[tuple[str, ...]] = []
+    for step in range(steps):
+        if found.verdict != "missing":
+            break
+        named.append(found.classes[0])
+        fit = fit_model(fit.dataset, [*fit.names, found.classes[0][0]], fit.training)
+        if step + 1 < steps:
+            found = diagnose(fit)
+    top = first.classes[0] if first.verdict == "missing" else ()
+    return LabAnswer(
+        verdict=first.verdict,
+        first=top,
+        named=tuple(named),
+        unknown=_flags(found),
+        p_value=first.p_value,
+        detectability=first.candidates[0].detectability if first.candidates else 0.0,
+        error=held_out(fit).relative,
+    )
+
+
+def _flags(found: Diagnosis) -> bool:
+    return found.verdict == "unknown-effect" or any(STRUCTURE in note for note in found.notes)

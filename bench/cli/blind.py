@@ -1,0 +1,106 @@
+"""`friction-bench blind`: how often the lab is right, on joints that it knows nothing of."""
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from bench.cli.output import Json, complain, print_json, say, table
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.blind.figures import Figure
+    from bench.blind.judge import Result
+
+
+def blind(
+    plants: Annotated[int, typer.Option(min=1, help="Rounds; each asks nine items of nine joints.")] = 20,
+    seed: Annotated[int, typer.Option(min=0, help="Draws joints, mechanisms and noise.")] = 1,
+    results: Annotated[
+        Path | None,
+        typer.Option(help="Keep the results here, one a line; a run that was ended goes on from there."),
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=0, help="Processes; without it, one for each core.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Draw joints, hide mechanisms or nothing in them, record them, and ask the model lab what is missing.
+
+    The lab sees recordings and rig alone. What is asked stands beside what was measured.
+    """
+    from bench.blind.items import items_of
+    from bench.blind.pool import run_items
+
+    items = items_of(seed, plants)
+    done = run_items(items, results, _progress, workers)
+    if as_json:
+        print_json(_as_json(done, seed, plants))
+    else:
+        _print(done)
+
+
+def _progress(done: int, whole: int) -> None:
+    typer.echo(f"\r{done} of {whole} items", nl=done == whole, err=True)
+
+
+def _as_json(results: "list[Result]", seed: int, plants: int) -> dict[str, object]:
+    from dataclasses import asdict
+
+    from bench.blind.confusion import confusions, rival_figures
+    from bench.blind.figures import figures
+
+    return {
+        "seed": seed,
+        "plants": plants,
+        "figures": [asdict(one) for one in figures(results)],
+        "confusion": [asdict(one) for one in confusions(results)],
+        "rivals": [asdict(one) for one in rival_figures(results)],
+        "items": [one.to_json() for one in results],
+    }
+
+
+def _print(results: "list[Result]") -> None:
+    from bench.blind.confusion import confusions, rival_figures
+    from bench.blind.figures import figures
+
+    rows = [
+        (one.what, one.asked, _measured(one), one.items, "yes" if one.reached else "no") for one in figures(results)
+    ]
+    table("Asked and measured", ["what", "asked", "measured (95 %)#", "items#", "reached"], rows)
+    table(
+        "What is answered to what",
+        ["hidden", "in the catalogue", "items#", "d' >= 6#", "of these right#", "first answers"],
+        [
+            (
+                one.truth,
+                one.name or "-",
+                one.items,
+                one.due,
+                one.right_of_due,
+                ", ".join(f"{name} {count}" for name, count in one.answers),
+            )
+            for one in confusions(results)
+        ],
+    )
+    table(
+        "The same items, the same columns",
+        ["method", "false alarms#", "named first where d' >= 6#"],
+        [(one.name, _percent(one.false_alarm), _percent(one.named_first)) for one in rival_figures(results)],
+    )
+    seconds = sorted(one.seconds for one in results if one.answer is not None)
+    if seconds:
+        say(f"a diagnosis took {seconds[len(seconds) // 2]:.2g} s of one core, half of them less")
+    for one in results:
+        if one.refusal:
+            complain(f"item {one.key}: {one.refusal}")
+
+
+def _measured(one: "Figure") -> str:
+    if math.isnan(one.measured):
+        return "not measured"
+    if math.isnan(one.low):
+        return f"{one.measured:.3g}"
+    return f"{one.measured:.1%} ({one.low:.1%} .. {one.high:.1%})"
+
+
+def _percent(share: float) -> str:
+    return "-" if math.isnan(share) else f"{share:.1%}"

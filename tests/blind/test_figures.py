@@ -1,0 +1,93 @@
+from math import isnan
+
+import pytest
+
+from bench.blind.confusion import confusions, rival_figures
+from bench.blind.figures import Figure, figures
+from bench.blind.judge import Result
+from bench.blind.lab_answer import LabAnswer
+from bench.blind.oracle import Standing
+
+
+def _result(
+    family: str, name: str, first: tuple[str, ...], ratio: float, d_prime: float, key: str = "", unknown: bool = False,
+    unexplained: float | None = None,
+) -> Result:  # fmt: skip
+    verdict = "missing" if first else "unknown-effect" if unknown else "nothing"
+    answer = LabAnswer(verdict, first, (first,) if first else (), unknown, 0.001, 9.0, 0.021)
+    known = Standing(ratio, d_prime, "spring", 0.1) if name else None
+    truths = () if family == "complete" else (name or "hose",)
+    return Result(
+        key, family, truths, (name,) if truths else (), (1.0,) * len(truths), answer, (known,) * len(truths),
+        unexplained, 0.02, {"stepwise BIC": ("drag",)},
+    )  # fmt: skip
+
+
+def _figure(results: list[Result], what: str) -> Figure:
+    return next(one for one in figures(results) if what in one.what)
+
+
+def test_what_must_be_named_and_what_must_not() -> None:
+    results = [
+        _result("single", "spring", ("spring",), 1.0, 9.0),
+        _result("single", "spring", ("viscous_asymmetry", "spring"), 1.0, 7.0),
+        _result("single", "spring", (), 0.2, 6.5),
+        _result("single", "spring", ("viscous_asymmetry",), 0.05, 1.0),
+        _result("single", "spring", ("spring", "offset"), 0.05, 2.9),
+        _result("single", "spring", ("spring",), 0.05, 4.0),
+    ]
+    named = _figure(results, "named first where")
+    assert (named.items, named.measured) == (3, pytest.approx(1 / 3))
+    assert not named.reached
+    in_class = _figure(results, "truth in the class")
+    assert (in_class.items, in_class.measured) == (3, pytest.approx(2 / 3))
+    assert _figure(results, "mean size").measured == pytest.approx(1.5)
+    single = _figure(results, "a single name")
+    assert (single.items, single.measured) == (2, 0.5)
+    assert _figure(results, "over the oracle's, mean").measured == pytest.approx(1.05)
+
+
+def test_false_alarms_come_with_the_interval_of_a_share() -> None:
+    results = [_result("complete", "", ("spring",) if n == 0 else (), 0.0, 0.0) for n in range(100)]
+    alarms = _figure(results, "false alarms, complete")
+    assert alarms.measured == 0.01
+    assert (alarms.low, alarms.high) == (pytest.approx(0.00025, rel=0.02), pytest.approx(0.0545, rel=0.01))
+    assert alarms.reached
+    assert isnan(_figure(results, "the same, with delay").measured)
+
+
+def test_outside_is_sorted_by_what_it_leaves_unexplained() -> None:
+    results = [
+        _result("outside", "", (), 0.0, 0.0, unknown=True, unexplained=1.1),  # r = 0.46
+        _result("outside", "", ("spring",), 0.0, 0.0, unexplained=1.1),
+        _result("outside", "", (), 0.0, 0.0, unknown=True, unexplained=3.0),
+        _result("outside", "", (), 0.0, 0.0, unexplained=1.01),  # r = 0.14: too little to be asked for
+    ]
+    middle, large = _figure(results, "flagged, r 0.3"), _figure(results, "flagged, r >= 0.6")
+    assert (middle.items, middle.measured) == (2, 0.5)
+    assert (large.items, large.measured) == (1, 1.0)
+
+
+def test_smallest_effect_is_where_the_curve_of_detection_reaches_nine_in_ten() -> None:
+    results = []
+    for step in range(200):
+        ratio = 0.02 * 1.02**step  # 0.02 .. 1
+        results.append(_result("single", "spring", ("spring",) if ratio > 0.15 else (), ratio, 5.0))
+    # theory needs 0.1 (see `_result`), and all above 0.15 are found
+    assert _figure(results, "smallest effect").measured == pytest.approx(1.5, rel=0.05)
+
+
+def test_confusion_by_effect_and_rivals_on_the_same_items() -> None:
+    results = [
+        _result("single", "spring", ("spring",), 1.0, 9.0, "a"),
+        _result("single", "spring", ("gravity",), 1.0, 9.0, "b"),
+        _result("single", "spring", (), 0.1, 2.0, "c"),
+        _result("complete", "", (), 0.0, 0.0, "d"),
+    ]
+    worst = confusions(results)[0]
+    assert (worst.truth, worst.items, worst.due, worst.right_of_due) == ("spring", 3, 2, 1)
+    assert dict(worst.answers) == {"spring": 1, "gravity": 1, "nothing": 1}
+    ours, *theirs = rival_figures(results)
+    assert (ours.false_alarm, ours.named_first) == (0.0, 0.5)
+    stepwise = next(one for one in theirs if one.name == "stepwise BIC")
+    assert (stepwise.false_alarm, stepwise.named_first) == (1.0, 0.0)

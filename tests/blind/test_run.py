@@ -1,0 +1,91 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.blind import pool
+from bench.blind.imperfections import worn
+from bench.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
+from bench.blind.judge import Result, judge
+from bench.blind.pool import ResultsError, run_items
+from compensator.lab.recording import Recording
+
+
+def _empty(item: Item) -> Result:
+    return Result(item.key, item.family, (), (), (), None, (), None, 0.0, refusal="not asked")
+
+
+def test_the_same_seed_draws_the_same_items_and_a_longer_run_begins_with_a_shorter() -> None:
+    assert items_of(3, 4)[: len(items_of(3, 2))] == items_of(3, 2)
+    assert items_of(3, 2) != items_of(4, 2)
+    assert len({item.seed for item in items_of(3, 40)}) == len(items_of(3, 40))
+    for item in items_of(3, 1):
+        assert draw_item(item, 0) == draw_item(item, 0)
+        assert len(draw_item(item, 0).hidden) == FAMILIES[item.family].count
+
+
+def test_every_mechanism_of_a_family_comes_equally_often() -> None:
+    plants = len(SINGLE) // FAMILIES["single"].per_plant + 1
+    hidden = [draw_item(item, 0).hidden[0].name for item in items_of(1, plants) if item.family == "single"]
+    assert set(hidden) == set(SINGLE)
+
+
+def test_a_run_that_was_ended_goes_on_and_gives_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def counted(item: Item) -> Result:
+        asked.append(item.key)
+        return _empty(item)
+
+    monkeypatch.setattr(pool, "judge", counted)
+    items, kept, shown = items_of(1, 1), tmp_path / "deep" / "kept.jsonl", []
+    first = run_items(items[:4], kept, lambda *done: shown.append(done), workers=0)
+    again = run_items(items, kept, lambda *done: shown.append(done), workers=0)
+    assert asked == [item.key for item in items]
+    assert again[:4] == first
+    assert shown[-1] == (9, 9)
+    assert len(kept.read_text().splitlines()) == 9
+
+
+@pytest.mark.parametrize("content", ["{", "{}", "[1, 2]"])
+def test_a_file_of_something_else_is_refused_and_left_alone(tmp_path: Path, content: str) -> None:
+    kept = tmp_path / "kept.jsonl"
+    kept.write_text(content)
+    with pytest.raises(ResultsError, match="something else"):
+        run_items(items_of(1, 1), kept, lambda *_: None, workers=0)
+    assert kept.read_text() == content
+
+
+def test_worn_recordings_lose_rows_and_regularity_but_no_order() -> None:
+    time_s = 0.01 * np.arange(2000)
+    recording = Recording("a", "excitation", {}, {"time_s": time_s, "duty": np.sin(time_s)})
+    [found] = worn([recording], np.random.default_rng(1))
+    steps = np.diff(found.channels["time_s"])
+    assert 0.97 * 2000 < len(found) < 2000
+    assert steps.min() > 0.0
+    assert np.std(steps) > 0.02 * 0.01
+    assert set(found.channels["duty"]) < set(recording.channels["duty"])
+
+
+def _item(key: str) -> Item:
+    return next(item for item in items_of(101, 1) if item.key == key)
+
+
+# a fixed part of the benchmark: recorded and diagnosed as all of it is
+@pytest.mark.timeout(400)
+def test_nothing_is_missing_of_a_complete_joint() -> None:
+    found = judge(_item("101-0-complete-0"))
+    assert found.answer is not None
+    assert found.answer.verdict == "nothing"
+
+
+@pytest.mark.timeout(400)
+def test_an_effect_that_stands_out_is_named_and_the_result_can_be_kept() -> None:
+    found = judge(_item("101-0-single-1"))
+    assert found.truths == ("drag",)
+    assert found.standings[0] is not None
+    assert found.standings[0].detectability > 6.0
+    assert found.answer is not None
+    assert found.answer.first == found.names
+    assert Result.from_json(json.loads(json.dumps(found.to_json()))) == found
