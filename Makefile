@@ -29,9 +29,10 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 test: $(STAMP)   ## the tests
 	$(BIN)/pytest
 
-benchmark: $(STAMP) ## steps a second of plant and drive, and their ratio to MuJoCo's
+benchmark: $(STAMP) ## how fast plant and drive are beside MuJoCo, store and export beside pandas
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m tests.sim_backend.rates
+	$(BIN)/python -m tests.store.rates
 
 check: $(STAMP)  ## style, types and walls
 	$(BIN)/ruff check .

@@ -45,7 +45,6 @@ def trial(
 ) -> None:
     """Show one trial: conditions, results, events; or all its samples as CSV or Parquet."""
     from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
-    from bench.service.trials import represent
 
     with session_of(context).open_store() as store:
         found = store.trial(trial_id)
@@ -59,6 +58,8 @@ def trial(
             return
         events = store.events(trial_id)
     if as_json:
+        from bench.service.trials import represent
+
         print_json({**represent(found), "events": [event._asdict() for event in events]})
         return
     facts = {"experiment": found.experiment_id, "kind": found.kind, "outcome": found.outcome, "reason": found.reason}

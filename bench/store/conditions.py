@@ -33,32 +33,37 @@ def of_trials(connection: Connection, trial_ids: Iterable[int]) -> dict[int, dic
     if not found:
         return found
     table = TRIAL_CONDITION.c
-    query = select(TRIAL_CONDITION).order_by(table.trial_id, table.position)
+    columns = (table.trial_id, table.key, table.number, table.text, table.flag)
+    query = select(*columns).order_by(table.trial_id, table.position)
     if len(found) < 500:  # databases bound the number of values in a statement
         query = query.where(table.trial_id.in_(found))
     else:
         query = query.where(table.trial_id.between(min(found), max(found)))
-    for row in connection.execute(query):
-        if row.trial_id in found:
-            value = next(value for value in (row.number, row.text, row.flag) if value is not None)
-            found[row.trial_id][row.key] = value
+    for trial_id, key, number, text, flag in connection.execute(query):
+        if trial_id in found:
+            found[trial_id][key] = number if number is not None else text if text is not None else flag
     return found
 
 
-def match(key: str, wanted: Wanted) -> ColumnElement[bool]:
-    """Trials whose condition `key` has this value, or lies between these two numbers (both included).
+def match_all(conditions: Mapping[str, Wanted]) -> list[ColumnElement[bool]]:
+    """Trials whose conditions have these values, or lie between these two numbers (both included).
 
     Raises:
         StoreValueError: a value that no condition can have.
     """
+    # a flag halves a list at best: another condition, if there is one, finds the trials by its index
+    hits = [_hit(*item) for item in sorted(conditions.items(), key=lambda item: isinstance(item[1], bool))]
+    table = TRIAL_CONDITION.c
+    found: list[ColumnElement[bool]] = [TRIAL.c.id.in_(select(table.trial_id).where(*hit)) for hit in hits[:1]]
+    return found + [exists().where(table.trial_id == TRIAL.c.id, *hit) for hit in hits[1:]]
+
+
+def _hit(key: str, wanted: Wanted) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     table = TRIAL_CONDITION.c
     if isinstance(wanted, tuple):
-        lowest, highest = wanted
-        hit: ColumnElement[bool] = table.number.between(lowest, highest)
-    else:
-        ((column, value),) = ((name, value) for name, value in _columns(key, wanted).items() if value is not None)
-        hit = table[column] == value
-    return exists().where(table.trial_id == TRIAL.c.id, table.key == key, hit)
+        return table.key == key, table.number.between(*wanted)
+    ((column, value),) = ((name, value) for name, value in _columns(key, wanted).items() if value is not None)
+    return table.key == key, table[column] == value
 
 
 def _columns(key: str, value: Any) -> dict[str, Condition | None]:

@@ -110,8 +110,10 @@ TRIAL = Table(
     Column("reason", PlainText, nullable=False),
     Column("results", JSON, nullable=False),
     UniqueConstraint("experiment_id", "name"),
-    Index(None, "outcome"),
-    Index(None, "kind"),
+    # a page of a list is found in these alone
+    Index(None, "kind", "outcome", "experiment_id"),
+    Index(None, "outcome", "experiment_id"),
+    Index(None, "experiment_id", "outcome", "kind"),
 )
 
 # exactly one of number, text and flag is set: it is the condition's type
@@ -124,8 +126,9 @@ TRIAL_CONDITION = Table(
     Column("number", Float, nullable=True),
     Column("text", PlainText, nullable=True),
     Column("flag", Boolean, nullable=True),
-    Index(None, "key", "number"),
-    Index(None, "key", "text"),
+    Index(None, "key", "number", "trial_id"),
+    Index(None, "key", "text", "trial_id"),
+    Index(None, "key", "flag", "trial_id"),
 )
 
 SAMPLE_BLOCK = Table(

@@ -5,7 +5,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
 
-from bench.store import experiments, samples, studies, trials
+from bench.store import experiments, samples, trials
 from bench.store.backend import Claim
 from bench.store.calibrations import Calibrations
 from bench.store.conditions import Wanted
@@ -14,9 +14,10 @@ from bench.store.errors import StoreError, StoreValueError
 from bench.store.importing import Import
 from bench.store.migration import migrate
 from bench.store.overview import GROUP_ROWS
-from bench.store.records import Condition, Event, Experiment, ModelRow, StudyRow, Trial
+from bench.store.records import Condition, Event, Experiment, Trial
 from bench.store.reduction import MIN_POINTS, rows_to_keep
 from bench.store.removal import remove
+from bench.store.study_store import StudyStore
 from bench.store.trial_writer import TrialWriter
 from compensator.lab.recording import FloatArray, Recording
 
@@ -25,7 +26,7 @@ GROUPS_PER_POINT = 1.5  # fewer, and a plot is made from all rows: MinMaxLTTB wa
 LEFT_RUNNING = "the process that ran it ended without closing it (killed, crashed, or the power went)"
 
 
-class Store:
+class Store(StudyStore):
     """Experiments, trials, samples, events, studies and models. Every method may be called from any thread.
 
     One writer at a time, in all processes together; readers never wait and see whole transactions.
@@ -269,43 +270,6 @@ class Store:
                 found, asked = samples.read_overview(connection, trial, names)
                 rows = rows_to_keep(found, points, asked)
         return {name: values[rows] for name, values in found.items()}
-
-    # studies
-
-    def create_study(self, name: str, definition: dict[str, Any]) -> int:
-        """Add a study. Returns its id."""
-        with self._database.writing() as connection:
-            return studies.add(connection, name, definition)
-
-    def study(self, study_id: int) -> StudyRow:
-        """One study, or `NotFoundError`."""
-        with self._database.reading() as connection:
-            return studies.get(connection, study_id)
-
-    def studies(self, limit: int | None = None, offset: int = 0) -> list[StudyRow]:
-        """Studies, newest first; all of them without a limit."""
-        with self._database.reading() as connection:
-            return studies.find(connection, limit, offset)
-
-    def add_model(self, study_id: int, parent_id: int | None, effects: Sequence[str], result: dict[str, Any]) -> int:
-        """Add a model to a study, made from another model or from nothing. Returns its id."""
-        with self._database.writing() as connection:
-            return studies.add_model(connection, study_id, parent_id, effects, result)
-
-    def model(self, model_id: int) -> ModelRow:
-        """One model, or `NotFoundError`."""
-        with self._database.reading() as connection:
-            return studies.get_model(connection, model_id)
-
-    def models(self, study_id: int) -> list[ModelRow]:
-        """The models of a study, oldest first, or `NotFoundError`."""
-        with self._database.reading() as connection:
-            return studies.models(connection, study_id)
-
-    def remove_model(self, model_id: int) -> None:
-        """Remove a model; `StoreStateError` where others were made from it."""
-        with self._database.writing() as connection:
-            studies.remove_model(connection, model_id)
 
     # who runs what
 

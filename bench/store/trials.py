@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Row, insert, select, update
+from sqlalchemy import Connection, Row, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from bench.store import conditions as condition_rows
@@ -103,18 +103,22 @@ def find(
     offset: int,
 ) -> list[Trial]:
     """Trials in the order in which they were made."""
-    query = select(TRIAL).where(TRIAL.c.outcome.not_in(HIDDEN)).order_by(TRIAL.c.id).limit(limit).offset(offset)
-    filters: list[ColumnElement[bool]] = [condition_rows.match(key, wanted) for key, wanted in conditions.items()]
+    filters = condition_rows.match_all(conditions)
+    hidden = connection.execute(select(EXPERIMENT.c.id).where(EXPERIMENT.c.outcome.in_(HIDDEN))).scalars().all()
+    if hidden:
+        filters.append(TRIAL.c.experiment_id.not_in(hidden))
+    if outcome is not None:
+        filters.append(TRIAL.c.outcome == outcome)
     if experiment_id is not None:
         filters.append(TRIAL.c.experiment_id == experiment_id)
     if kind is not None:
         filters.append(TRIAL.c.kind == kind)
-    if outcome is not None:
-        filters.append(TRIAL.c.outcome == outcome)
     if source is not None:
         of_source = select(EXPERIMENT.c.id).where(EXPERIMENT.c.source == source)
         filters.append(TRIAL.c.experiment_id.in_(of_source))
-    rows = connection.execute(query.where(*filters)).all()
+    # the page is found in indexes alone, then its rows are read: a late page costs no more than an early one
+    page = select(TRIAL.c.id).where(*filters).order_by(TRIAL.c.id).limit(limit).offset(offset).subquery()
+    rows = connection.execute(select(TRIAL).join(page, page.c.id == TRIAL.c.id).order_by(TRIAL.c.id)).all()
     found = condition_rows.of_trials(connection, [row.id for row in rows])
     return [_record(row, found) for row in rows]
 

@@ -33,7 +33,7 @@ class HostHeartbeat:
         return True
 
     def hurry(self) -> None:
-        """The next one is due at once."""
+        """The next one is due at once: a drive counts only from the first that it hears after it was told to."""
         self._last_s = float("-inf")
 
 

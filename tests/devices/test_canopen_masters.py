@@ -82,6 +82,7 @@ def fresh(bench: Bench) -> Iterator[None]:
     tpdo.add_variable(0x6061)
     tpdo.add_variable(0x6064)
     tpdo.cob_id, tpdo.trans_type, tpdo.event_timer, tpdo.enabled = 0x180 + NODE, 255, 50, True
+    tpdo.inhibit_time = 200  # 20 ms: python-can reads slcan byte by byte, a busy machine is slower than the motor
     tpdo.save()
     rpdo = node.rpdo[1]
     rpdo.clear()

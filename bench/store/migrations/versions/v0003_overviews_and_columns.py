@@ -1,4 +1,4 @@
-"""Overviews of trials for plots; the provenance's main facts as columns; views for people who ask in SQL."""
+"""Overviews of trials for plots; indexes for lists; the provenance's main facts as columns; views."""
 
 import json
 from typing import Any
@@ -17,6 +17,17 @@ FACTS = {
     "software_commit": ("software", "commit"),
     "drive": ("drive", "product"),
     "firmware": ("drive", "firmware"),
+}
+# table -> columns of its indexes before and after
+INDEXES = {
+    "trial": (
+        (("outcome",), ("kind",)),
+        (("kind", "outcome", "experiment_id"), ("outcome", "experiment_id"), ("experiment_id", "outcome", "kind")),
+    ),
+    "trial_condition": (
+        (("key", "number"), ("key", "text")),
+        (("key", "number", "trial_id"), ("key", "text", "trial_id"), ("key", "flag", "trial_id")),
+    ),
 }
 NUMBERS = ("load_kg", "arm_m", "supply_v", "temperature_c", "speed_rad_s", "repeat")
 
@@ -56,6 +67,8 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("trial_id", "first_row", name="pk_sample_overview"),
         sa.ForeignKeyConstraint(["trial_id"], ["trial.id"], name="fk_sample_overview_trial_id", ondelete="CASCADE"),
     )
+    for table, (before, after) in INDEXES.items():
+        _index_instead(table, before, after)
     op.execute(EXPERIMENT_VIEW)
     op.execute(TRIAL_VIEW.format(numbers=",\n       ".join(NUMBER.format(key=key) for key in NUMBERS)))
 
@@ -64,9 +77,18 @@ def downgrade() -> None:
     """Remove them."""
     for view in ("trial_view", "experiment_view"):
         op.execute(f"DROP VIEW {view}")
+    for table, (before, after) in INDEXES.items():
+        _index_instead(table, after, before)
     op.drop_table("sample_overview")
     for name in ("seed", *FACTS):
         op.drop_column("experiment", name)
+
+
+def _index_instead(table: str, before: tuple[tuple[str, ...], ...], after: tuple[tuple[str, ...], ...]) -> None:
+    for columns in before:
+        op.drop_index(f"ix_{table}_{'_'.join(columns)}", table)
+    for columns in after:
+        op.create_index(f"ix_{table}_{'_'.join(columns)}", table, list(columns))
 
 
 def _fill(connection: sa.Connection) -> None:

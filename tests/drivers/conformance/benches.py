@@ -1,0 +1,120 @@
+"""One bench per driver, the same joint behind each: in process, or a simulated device in a process of its own."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from bench.clock import Clock, VirtualClock, WallClock
+from bench.configuration import BenchConfiguration, default_configuration, parse_configuration
+from bench.drive_factory import make_equipment
+from bench.limits import Guard
+from bench.loop import ControlLoop, Outcome
+from bench.servo import current_servo
+from drivers.contract import Drive
+from tests.bench.fake_drive import ListSink
+from tests.devices.device_process import DeviceProcess, device_process
+
+PERIOD_S = 0.01
+WATCHDOG_S = 0.5  # a busy machine keeps a host waiting for longer than a lab's would
+ANSWER_TIMEOUT_S = 0.15
+
+# softer than on the quick in-process bench: cycles come late on a busy machine
+SERVO = {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_rad": 0.3}
+SEARCH = {"current_step_a": 0.008}
+
+
+@dataclass(frozen=True)
+class Bench:
+    """What a test talks to.
+
+    Attributes:
+        name: of the driver.
+        configuration: with the drive's section.
+        device: the process behind the wire; None in process.
+    """
+
+    name: str
+    configuration: BenchConfiguration
+    device: DeviceProcess | None = None
+
+    @property
+    def watched_s(self) -> float:
+        """The drive's watchdog [s]."""
+        return getattr(self.configuration.drive, "watchdog_s", 0.1)
+
+    def clock(self) -> Clock:
+        return VirtualClock() if self.device is None else WallClock()
+
+    @contextmanager
+    def drive(self) -> Iterator[Drive]:
+        """A drive, not yet open; closed afterwards."""
+        made = make_equipment(self.configuration, self.hang_as_asked).drive
+        try:
+            yield made
+        finally:
+            made.close()
+
+    @contextmanager
+    def opened(self) -> Iterator[Drive]:
+        with self.drive() as made:
+            made.open(PERIOD_S)
+            yield made
+
+    def hang_as_asked(self, sentence: str) -> bool:
+        """Do what a person is asked to do, through the device's side channel."""
+        assert self.device is not None
+        words = sentence.split()
+        load_kg = float(words[1]) / 1000.0 if words[0] == "Hang" else 0.0
+        self.device.side.hang_load(load_kg, "balanced," in words)
+        return True
+
+    def repair(self) -> None:
+        """Put right whatever a test has broken, and wait until the motor is off."""
+        if self.device is not None:
+            self.device.side.ask("repair")
+            self.device.wait_for_power(False)
+
+
+def configured(**drive: Any) -> BenchConfiguration:
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    values["control"]["period_s"] = PERIOD_S
+    values["servo"] |= SERVO
+    values["search"] |= SEARCH
+    values["limits"]["sample_age_s"] = 0.3
+    values["limits"]["tracking_error_rad"] = 1.0
+    if drive:
+        values["drive"] = drive
+    return parse_configuration(values, "bench.toml")
+
+
+@contextmanager
+def in_process() -> Iterator[Bench]:
+    plant = {"current_sensor": {"present": True}, "heat": {"present": True}}
+    yield Bench("sim", configured(kind="sim", plant=plant))
+
+
+@contextmanager
+def roboclaw() -> Iterator[Bench]:
+    with device_process("roboclaw", "--baud", "0") as device:
+        settings = {"watchdog_s": WATCHDOG_S, "answer_timeout_s": ANSWER_TIMEOUT_S}
+        yield Bench("roboclaw", configured(**device.drive, **settings), device)
+
+
+@contextmanager
+def canopen() -> Iterator[Bench]:
+    with device_process("canopen") as device:
+        settings = {"watchdog_s": WATCHDOG_S, "answer_s": ANSWER_TIMEOUT_S}
+        yield Bench("canopen", configured(**device.drive, **settings), device)
+
+
+BENCHES: dict[str, Callable[[], Any]] = {"sim": in_process, "roboclaw": roboclaw, "canopen": canopen}
+
+
+def run(bench: Bench, drive: Drive, procedure: Any, stop: Any) -> tuple[Outcome, ListSink]:
+    """Run a procedure on an open drive through the ordinary loop."""
+    sink = ListSink()
+    configuration = bench.configuration
+    guard, servo = Guard(configuration.limits), current_servo(configuration.rig)
+    loop = ControlLoop(drive, bench.clock(), guard, PERIOD_S, servo)
+    return loop.run(procedure, sink, stop), sink
