@@ -61,7 +61,7 @@ class ModbusDrive(Drive):
         return Description(
             device=self._device,
             vendor=self._map.identity.vendor,
-            product=self._map.identity.product,
+            product=self._identity.product or self._map.identity.product,
             firmware=self._identity.firmware,
             serial=self._identity.serial,
             simulated=self._identity.simulated,

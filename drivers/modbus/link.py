@@ -12,7 +12,7 @@ from pymodbus.pdu import ModbusPDU
 
 from drivers.errors import DriveConnectionError, DriveStateError
 from drivers.modbus.blocks import Block, blocks
-from drivers.modbus.register import Register, Space
+from drivers.modbus.register import Register, Space, Text
 from drivers.modbus.settings import ModbusSettings
 
 ATTEMPTS = 2
@@ -129,6 +129,14 @@ class Link:
         """
         [block] = blocks([register])
         return block.decode(self.read(block))[register.name]
+
+    def read_text(self, text: Text) -> str:
+        """Its characters.
+
+        Raises:
+            DriveConnectionError, DriveStateError: as `read`.
+        """
+        return text.decode(self.read(Block(text.space, text.address, text.words, ())))
 
     def _words(self, block: Block, call: Callable[[], ModbusPDU]) -> list[int]:
         words = self._ask(block, call).registers

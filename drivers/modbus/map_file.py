@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from drivers.contract import Mode
-from drivers.modbus.register import Number, Register, Space
+from drivers.modbus.register import Number, Register, Space, Text
 from drivers.modbus.register_map import DEMANDS, MEASURED, Identity, RegisterMap, Watchdog, Words
 
 MAPS = resources.files("drivers.modbus") / "maps"
 _MODE_WORDS = tuple(mode.value for mode in DEMANDS)
 _SECTIONS = {
-    "identity", "control", "mode", "status", "fault", "demand", "measured", "watchdog", "register", "name", "source",
-    "low_word_first", "read_write", "longest_gap",
+    "identity", "control", "mode", "status", "fault", "demand", "measured", "watchdog", "register", "text", "name",
+    "source", "low_word_first", "read_write", "longest_gap",
 }  # fmt: skip
 
 
@@ -140,11 +140,11 @@ class _Reader:
         if not values:
             return None
         register = self._register(values.pop("register"), section)
-        mask = int(values.pop("mask", 0xFFFF))
+        mask, bits = int(values.pop("mask", 0xFFFF)), bool(values.pop("bits", False))
         unknown = values.keys() - set(known)
         if unknown:
             raise ValueError(f"{section}: {', '.join(sorted(unknown))}: unknown; known are {', '.join(known)}")
-        return Words(register, {name: int(word) for name, word in values.items()}, mask)
+        return Words(register, {name: int(word) for name, word in values.items()}, mask, bits)
 
     def _demand(self) -> dict[Mode, Register]:
         return {DEMANDS_BY_NAME[name]: register for name, register in self._parts("demand", DEMANDS_BY_NAME).items()}
@@ -174,12 +174,15 @@ class _Reader:
         family = None
         if "family" in values:
             family = Words(self._register(values["family"]["register"], "identity"), {"is": values["family"]["is"]})
-        optional = {
-            part: self._register(values[part], "identity")
-            for part in ("firmware", "serial", "simulated")
-            if part in values
-        }
-        return Identity(values["vendor"], values["product"], family=family, **optional)
+        optional = {part: self._register(values[part], "identity") for part in ("firmware", "serial") if part in values}
+        text = self._text(values["product_text"]) if "product_text" in values else None
+        return Identity(values["vendor"], values["product"], family=family, product_text=text, **optional)
+
+    def _text(self, name: str) -> Text:
+        for row in self._values.get("text", []):
+            if row["name"] == name:
+                return Text(name, Space(row["space"]), int(row["address"]), int(row["words"]))
+        raise ValueError(f"identity names text '{name}', which is not in the map")
 
 
 DEMANDS_BY_NAME = {name: mode for mode, name in DEMANDS.items()}

@@ -12,12 +12,13 @@ from drivers.modbus.settings import ModbusSettings
 class Found(NamedTuple):
     """What the drive says of itself."""
 
+    product: str
     firmware: str
     serial: str
     simulated: bool
 
 
-UNKNOWN = Found("", "", simulated=False)
+UNKNOWN = Found("", "", "", simulated=False)
 
 
 def identify(link: Link, register_map: RegisterMap, device: str) -> Found:
@@ -38,8 +39,8 @@ def identify(link: Link, register_map: RegisterMap, device: str) -> Found:
             )
     firmware = "" if identity.firmware is None else f"{link.read_one(identity.firmware):g}"
     serial = "" if identity.serial is None else f"{link.read_one(identity.serial):.0f}"
-    simulated = identity.simulated is not None and link.read_one(identity.simulated) != 0.0
-    return Found(firmware, serial, simulated)
+    product = identity.product if identity.product_text is None else link.read_text(identity.product_text)
+    return Found(product, firmware, serial, "simulated" in product.lower())
 
 
 def set_watchdog(link: Link, register_map: RegisterMap, settings: ModbusSettings) -> None:

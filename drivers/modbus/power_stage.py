@@ -18,11 +18,8 @@ def state_of(register_map: RegisterMap, values: dict[str, float], told: Status) 
         return Status.FAULT
     if register_map.status is None:
         return told
-    word = int(values[register_map.status.register.name]) & register_map.status.mask
-    for name, state in _STATES.items():
-        if register_map.status.words.get(name) == word:
-            return state
-    return Status.DISABLED
+    word = values[register_map.status.register.name]
+    return next((state for name, state in _STATES.items() if register_map.status.holds(name, word)), Status.DISABLED)
 
 
 def word_of(words: Words | None, name: str) -> dict[str, float]:

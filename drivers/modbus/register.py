@@ -99,3 +99,23 @@ class Register:
         data = Struct(self.number.value).pack(steps)
         words = [int.from_bytes(data[place : place + 2], "big") for place in range(0, len(data), 2)]
         return words[::-1] if self.low_word_first else words
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """Words as characters, two to a word, the first in the high byte; filled up with zeros.
+
+    Attributes:
+        name, space, address: as of a register.
+        words: how many.
+    """
+
+    name: str
+    space: Space
+    address: int
+    words: int
+
+    def decode(self, words: Sequence[int]) -> str:
+        """The characters."""
+        data = b"".join(word.to_bytes(2, "big") for word in words)
+        return data.rstrip(b"\0").decode("ascii", "replace").strip()

@@ -3,13 +3,15 @@
 A map names its registers freely, and then says which of them plays which part:
 
     [demand]     duty, current_a, position_counts        what is written each cycle, by mode
-    [measured]   position_counts, velocity_counts_s, duty, current_a, supply_v, temperature_c
+    [measured]   time_s (the drive's own clock), position_counts, velocity_counts_s, duty, current_a, supply_v,
+                 temperature_c
     [control]    register, and the words for off, quick_stop, clear_fault and each mode; left out where a demand of
                  zero is all that switches the motor off
-    [status]     register, mask, and the words that mean enabled, quick_stop and fault
+    [status]     register, and the words that mean enabled, quick_stop and fault: after `mask`, or bit by bit (`bits`)
     [fault]      register, and names of its numbers
     [watchdog]   register (its unit is s), or `fixed_s` where it is set in the drive alone
-    [identity]   vendor, product; registers of firmware and serial; register and word that tell the family
+    [identity]   vendor, product; registers of firmware and serial; register and word that tell the family; a text that
+                 tells the product, and "simulated" where no hardware is behind it
     [mode]       register and the words of the modes, where it is not part of the control word
 """
 
@@ -17,20 +19,36 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from drivers.contract import Mode
-from drivers.modbus.register import Register
+from drivers.modbus.register import Register, Text
 
 DEMANDS = {Mode.DUTY: "duty", Mode.CURRENT: "current_a", Mode.POSITION: "position_counts"}
-MEASURED = ("position_counts", "velocity_counts_s", "duty", "current_a", "supply_v", "temperature_c")
+MEASURED = ("time_s", "position_counts", "velocity_counts_s", "duty", "current_a", "supply_v", "temperature_c")
 SLOW = frozenset({"supply_v", "temperature_c"})
 
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """A register, and which word in it means what."""
+    """A register, and which word in it means what.
+
+    Attributes:
+        register: where the word is.
+        words: by meaning.
+        mask: bits of the register that belong to the word.
+        bits: True where several may hold at once: each is a bit, or some.
+    """
 
     register: Register
     words: Mapping[str, int]
     mask: int = 0xFFFF
+    bits: bool = False
+
+    def holds(self, name: str, value: float) -> bool:
+        """Whether a value of the register means this."""
+        wanted = self.words.get(name)
+        if wanted is None:
+            return False
+        found = int(value) & self.mask
+        return found & wanted == wanted if self.bits else found == wanted
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +72,7 @@ class Identity:
         vendor, product: as shown.
         firmware, serial: registers; None where it does not tell.
         family: register and word by which the map and the drive recognise each other; None: not checked.
-        simulated: register whose value is not 0 where no hardware is behind it; None: it is taken for real.
+        product_text: what it calls itself, in place of `product`; None where it does not tell.
     """
 
     vendor: str
@@ -62,7 +80,7 @@ class Identity:
     firmware: Register | None = None
     serial: Register | None = None
     family: Words | None = None
-    simulated: Register | None = None
+    product_text: Text | None = None
 
 
 @dataclass(frozen=True, slots=True)

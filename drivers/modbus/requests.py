@@ -55,7 +55,7 @@ def plan(register_map: RegisterMap) -> Exchange:
     slow = [register for name, register in register_map.measured.items() if name in SLOW]
     gap = register_map.longest_gap
     quick, everything = blocks(fast, gap), blocks([*fast, *slow], gap)
-    if len(everything) == len(quick):  # what is slow comes along for nothing
+    if len(everything) <= len(quick):  # what is slow comes along for nothing
         quick, slow = everything, []
     write_blocks = blocks(written, longest=LONGEST_WRITE)
     in_one = (

@@ -9,6 +9,7 @@ from drivers.modbus.register_map import RegisterMap
 from drivers.modbus.requests import Values
 
 _SAMPLE_NAMES = {
+    "time_s": "time_s",
     "position_counts": "position_rad",
     "velocity_counts_s": "velocity_rad_s",
     "duty": "duty",
@@ -17,6 +18,29 @@ _SAMPLE_NAMES = {
     "temperature_c": "temperature_c",
 }
 _IN_COUNTS = frozenset({"position_counts", "velocity_counts_s"})
+
+
+class DriveClock:
+    """The drive's own clock, followed through its wraps.
+
+    Args:
+        step_s: one step of its register [s].
+        bits: of its register.
+    """
+
+    def __init__(self, step_s: float, bits: int) -> None:
+        self._turn_s = step_s * 2.0**bits
+        self._last_s: float | None = None
+        self._time_s = 0.0
+
+    def follow(self, reading_s: float) -> float:
+        """The next reading [s]. Returns the time without wraps [s]."""
+        if self._last_s is None:
+            self._time_s = reading_s
+        else:
+            self._time_s += (reading_s - self._last_s) % self._turn_s
+        self._last_s = reading_s
+        return self._time_s
 
 
 class Sampling:
@@ -31,6 +55,8 @@ class Sampling:
         self._names = {part: register.name for part, register in register_map.measured.items()}
         self._steps = {part: abs(register.scale) for part, register in register_map.measured.items()}
         self._joint = joint
+        clock = register_map.measured.get("time_s")
+        self._clock = None if clock is None else DriveClock(clock.scale, clock.number.words * 16)
         self._kept: Values = {}
         self._kept_at_s = 0.0
 
@@ -58,6 +84,8 @@ class Sampling:
         age_s = now_s - at_s
         slow_age_s = now_s - self._kept_at_s if self._kept else age_s
         joint, sign = self._joint, self._joint.motor_sign
+        if self._clock is not None:
+            at_s = self._clock.follow(values[self._names["time_s"]])
         return Sample(
             at_s, age_s,
             joint.position_rad(self._value("position_counts", values)),

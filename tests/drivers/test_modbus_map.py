@@ -2,11 +2,13 @@
 
 import pytest
 
-from drivers.contract import Mode
+from drivers.contract import Mode, Status
 from drivers.modbus.blocks import blocks
 from drivers.modbus.map_file import MapError, known_maps, load_map, parse_map
+from drivers.modbus.power_stage import state_of
 from drivers.modbus.register import Number, Register, Space
 from drivers.modbus.requests import plan
+from drivers.modbus.sampling import DriveClock
 from tests.drivers.modbus_answers import MAP
 
 
@@ -70,6 +72,42 @@ def test_the_maps_that_come_with_the_package_can_be_used():
         found = load_map(name)
         assert found.source
         assert plan(found).read
+
+
+def test_the_documented_map():
+    """docs/modbus-map.md: function 23 writes 5 registers from 0 and reads 12 registers from 100."""
+    found = load_map("friction-bench")
+    assert found.modes == {Mode.DUTY, Mode.CURRENT}
+    requests = plan(found)
+    assert requests.in_one
+    assert [(block.address, block.words) for block in requests.written] == [(0, 5)]
+    assert [(block.address, block.words) for block in requests.read] == [(100, 12)]
+    assert requests.written[0].encode({"control": 1, "mode": 1, "current_demand": -0.7}) == [1, 1, 0, 0xFFFF, 0xFD44]
+    words = [5, 2, 0xFFFF, 0xFFFE, 0, 1000, 2500, 0xFA24, 2400, 305, 0x0001, 0x0000]
+    assert requests.read[0].decode(words) == pytest.approx(
+        {
+            "status": 5, "fault": 2, "position": -2, "velocity": 1000, "duty": 0.25, "current": -1.5, "supply": 24.0,
+            "temperature": 30.5, "time": 65.536,
+        }
+    )  # fmt: skip
+    assert state_of(found, requests.read[0].decode(words), Status.ENABLED) is Status.FAULT
+    assert found.fault_name(2) == "over-current"
+
+
+@pytest.mark.parametrize(
+    ("word", "wanted"),
+    [(0, Status.DISABLED), (1, Status.ENABLED), (3, Status.QUICK_STOP), (0x29, Status.ENABLED), (4, Status.FAULT)],
+)
+def test_states_that_are_bits(word, wanted):
+    assert state_of(load_map("friction-bench"), {"status": word, "fault": 0}, Status.DISABLED) is wanted
+
+
+def test_the_clock_is_followed_through_its_wraps():
+    clock = DriveClock(1e-3, 32)
+    turn_s = 2**32 * 1e-3
+    assert [clock.follow(reading_s) for reading_s in (turn_s - 0.01, turn_s - 0.005, 0.005)] == pytest.approx(
+        [turn_s - 0.01, turn_s - 0.005, turn_s + 0.005]
+    )
 
 
 def test_the_published_map_of_roboteq():
