@@ -47,6 +47,8 @@ class BreakawayFit(NamedTuple):
         scatter_a: standard deviation of one breakaway [A].
         breakaways: how many.
         load_variance, friction_variance: of the two currents, as shares of that of one breakaway.
+        ramped_a, ramp: half of what lies between the breakaways as they were seen [A], and the mean of r^(2/3) there:
+            whoever knows k better takes k times that off.
     """
 
     load_current_a: Interval
@@ -56,6 +58,8 @@ class BreakawayFit(NamedTuple):
     breakaways: int
     load_variance: float
     friction_variance: float
+    ramped_a: float
+    ramp: float
 
 
 def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
@@ -85,7 +89,9 @@ def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
         quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, freedom))
     load, friction = (_interval(solution[place], quantile * scatter_a * sqrt(variances[place])) for place in (0, 1))
     delay = solution[2] if unknowns > 2 else 0.0
-    return BreakawayFit(load, friction, delay, scatter_a, count, variances[0], variances[1])
+    ramped_a = float(np.mean(direction * (current_a - solution[0])))
+    ramp = float(np.mean(rate**DELAY_POWER))
+    return BreakawayFit(load, friction, delay, scatter_a, count, variances[0], variances[1], ramped_a, ramp)
 
 
 def _interval(value: float, half: float) -> Interval:

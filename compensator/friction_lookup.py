@@ -8,7 +8,7 @@ load itself where it is known, or F_load of eq. (10), which is there without kno
 """
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -82,24 +82,19 @@ class FrictionLookup:
         Raises:
             LookupRangeError: the selector lies further outside the calibrated ones than the margin allows.
         """
-        below, share = self._place(selector)
+        below, share = self.place(selector)
         speed = np.abs(np.asarray(speed_rad_s, dtype=np.float64))
         lower_a, upper_a = self.curves[below].sliding_a(speed), self.curves[below + 1].sliding_a(speed)
         # extended beyond the ends, a straight line could pass 0; friction does not
         friction_a = np.maximum(lower_a + share * (upper_a - lower_a), 0.0)
         return np.asarray(np.sign(speed_rad_s) * friction_a)
 
-    def between(self, values: Sequence[float], selector: float) -> float:
-        """What was found with each curve (an inertia, an offset), one value each, at a selector.
+    def place(self, selector: float) -> tuple[int, float]:
+        """The curve below a selector, and how far the selector is from there to the next, as a share.
 
         Raises:
             LookupRangeError: as `current_a`.
         """
-        below, share = self._place(selector)
-        return values[below] + share * (values[below + 1] - values[below])
-
-    def _place(self, selector: float) -> tuple[int, float]:
-        """The curve below a selector, and how far the selector is from there to the next, as a share."""
         low, high = self.allowed()
         if not low <= selector <= high:
             raise LookupRangeError(

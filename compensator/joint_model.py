@@ -1,19 +1,56 @@
 """What was identified of a joint, for whoever takes the load out of its motor current while it moves."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sin
+from math import exp, sin
 
 from compensator.errors import ModelParameterError
 from compensator.friction_lookup import FrictionLookup
 from compensator.gear_loss import GearLoss
+from compensator.kinetic_friction import KineticFriction
 
 NO_LOSS = GearLoss()
-CREEP_RAD_S = 1e-6  # of the motor: the curve's value next to speed 0
+
+
+@dataclass(frozen=True, slots=True)
+class JointUnderLoad:
+    """The joint with what selects its friction curve given: everything that an estimate needs, in plain numbers.
+
+    Attributes:
+        ratio: motor turns per joint turn.
+        lighter, heavier, share: the curves on either side, and how far from the one to the other.
+        offset_a: what friction is more forwards, and less backwards.
+        rotor_inertia_a_s2_rad, arm_inertia_a_s2_rad: current per joint acceleration, before and behind the teeth.
+        gravity_a: current that the load takes at 90 degrees.
+        gear_loss: of the teeth under load.
+        friction_scatter: standard deviation of friction about its curve, as a share of it.
+    """
+
+    ratio: float
+    lighter: KineticFriction
+    heavier: KineticFriction
+    share: float
+    offset_a: float
+    rotor_inertia_a_s2_rad: float
+    arm_inertia_a_s2_rad: float
+    gravity_a: float
+    gear_loss: GearLoss
+    friction_scatter: float
+
+    def friction_a(self, joint_speed_rad_s: float, direction: float) -> float:
+        """s F(v) [A]: friction of the balanced joint in a direction, at a speed of the joint or next to 0."""
+        speed = abs(joint_speed_rad_s) * self.ratio
+        light_a, heavy_a = _sliding_a(self.lighter, speed), _sliding_a(self.heavier, speed)
+        return direction * max(light_a + self.share * (heavy_a - light_a), 0.0) + self.offset_a
+
+    def gravity_at(self, angle_rad: float) -> float:
+        """What the load takes at an angle [A]."""
+        return self.gravity_a * sin(angle_rad)
 
 
 @dataclass(frozen=True)
 class JointModel:
-    """What was identified of the joint.
+    """What was identified of the joint, over what selects its friction curve.
 
     Attributes:
         friction: of the balanced joint, over the speed of the motor shaft.
@@ -45,23 +82,37 @@ class JointModel:
         if not self.ratio > 0.0 or not self.friction_scatter >= 0.0:
             raise ModelParameterError("ratio must be above 0, friction_scatter 0 or more")
 
-    def friction_a(self, joint_speed_rad_s: float, direction: float, selector: float) -> float:
-        """s F(v) [A]: friction of the balanced joint in a direction, at a speed of the joint or next to 0."""
-        speed = direction * max(abs(joint_speed_rad_s) * self.ratio, CREEP_RAD_S)
-        return float(self.friction.current_a(speed, selector)) + self._at(self.offsets_a, selector)
-
-    def arm_inertia_at(self, selector: float) -> float:
-        """Current per joint acceleration of what hangs behind the teeth [A s2/rad]."""
-        return self._at(self.arm_inertia_a_s2_rad, selector)
-
-    def gravity_at(self, angle_rad: float, selector: float) -> float:
-        """What the load takes at an angle [A]."""
-        return self._at(self.gravity_a, selector) * sin(angle_rad)
-
     def within(self, selector: float) -> float:
         """The selector, or the nearest that the look-up allows."""
         low, high = self.friction.allowed()
         return min(max(selector, low), high)
 
-    def _at(self, values: tuple[float, ...], selector: float) -> float:
-        return self.friction.between(values, selector) if values else 0.0
+    def under(self, selector: float) -> JointUnderLoad:
+        """The joint at one selector.
+
+        Raises:
+            LookupRangeError: further outside of the calibrated ones than the look-up allows.
+        """
+        below, share = self.friction.place(selector)
+
+        def at(values: Sequence[float]) -> float:
+            return values[below] + share * (values[below + 1] - values[below]) if values else 0.0
+
+        return JointUnderLoad(
+            self.ratio,
+            self.friction.curves[below],
+            self.friction.curves[below + 1],
+            share,
+            at(self.offsets_a),
+            self.rotor_inertia_a_s2_rad,
+            max(at(self.arm_inertia_a_s2_rad), 0.0),
+            at(self.gravity_a),
+            self.gear_loss,
+            self.friction_scatter,
+        )
+
+
+def _sliding_a(curve: KineticFriction, speed: float) -> float:
+    """Eq. (2) of one speed, 0 or more: the limit next to 0 included."""
+    bump_a = (curve.static_a - curve.coulomb_a) * exp(-((speed / curve.stribeck_speed_rad_s) ** curve.shape))
+    return curve.coulomb_a + bump_a + curve.viscous_a_s_rad * speed

@@ -5,6 +5,8 @@ from enum import Enum
 from math import inf, nan
 from typing import NamedTuple
 
+from compensator.joint_model import JointUnderLoad
+
 
 class Branch(Enum):
     """Where the estimate comes from."""
@@ -99,6 +101,7 @@ class EstimatorState(NamedTuple):
     """Everything the estimator remembers between cycles."""
 
     selector: float
+    joint: JointUnderLoad | None = None  # the model at the selector
     positions_rad: tuple[float, ...] = ()
     currents_a: tuple[float, ...] = ()
     extreme_rad: float = nan  # farthest in the present direction

@@ -11,9 +11,10 @@ A pure function, (state, observation) -> (state, estimate). Where one branch tak
 between the two dies away with `blend_s`; until then it is part of the band.
 """
 
-from math import copysign, exp, hypot, inf, isnan, nan, sqrt
+from collections.abc import Sequence
+from math import copysign, exp, hypot, inf, isnan, nan, sin, sqrt
 
-from compensator.joint_model import JointModel
+from compensator.joint_model import JointModel, JointUnderLoad
 from compensator.load_estimate import (
     Branch,
     EstimatorSettings,
@@ -44,10 +45,19 @@ def advance(
     """One control cycle."""
     if isnan(observation.position_rad) or isnan(observation.current_a):
         return _lose(state)
-    state = _remember(model, settings, _track(settings, state, observation), observation)
-    branch = _branch(settings, state, observation)
-    own = _own(branch, model, settings, state, observation)
-    return _blend(model, settings, state, own, observation)
+    joint, state = _joint(model, state, observation)
+    state = _remember(settings, _track(settings, state, observation), observation)
+    own = _own(_branch(settings, state, observation), joint, settings, state, observation)
+    return _blend(joint, settings, state, own, observation)
+
+
+def _joint(model: JointModel, state: EstimatorState, observation: Observation) -> tuple[JointUnderLoad, EstimatorState]:
+    """The model under what the last search found to hang there."""
+    selector = state.selector if observation.rest is None else model.within(observation.rest.selector)
+    if state.joint is not None and selector == state.selector:
+        return state.joint, state
+    joint = model.under(selector)
+    return joint, state._replace(selector=selector, joint=joint)
 
 
 def _lose(state: EstimatorState) -> tuple[EstimatorState, LoadEstimate]:
@@ -73,17 +83,13 @@ def _track(settings: EstimatorSettings, state: EstimatorState, observation: Obse
     return state._replace(direction=way, turned_rad=position_rad - ahead_rad, moving_cycles=1)
 
 
-def _remember(
-    model: JointModel, settings: EstimatorSettings, state: EstimatorState, observation: Observation
-) -> EstimatorState:
-    state = state._replace(
+def _remember(settings: EstimatorSettings, state: EstimatorState, observation: Observation) -> EstimatorState:
+    moved = state.moving_cycles > settings.window and not observation.searching
+    return state._replace(
         positions_rad=(*state.positions_rad, observation.position_rad)[-settings.window :],
         currents_a=(*state.currents_a, observation.current_a)[-settings.window :],
+        rest=observation.rest or (None if moved else state.rest),
     )
-    if observation.rest is not None:
-        return state._replace(rest=observation.rest, selector=model.within(observation.rest.selector))
-    moved = state.moving_cycles > settings.window and not observation.searching
-    return state._replace(rest=None) if moved else state
 
 
 def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Observation) -> Branch:
@@ -100,23 +106,23 @@ def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Obs
 
 
 def _own(
-    branch: Branch, model: JointModel, settings: EstimatorSettings, state: EstimatorState, observation: Observation
+    branch: Branch, joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
 ) -> LoadEstimate:
     """The value of the branch alone, whatever was given out before."""
-    held_a = state.known_a + model.gravity_at(observation.position_rad, state.selector)
+    held_a = state.known_a + joint.gravity_at(observation.position_rad)
     if branch is Branch.REST:
-        return _at_rest(model, state, observation, held_a)
+        return _at_rest(joint, state, observation, held_a)
     if branch is Branch.STUCK:
-        return _stuck(model, state, observation)
+        return _stuck(joint, observation)
     if branch is Branch.MOVING:
-        return _moving(model, settings, state, observation)
+        return _moving(joint, settings, state, observation)
     return LoadEstimate(held_a, state.estimate.half_width_a, branch)
 
 
-def _at_rest(model: JointModel, state: EstimatorState, observation: Observation, held_a: float) -> LoadEstimate:
+def _at_rest(joint: JointUnderLoad, state: EstimatorState, observation: Observation, held_a: float) -> LoadEstimate:
     """The search's result, or what was known before it, as far as static friction allows it."""
-    margin = 1.0 + 3.0 * model.friction_scatter
-    low_a, high_a = sorted(_against(model, state, observation.current_a, way, margin) for way in (1.0, -1.0))
+    margin = 1.0 + 3.0 * joint.friction_scatter
+    low_a, high_a = sorted(_about_to_move_a(joint, observation.current_a, way, margin) for way in (1.0, -1.0))
     known_a, half_a = (held_a, inf) if state.rest is None else state.rest[:2]
     allowed_a = (low_a + high_a) / 2.0 if isnan(known_a) else min(max(known_a, low_a), high_a)
     if state.rest is None or allowed_a != known_a:
@@ -124,43 +130,58 @@ def _at_rest(model: JointModel, state: EstimatorState, observation: Observation,
     return LoadEstimate(allowed_a, half_a, Branch.REST)
 
 
-def _stuck(model: JointModel, state: EstimatorState, observation: Observation) -> LoadEstimate:
+def _stuck(joint: JointUnderLoad, observation: Observation) -> LoadEstimate:
     """The push may have stopped growing anywhere in the band of static friction; the rule takes its near end."""
     way = copysign(1.0, observation.target_rad - observation.position_rad)
-    near_a, far_a = (_against(model, state, observation.current_a, one, 1.0) for one in (way, -way))
-    return LoadEstimate(near_a, abs(far_a - near_a), Branch.STUCK, model.friction_a(0.0, way, state.selector))
+    near_a, far_a = (_about_to_move_a(joint, observation.current_a, one, 1.0) for one in (way, -way))
+    return LoadEstimate(near_a, abs(far_a - near_a), Branch.STUCK, joint.friction_a(0.0, way))
 
 
-def _against(model: JointModel, state: EstimatorState, current_a: float, way: float, margin: float) -> float:
+def _about_to_move_a(joint: JointUnderLoad, current_a: float, way: float, margin: float) -> float:
     """I_load [A] of a joint at rest that is just about to move in a direction."""
-    friction_a = model.friction_a(0.0, way, state.selector)
-    return model.gear_loss.load_current_a(current_a - margin * friction_a, way)
+    return joint.gear_loss.load_current_a(current_a - margin * joint.friction_a(0.0, way), way)
 
 
 def _moving(
-    model: JointModel, settings: EstimatorSettings, state: EstimatorState, observation: Observation
+    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
 ) -> LoadEstimate:
-    """Of the middle of the window, and what gravity has changed since."""
+    """What the window's mean current is more than the modelled load explains, and that load now."""
     fitted = parabola(settings.window, settings.period_s)
     motion = fitted.motion(state.positions_rad)
-    rotor, arm = model.rotor_inertia_a_s2_rad, model.arm_inertia_at(state.selector)
-    friction_a = model.friction_a(motion.speed_rad_s, state.direction, state.selector)
-    mean_a = sum(state.currents_a) / len(state.currents_a)
+    way, loss = state.direction, joint.gear_loss
+    friction_a = joint.friction_a(motion.speed_rad_s, way)
     # the teeth carry the load and what accelerates the arm, but not what accelerates the rotor
-    carried_a = mean_a - rotor * motion.acceleration_rad_s2 - friction_a
-    load_a = model.gear_loss.load_current_a(carried_a, state.direction) - arm * motion.acceleration_rad_s2
-    since_a = model.gravity_at(observation.position_rad, state.selector)
-    since_a -= model.gravity_at(motion.position_rad, state.selector)
-    noise_a = (rotor + arm) * fitted.acceleration_noise_rad_s2(settings.count_rad)
-    spread_a = hypot(model.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
-    return LoadEstimate(load_a + since_a, BAND * spread_a, Branch.MOVING, friction_a)
+    arm_a = joint.arm_inertia_a_s2_rad * motion.acceleration_rad_s2
+    rotor_a = joint.rotor_inertia_a_s2_rad * motion.acceleration_rad_s2
+    more_a = sum(state.currents_a) / len(state.currents_a) - rotor_a - friction_a
+    more_a -= _expected_a(joint, state.positions_rad, arm_a, way)
+    middle_a = joint.gravity_at(motion.position_rad) + arm_a
+    known_a = loss.load_current_a(loss.motor_current_a(middle_a, way) + more_a, way) - middle_a
+    inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
+    noise_a = inertia * fitted.acceleration_noise_rad_s2(settings.count_rad)
+    spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
+    now_a = joint.gravity_at(observation.position_rad)
+    return LoadEstimate(known_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
+
+
+def _expected_a(joint: JointUnderLoad, positions_rad: Sequence[float], arm_a: float, way: float) -> float:
+    """Mean motor current of the modelled load over the window: gear loss bends where the load changes its sign."""
+    if joint.gravity_a == 0.0:
+        return joint.gear_loss.motor_current_a(arm_a, way)
+    carried_a = joint.gear_loss.motor_current_a
+    gravity_a = joint.gravity_a
+    return sum([carried_a(gravity_a * sin(angle_rad) + arm_a, way) for angle_rad in positions_rad]) / len(positions_rad)
 
 
 def _blend(
-    model: JointModel, settings: EstimatorSettings, state: EstimatorState, own: LoadEstimate, observation: Observation
+    joint: JointUnderLoad,
+    settings: EstimatorSettings,
+    state: EstimatorState,
+    own: LoadEstimate,
+    observation: Observation,
 ) -> tuple[EstimatorState, LoadEstimate]:
     """Let the difference to what was known before die away, after a change of branch or a new result."""
-    gravity_a = model.gravity_at(observation.position_rad, state.selector)
+    gravity_a = joint.gravity_at(observation.position_rad)
     change_a = state.known_a + gravity_a - own.load_current_a
     offset_a = state.offset_a * exp(-settings.period_s / settings.blend_s)
     if observation.rest is not None or own.branch is not state.estimate.branch:

@@ -6,8 +6,9 @@ the same window, so that nothing is compared with something older.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import sqrt
+from operator import mul
 from typing import NamedTuple
 
 import numpy as np
@@ -39,11 +40,18 @@ class Parabola:
 
     def motion(self, positions_rad: Sequence[float]) -> Motion:
         """Of as many readings as there are weights, the oldest first."""
-        return Motion(*(_dot(weights, positions_rad) for weights in (self.position, self.speed, self.acceleration)))
+        return Motion(
+            _dot(self.position, positions_rad), _dot(self.speed, positions_rad), _dot(self.acceleration, positions_rad)
+        )
 
     def acceleration_noise_rad_s2(self, count_rad: float) -> float:
-        """Standard deviation of the acceleration that counts of a size [rad] leave: each reading errs by 1/12."""
-        return count_rad / sqrt(12.0) * sqrt(sum(weight**2 for weight in self.acceleration))
+        """Standard deviation of the acceleration that counts of a size [rad] leave: 1/12 of variance each."""
+        return count_rad * self.acceleration_noise_counts
+
+    @cached_property
+    def acceleration_noise_counts(self) -> float:
+        """The same for counts of 1 rad."""
+        return sqrt(sum(weight**2 for weight in self.acceleration) / 12.0)
 
 
 @lru_cache(maxsize=32)
@@ -63,4 +71,4 @@ def parabola(readings: int, period_s: float) -> Parabola:
 
 
 def _dot(weights: tuple[float, ...], values: Sequence[float]) -> float:
-    return sum(weight * value for weight, value in zip(weights, values, strict=True))
+    return float(sum(map(mul, weights, values)))

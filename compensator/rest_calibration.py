@@ -7,6 +7,9 @@ current of the load. Then the two currents of breakaway have mean and half diffe
     D = F + b |L| + e [L != 0]      eq. (10) would have D = F whatever the angle
     F = f0 + f1 W
 
+D is what the breakaways show less what the ramps gained: k r^(2/3), k = k0 + k1 [L != 0] + k2 |L| of all searches
+together, since one alone tells it badly. It grows with what is set in motion: with the arm, where the teeth touch.
+
 r: friction is (1 + r) F forwards, (1 - r) F backwards. a, b, c: gear loss (`gear_loss`); the teeth lose b L on average,
 (a - 1) L more in driving than in being driven, and pass on c of the friction behind them. e: friction behind the teeth,
 which does not show where they are free. L = 0 shows r and F alone; another angle under the same loads shows the rest.
@@ -65,6 +68,7 @@ class RestCalibration:
         gain, step_a, asymmetry: a, c, r.
         covariance: of the three, in that order; rows of A, A, 1.
         slope, offset_a: b, e.
+        delay: k0, k1, k2.
         floor_a, scatter: standard deviation of one breakaway: sqrt(floor^2 + (scatter F)^2).
         asymmetry_told: 95 % interval of r.
     """
@@ -75,6 +79,7 @@ class RestCalibration:
     covariance: tuple[tuple[float, ...], ...] = ((0.0,) * 3,) * 3
     slope: float = 0.0
     offset_a: float = 0.0
+    delay: tuple[float, ...] = (0.0, 0.0, 0.0)
     floor_a: float = FLOOR_A
     scatter: float = 0.0
 
@@ -97,21 +102,28 @@ class RestCalibration:
 
     def estimate(self, found: BreakawayFit) -> RestEstimate:
         """Load and friction from the breakaways of one search."""
-        mean_a, half_a = found.load_current_a.value, found.friction_current_a.value
+        mean_a = found.load_current_a.value
+        free_a = mean_a - self.asymmetry * found.friction_current_a.value
         # less than that, and friction behind the teeth explains it: they may be free
-        touches = 1.0 if abs(mean_a - self.asymmetry * half_a) > 2.0 * self.step_a else 0.0
-        load_a = self._load_a(mean_a, half_a) if touches else (mean_a - self.asymmetry * half_a) / 2.0 / self.gain
+        touches = 1.0 if abs(free_a) > 2.0 * self.step_a else 0.0
+        half_a = self._half_a(found, touches, abs(free_a))
+        load_a = self._load_a(mean_a, half_a) if touches else free_a / 2.0 / self.gain
         friction_a = max(half_a - self.slope * abs(load_a) - self.offset_a * touches, 0.0)
-        noise_a = self.scatter_a(half_a)
-        mean_noise_a, half_noise_a = noise_a * sqrt(found.load_variance), noise_a * sqrt(found.friction_variance)
+        # as many one way as the other: mean and half difference are equally sure
+        noise_a = self.scatter_a(half_a) / sqrt(found.breakaways)
         gradient = np.array([load_a, copysign(touches, load_a), friction_a])
         known_a2 = float(gradient @ np.array(self.covariance) @ gradient)
-        width_a = BAND * sqrt(mean_noise_a**2 + (self.asymmetry * half_noise_a) ** 2 + known_a2) / self.gain
-        friction_width_a = BAND * sqrt(half_noise_a**2 + (self.slope * mean_noise_a) ** 2)
+        width_a = BAND * sqrt((1.0 + self.asymmetry**2) * noise_a**2 + known_a2) / self.gain
+        friction_width_a = BAND * sqrt(1.0 + self.slope**2) * noise_a
         return RestEstimate(
             Interval(load_a, load_a - width_a, load_a + width_a),
             Interval(friction_a, friction_a - friction_width_a, friction_a + friction_width_a),
         )
+
+    def _half_a(self, found: BreakawayFit, touches: float, load_a: float) -> float:
+        """D: what the ramps gained taken off."""
+        k0, k1, k2 = self.delay
+        return found.ramped_a - (k0 + k1 * touches + k2 * load_a) * found.ramp
 
     def _load_a(self, mean_a: float, half_a: float) -> float:
         """L from M and D, where the teeth touch."""
@@ -127,22 +139,23 @@ def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
         CalibrationError: too few points, or no angle with (or without) a moment, or one load only.
     """
     _check(points)
-    load_a = np.array([point.load_current_a for point in points])
+    load_a, weight_kg = _column(points, "load_current_a"), _column(points, "load_kg")
     found = [point.found for point in points]
     floor_a, scatter = _scatter(found)
-    half_a = np.array([one.friction_current_a.value for one in found])
-    noise_a = np.hypot(floor_a, scatter * half_a)
-    touches = (load_a != 0.0).astype(float)
-    weights = 1.0 / (noise_a * np.sqrt([one.friction_variance for one in found]))
-    weight_kg = np.array([point.load_kg for point in points])
-    (f0, f1, slope, offset_a), _ = _fit([np.ones_like(load_a), weight_kg, np.abs(load_a), touches], half_a, weights)
-    friction_a = f0 + f1 * weight_kg
-    weights = 1.0 / (noise_a * np.sqrt([one.load_variance for one in found]))
+    ones, touches = np.ones_like(load_a), (load_a != 0.0).astype(float)
+    ramped_a, ramp = _column(found, "ramped_a"), _column(found, "ramp")
+    weights = np.sqrt(_column(found, "breakaways")) / np.hypot(floor_a, scatter * ramped_a)
+    delay, _ = _fit([ones, touches, np.abs(load_a)], _column(found, "delay"), weights)
+    half_a = ramped_a - (np.column_stack([ones, touches, np.abs(load_a)]) @ delay) * ramp
+    (f0, f1, slope, offset_a), _ = _fit([ones, weight_kg, np.abs(load_a), touches], half_a, weights)
     mean_a = np.array([one.load_current_a.value for one in found])
-    (gain, step_a, asymmetry), covariance = _fit([load_a, np.sign(load_a), friction_a], mean_a, weights)
-    return RestCalibration(
-        gain, step_a, asymmetry, tuple(map(tuple, covariance.tolist())), slope, offset_a, floor_a, scatter
-    )
+    (gain, step_a, asymmetry), covariance = _fit([load_a, np.sign(load_a), f0 + f1 * weight_kg], mean_a, weights)
+    known = tuple(map(tuple, covariance.tolist()))
+    return RestCalibration(gain, step_a, asymmetry, known, slope, offset_a, tuple(delay), floor_a, scatter)
+
+
+def _column(items: Sequence[RestPoint] | Sequence[BreakawayFit], name: str) -> NDArray[np.float64]:
+    return np.array([getattr(item, name) for item in items], dtype=np.float64)
 
 
 def _fit(

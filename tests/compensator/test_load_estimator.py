@@ -40,13 +40,10 @@ def counted(position_rad):
 
 def motor_current_a(load_a, speed, acceleration, selector=0.1, model=MODEL):
     """What the motor of exactly this model takes in motion."""
-    way = 1.0 if speed > 0 else -1.0
-    teeth_a = load_a + model.arm_inertia_at(selector) * acceleration
-    return (
-        model.gear_loss.motor_current_a(teeth_a, way)
-        + model.rotor_inertia_a_s2_rad * acceleration
-        + model.friction_a(speed, way, selector)
-    )
+    way, joint = (1.0 if speed > 0 else -1.0), model.under(selector)
+    teeth_a = load_a + joint.arm_inertia_a_s2_rad * acceleration
+    rotor_a = joint.rotor_inertia_a_s2_rad * acceleration
+    return joint.gear_loss.motor_current_a(teeth_a, way) + rotor_a + joint.friction_a(speed, way)
 
 
 def cruise(load_a, speed, seconds=0.6, start_rad=0.0, selector=0.1):

@@ -87,7 +87,7 @@ def test_nothing_known_is_eqs_9_and_10():
     found = searched(0.3, 0.06)
     estimate = RestCalibration().estimate(found)
     assert estimate.load_current_a.value == pytest.approx(found.load_current_a.value)
-    assert estimate.friction_current_a.value == pytest.approx(found.friction_current_a.value)
+    assert estimate.friction_current_a.value == pytest.approx(found.ramped_a)
 
 
 @pytest.mark.parametrize(
