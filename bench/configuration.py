@@ -3,9 +3,9 @@
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 
 from bench.drives.settings import DriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
@@ -37,6 +37,9 @@ class MotionSettings(Section):
     settle_timeout_s: float = quantity(10.0, "s", "Longest wait for the joint to settle", gt=0)
 
 
+Rate = Annotated[float, Field(gt=0)]
+
+
 class SearchSettings(Section):
     """The zero-speed search: the flow chart of the paper (Fig. 5), or the improved one.
 
@@ -57,10 +60,17 @@ class SearchSettings(Section):
     noise_counts: float = quantity(0.25, "", "Noise of a position reading, in encoder counts", ge=0)
     false_alarms_per_hour: float = quantity(1.0, "", "Times that noise may be taken for motion", gt=0)
     coarse_rate_a_s: float = quantity(1.5, "A/s", "Rate of the first ramp either way", gt=0)
-    fine_rates_a_s: tuple[float, ...] = quantity((0.6, 0.15), "A/s", "Rates of the others, in turn", min_length=2)
+    fine_rates_a_s: tuple[Rate, ...] = quantity((0.6, 0.15), "A/s", "Rates of the others, in turn", min_length=2)
     pairs: int = quantity(4, "", "Slow ramps up and down", ge=2, le=100)
     stand_s: float = quantity(0.04, "s", "Rest before each ramp", gt=0)
     stand_timeout_s: float = quantity(0.5, "s", "Longest wait for that rest", gt=0)
+
+    @field_validator("fine_rates_a_s")
+    @classmethod
+    def _check_rates(cls, rates: tuple[float, ...]) -> tuple[float, ...]:
+        if len(set(rates)) < 2:
+            raise ValueError("two different rates are needed, to tell what a ramp gains before motion is seen")
+        return rates
 
 
 class StoreSettings(Section):

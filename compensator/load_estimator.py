@@ -11,7 +11,6 @@ A pure function, (state, observation) -> (state, estimate). Where one branch tak
 between the two dies away with `blend_s`; until then it is part of the band.
 """
 
-from collections.abc import Sequence
 from math import copysign, exp, hypot, inf, isnan, nan, sin, sqrt
 
 from compensator.joint_model import JointModel, JointUnderLoad
@@ -23,7 +22,7 @@ from compensator.load_estimate import (
     Observation,
     RestResult,
 )
-from compensator.local_motion import parabola
+from compensator.local_motion import Window, window
 
 __all__ = [
     "Branch", "EstimatorSettings", "EstimatorState", "JointModel", "LoadEstimate", "Observation", "RestResult",
@@ -146,31 +145,30 @@ def _moving(
     joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
 ) -> LoadEstimate:
     """What the window's mean current is more than the modelled load explains, and that load now."""
-    fitted = parabola(settings.window, settings.period_s)
-    motion = fitted.motion(state.positions_rad)
+    averages = window(settings.window, settings.period_s)
+    motion = averages.motion(state.positions_rad)
     way, loss = state.direction, joint.gear_loss
     friction_a = joint.friction_a(motion.speed_rad_s, way)
     # the teeth carry the load and what accelerates the arm, but not what accelerates the rotor
     arm_a = joint.arm_inertia_a_s2_rad * motion.acceleration_rad_s2
     rotor_a = joint.rotor_inertia_a_s2_rad * motion.acceleration_rad_s2
-    more_a = sum(state.currents_a) / len(state.currents_a) - rotor_a - friction_a
-    more_a -= _expected_a(joint, state.positions_rad, arm_a, way)
+    more_a = averages.mean_held(state.currents_a) - rotor_a - friction_a
+    more_a -= _expected_a(joint, averages, state, arm_a)
     middle_a = joint.gravity_at(motion.position_rad) + arm_a
     known_a = loss.load_current_a(loss.motor_current_a(middle_a, way) + more_a, way) - middle_a
     inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
-    noise_a = inertia * fitted.acceleration_noise_rad_s2(settings.count_rad)
+    noise_a = inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
     spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
     now_a = joint.gravity_at(observation.position_rad)
     return LoadEstimate(known_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
 
 
-def _expected_a(joint: JointUnderLoad, positions_rad: Sequence[float], arm_a: float, way: float) -> float:
+def _expected_a(joint: JointUnderLoad, averages: Window, state: EstimatorState, arm_a: float) -> float:
     """Mean motor current of the modelled load over the window: gear loss bends where the load changes its sign."""
-    if joint.gravity_a == 0.0:
-        return joint.gear_loss.motor_current_a(arm_a, way)
-    carried_a = joint.gear_loss.motor_current_a
-    gravity_a = joint.gravity_a
-    return sum([carried_a(gravity_a * sin(angle_rad) + arm_a, way) for angle_rad in positions_rad]) / len(positions_rad)
+    carried_a, gravity_a, way = joint.gear_loss.motor_current_a, joint.gravity_a, state.direction
+    if gravity_a == 0.0:
+        return carried_a(arm_a, way)
+    return averages.mean([carried_a(gravity_a * sin(angle_rad) + arm_a, way) for angle_rad in state.positions_rad])
 
 
 def _blend(

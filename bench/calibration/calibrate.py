@@ -9,6 +9,7 @@ from typing import Any
 from bench.calibration.curves import friction_fits, inertia_of
 from bench.calibration.motor_constants import identify_motor
 from bench.calibration.points import FrictionPoint, Row, friction_points
+from bench.calibration.rest import rest_of
 from bench.calibration.samples import points_of_recording
 from bench.calibration.selection import drive_of_experiment
 from bench.provenance import software
@@ -29,7 +30,8 @@ def calibrate(store: Store, experiment_ids: Sequence[int], stribeck: bool = True
     Args:
         store: holds the experiments, and will hold the calibration.
         experiment_ids: speed sweeps, or imported trials of the balanced joint; and load sweeps, whose zero-speed
-            searches at angle 0 give the F_load of each load. All of one rig and one drive.
+            searches at angle 0 give the F_load of each load, and those at another angle what the gear
+            loses. All of one rig and one drive.
         stribeck: False leaves out static friction: for trials without low speeds.
         note: kept with it.
 
@@ -76,14 +78,21 @@ def fit_trials(
             "speed sweep over more loads"
         )
     fits = friction_fits(points, stribeck)
-    searched = _f_loads(trials)
+    rest = rest_of(trials, rig)
+    searched = {
+        load_kg: (rest.friction_a.get(load_kg, friction_a), ids)
+        for load_kg, (friction_a, ids) in _f_loads(trials).items()
+    }
     used = {one.trial_id for found in points.values() for one in found if one.trial_id is not None}
+    used |= set(rest.trial_ids)
     used |= {trial_id for _, ids in searched.values() for trial_id in ids}
     result = {
         "stribeck": stribeck,
         "curves": [_curve(load_kg, fits[load_kg], searched) for load_kg in points],
         "points": [_point(one, inertia_of(fits[one.load_kg])) for found in points.values() for one in found],
         "motor": _motor(rows),
+        "rest": None if rest.settings is None else rest.settings.model_dump(),
+        "rest_unidentified": rest.why_not,
     }
     return result, sorted(used)
 

@@ -5,6 +5,7 @@ from typing import Any
 from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
 from bench.friction import FrictionCurve, FrictionSettings
+from bench.rest import RestSettings
 from bench.store import CalibrationRow, Experiment, Store
 
 _NOT_THE_JOINT = ("seed", "faults")  # settings of a drive that say nothing about the joint's friction
@@ -44,11 +45,23 @@ def use(store: Store, configuration: BenchConfiguration, calibration_id: int | N
 
 
 def with_friction(store: Store, configuration: BenchConfiguration) -> BenchConfiguration:
-    """The configuration with the friction curves that it names itself, or those of the calibration in use, if any."""
+    """The configuration with what it names itself, or what the calibration in use has told of the joint, if any.
+
+    That is the friction curves, and the corrections of the joint at rest.
+    """
     if configuration.friction is not None:
         return configuration
     found = in_use(store, configuration)
-    return configuration if found is None else configuration.model_copy(update={"friction": friction_of(found)})
+    if found is None:
+        return configuration
+    rest = configuration.rest or rest_settings_of(found)
+    return configuration.model_copy(update={"friction": friction_of(found), "rest": rest})
+
+
+def rest_settings_of(row: CalibrationRow) -> RestSettings | None:
+    """The corrections at rest of a calibration; None where its searches did not tell."""
+    told = row.result.get("rest")
+    return None if told is None else RestSettings.model_validate(told)
 
 
 def friction_of(row: CalibrationRow) -> FrictionSettings:

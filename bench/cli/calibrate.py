@@ -39,7 +39,7 @@ def run(
     """Sweep the balanced arm over speeds and loads, search F_load under each, fit, and keep. The joint moves."""
     session, loads, levels = session_of(context), _numbers(loads_kg), _numbers(duties)
     sweep = {"loads_kg": loads, "duties": levels, "strokes": STROKES}
-    search = {"loads_kg": loads, "angles_rad": [0.0], "searches": SEARCHES}
+    search = {"loads_kg": loads, "angles_rad": [0.0, 1.5708], "searches": SEARCHES}
     ids = []
     for kind, parameters in (("speed-sweep", sweep), ("load-sweep", search)):
         found, signal_code = carry_out(session, kind, parameters, "", note, pace, quiet=as_json)

@@ -70,6 +70,10 @@ class Joint:
             readings.append((yield from self._servo_cycle(target_rad, velocity_rad_s)))
         return readings
 
+    def step(self, target_rad: float, velocity_rad_s: float, load_current_a: float) -> Part[Reading]:
+        """One cycle towards a set point; the load current is recorded."""
+        return (yield from self._servo_cycle(target_rad, velocity_rad_s, load_current_a))
+
     def move(self, target_rad: float, speed_rad_s: float | None = None) -> Part[None]:
         """Go to an angle; with the speed of the configuration where none is given."""
         speed_rad_s = self._motion.speed_rad_s if speed_rad_s is None else speed_rad_s

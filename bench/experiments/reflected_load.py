@@ -17,14 +17,43 @@ def reflected_load_kg(load_current_a: float, angle_rad: float, rig: Rig) -> floa
     Raises:
         ConfigurationError: the rig leaves out the torque constant, the gear ratio or the arm's length.
     """
+    torque_n_m_a, length_m = _lever(rig)
+    if abs(sin(angle_rad)) < LEAST_LEVER:
+        return None
+    moment_kg_m = load_current_a * torque_n_m_a / (STANDARD_GRAVITY_M_S2 * sin(angle_rad))
+    return (moment_kg_m - _own_moment_kg_m(rig)) / length_m
+
+
+def load_current_a(load_kg: float, angle_rad: float, rig: Rig) -> float:
+    """The inverse: motor current [A] of a mass at the tip, and of the arm's own moment, at an angle. No friction.
+
+    Raises:
+        ConfigurationError: as `reflected_load_kg`.
+    """
+    torque_n_m_a, length_m = _lever(rig)
+    moment_kg_m = load_kg * length_m + _own_moment_kg_m(rig)
+    return moment_kg_m * STANDARD_GRAVITY_M_S2 * sin(angle_rad) / torque_n_m_a
+
+
+def _own_moment_kg_m(rig: Rig) -> float:
+    return (rig.arm.mass_kg or 0.0) * (rig.arm.centre_of_mass_m or 0.0)
+
+
+def torque_n_m_a(rig: Rig) -> float:
+    """Torque at the joint per motor current [N m/A].
+
+    Raises:
+        ConfigurationError: the rig leaves out the torque constant or the gear ratio.
+    """
+    return _lever(rig)[0]
+
+
+def _lever(rig: Rig) -> tuple[float, float]:
+    """Torque at the joint per motor current [N m/A], and the arm's length [m]."""
     torque_constant, ratio, length_m = rig.motor.torque_constant_n_m_a, rig.gear.ratio, rig.arm.length_m
     if torque_constant is None or ratio is None or length_m is None:
         raise ConfigurationError(
             f"rig '{rig.name}': a reflected load needs motor.torque_constant_n_m_a, gear.ratio and arm.length_m; add "
             "what is missing to the rig"
         )
-    if abs(sin(angle_rad)) < LEAST_LEVER:
-        return None
-    own_moment_kg_m = (rig.arm.mass_kg or 0.0) * (rig.arm.centre_of_mass_m or 0.0)
-    moment_kg_m = load_current_a * torque_constant * ratio / (STANDARD_GRAVITY_M_S2 * sin(angle_rad))
-    return (moment_kg_m - own_moment_kg_m) / length_m
+    return torque_constant * ratio, length_m

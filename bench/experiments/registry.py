@@ -5,12 +5,29 @@ from typing import Any
 from pydantic import ValidationError
 
 from bench.errors import ParameterError, UnknownKindError
-from bench.experiments import commissioning, excitation, load_sweep, speed_sweep, steps
+from bench.experiments import (
+    commissioning,
+    excitation,
+    load_sweep,
+    sinusoid,
+    speed_sweep,
+    steady_speeds,
+    steps,
+)
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.validation import problems
 
 KINDS: dict[str, ExperimentKind] = {
-    kind.name: kind for kind in (steps.KIND, load_sweep.KIND, speed_sweep.KIND, excitation.KIND, commissioning.KIND)
+    kind.name: kind
+    for kind in (
+        steps.KIND,
+        load_sweep.KIND,
+        speed_sweep.KIND,
+        steady_speeds.KIND,
+        sinusoid.KIND,
+        excitation.KIND,
+        commissioning.KIND,
+    )
 }
 
 __all__ = ["KINDS", "ExperimentKind", "FinishedTrial", "Parameters", "TrialPlan", "find_kind", "parse_parameters"]

@@ -1,0 +1,72 @@
+"""What load sweeps tell of the joint at rest: asymmetry, gear loss and scatter, and the friction under each load."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from math import isfinite, sin
+from typing import NamedTuple
+
+from bench.errors import ConfigurationError
+from bench.experiments.reflected_load import LEAST_LEVER, load_current_a
+from bench.rest import RestSettings
+from bench.rig import Rig
+from bench.store import Trial
+from compensator.breakaway_fit import Breakaway, fit
+from compensator.errors import CalibrationError
+from compensator.rest_calibration import RestPoint, calibrate
+
+
+class SearchedTrial(NamedTuple):
+    """One trial at rest with its searches."""
+
+    trial_id: int
+    point: RestPoint
+
+
+class ToldAtRest(NamedTuple):
+    """What load sweeps told.
+
+    Attributes:
+        settings: the corrections of eqs (9), (10); None where they did not tell.
+        friction_a: F_load [A], without what a moment adds, under each load [kg].
+        trial_ids: what it is from.
+        why_not: why there are no settings, in words.
+    """
+
+    settings: RestSettings | None
+    friction_a: dict[float, float]
+    trial_ids: list[int]
+    why_not: str
+
+
+def searched_trials(trials: Iterable[Trial], rig: Rig) -> list[SearchedTrial]:
+    """Those that hold enough breakaways to show their scatter.
+
+    Raises:
+        ConfigurationError: the rig leaves out what a load current needs.
+    """
+    found = []
+    for trial in trials:
+        breakaways, angle_rad = trial.results.get("breakaways"), trial.conditions.get("angle_rad")
+        if not breakaways or not isinstance(angle_rad, float | int) or trial.conditions.get("balanced"):
+            continue
+        fitted = fit([Breakaway(*one) for one in breakaways])
+        if isfinite(fitted.scatter_a):
+            load_kg = float(trial.conditions["load_kg"])
+            load_a = load_current_a(load_kg, angle_rad, rig) if abs(sin(angle_rad)) >= LEAST_LEVER else 0.0
+            found.append(SearchedTrial(trial.id, RestPoint(load_a, load_kg, fitted)))
+    return found
+
+
+def rest_of(trials: Sequence[Trial], rig: Rig) -> ToldAtRest:
+    """What the trials tell, or why they do not."""
+    try:
+        searched = searched_trials(trials, rig)
+        told = calibrate([one.point for one in searched])
+    except (CalibrationError, ConfigurationError) as error:
+        return ToldAtRest(None, {}, [], str(error))
+    friction_a: dict[float, list[float]] = defaultdict(list)
+    for one in searched:
+        friction_a[one.point.load_kg].append(told.estimate(one.point.found).friction_current_a.value)
+    means = {load_kg: sum(values) / len(values) for load_kg, values in sorted(friction_a.items())}
+    return ToldAtRest(RestSettings(**asdict(told)), means, [one.trial_id for one in searched], "")

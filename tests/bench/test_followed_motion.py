@@ -1,0 +1,106 @@
+"""Motion with the load estimated all along, on the simulated bench of the paper."""
+
+import numpy as np
+import pytest
+
+from bench.configuration import default_configuration
+from bench.errors import ConfigurationError, LimitError, ParameterError
+from bench.experiments.load_follower import joint_model
+from bench.experiments.registry import find_kind, parse_parameters
+from tests.bench.bench_run import Ran
+from tests.bench.calibrated import calibrated_configuration
+
+
+@pytest.fixture(scope="module")
+def swung():
+    return Ran(calibrated_configuration(seed=11), "sinusoid", periods=2)
+
+
+@pytest.fixture(scope="module")
+def carried():
+    return Ran(calibrated_configuration(seed=12), "steady-speeds", speeds_rad_s=(1.0, 2.0))
+
+
+def test_swinging_the_estimate_is_eight_times_closer_than_the_current(swung):
+    assert swung.summary["trials"] == 1
+    assert swung.summary["rms_ratio"] < 1.0 / 8.0
+
+
+def test_the_estimate_is_recorded_cycle_by_cycle_and_does_not_jump(swung):
+    load_a = swung.channel(0, "current_load_a")
+    known = load_a[~np.isnan(load_a)]
+    assert len(known) > 400
+    # 1.5 mA is what friction's own scatter makes from cycle to cycle
+    assert np.max(np.abs(np.diff(known))) < 0.02
+
+
+def test_at_steady_speeds_the_load_is_carried_there_and_back(carried):
+    assert carried.summary["speeds"] == 2
+    for row in carried.summary["rows"]:
+        assert abs(row["mean_error_kg"]) < 0.0015
+        assert row["mean_absolute_error_kg"] < 0.1 * row["uncompensated_mean_absolute_error_kg"]
+
+
+def test_the_band_is_no_ornament(swung, carried):
+    assert swung.summary["in_band"] > 0.8
+    assert carried.summary["in_band"] > 0.8
+
+
+@pytest.mark.parametrize("kind", ["sinusoid", "steady-speeds"])
+def test_every_trial_ends_at_rest_at_angle_0(kind, swung, carried):
+    ran = swung if kind == "sinusoid" else carried
+    for trial, outcome in enumerate(ran.outcomes):
+        assert outcome.outcome == "completed"
+        assert abs(ran.channel(trial, "position_rad")[-1]) < 0.01
+        assert ran.channel(trial, "velocity_rad_s")[-1] == 0.0
+
+
+@pytest.mark.parametrize("kind", ["sinusoid", "steady-speeds"])
+def test_without_friction_curves_nothing_moves(kind):
+    with pytest.raises(ConfigurationError, match="calibrate run"):
+        Ran(default_configuration(), kind)
+
+
+@pytest.mark.parametrize(
+    ("kind", "wrong", "named"),
+    [
+        ("sinusoid", {"load_kg": 0.2}, "load_kg"),
+        ("sinusoid", {"amplitude_rad": 2.2}, "amplitude_rad"),
+        ("sinusoid", {"frequency_hz": 2.0}, "frequency_hz"),
+        ("steady-speeds", {"load_kg": 0.2}, "load_kg"),
+        ("steady-speeds", {"reach_rad": 2.2}, "reach_rad"),
+        ("steady-speeds", {"speeds_rad_s": (9.0,)}, "speeds_rad_s"),
+        ("steady-speeds", {"speeds_rad_s": (1e-4,)}, "speeds_rad_s"),
+    ],
+)
+def test_what_the_bench_must_not_do_is_refused(kind, wrong, named):
+    with pytest.raises(LimitError, match=named):
+        Ran(calibrated_configuration(), kind, **wrong)
+
+
+def test_a_run_up_that_leaves_no_way_is_refused():
+    with pytest.raises(ParameterError, match="run_up_rad"):
+        parse_parameters(find_kind("steady-speeds"), {"run_up_rad": 3.8})
+
+
+@pytest.mark.parametrize("kind", ["sinusoid", "steady-speeds"])
+def test_the_duration_is_about_what_it_takes(kind, swung, carried):
+    ran, parameters = (swung, {"periods": 2}) if kind == "sinusoid" else (carried, {"speeds_rad_s": (1.0, 2.0)})
+    configuration = calibrated_configuration()
+    stated = find_kind(kind).duration_s(parse_parameters(find_kind(kind), parameters), configuration)
+    taken = sum(outcome.cycles for outcome in ran.outcomes) * configuration.control.period_s
+    assert 0.5 * taken < stated < 2.0 * taken
+
+
+def test_a_failed_search_ends_the_trial_without_a_number():
+    plain = calibrated_configuration()
+    blocked = plain.model_copy(update={"search": plain.search.model_copy(update={"ceiling_a": 0.05})})
+    results = Ran(blocked, "sinusoid", periods=1).outcomes[0].results
+    assert "ceiling" in results["search_failure"]
+    assert results["estimates"] == 0
+
+
+def test_without_known_loads_the_model_has_no_gear_loss():
+    plain = calibrated_configuration()
+    assert joint_model(plain).gear_loss.driving > 0.2
+    assert joint_model(plain.model_copy(update={"rest": None})).gear_loss.driving == 0.0
