@@ -42,6 +42,8 @@ def test_f_load_comes_from_the_searches_at_angle_0(store, row):
         # the same static friction, found at rest and at creeping speed; it scatters by 1.5 % from stop to stop. Within
         # the free play the motor lets go alone, without the arm's own 6 mA and what the teeth make of them
         assert -0.05 < curve["f_load_a"] / curve["static_a"] - 1.0 + 0.0075 / curve["static_a"] < 0.05
+    alone = store.calibrations.get(calibration.calibrate(store, [1]))
+    assert {curve["f_load_from"] for curve in alone.result["curves"]} == {FROM_CURVE}
 
 
 def test_f_load_selects_the_curve_of_its_load(row):
