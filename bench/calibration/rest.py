@@ -7,7 +7,7 @@ from math import isfinite, sin
 from typing import NamedTuple
 
 from bench.errors import ConfigurationError
-from bench.experiments.reflected_load import LEAST_LEVER, load_current_a
+from bench.reflected_load import LEAST_LEVER, load_current_a
 from bench.rest import RestSettings
 from bench.rig import Rig
 from bench.store import Trial

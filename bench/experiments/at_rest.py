@@ -5,10 +5,10 @@ from typing import Any
 
 from bench.configuration import BenchConfiguration
 from bench.experiments.joint import Joint
-from bench.experiments.reflected_load import reflected_load_kg
 from bench.experiments.rest_estimate import RestFinding, finding
 from bench.experiments.search import Found
 from bench.loop import Procedure
+from bench.reflected_load import reflected_load_kg
 
 SEARCH_S = {"paper": 6.0, "improved": 2.5}  # of one search, roughly
 MOVES_S = 3.0  # to the angle and back, roughly

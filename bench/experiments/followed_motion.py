@@ -11,9 +11,9 @@ from bench.configuration import BenchConfiguration
 from bench.experiments.joint import Joint, Part
 from bench.experiments.load_follower import LoadFollower
 from bench.experiments.profile import SetPoint
-from bench.experiments.reflected_load import load_current_a, torque_n_m_a
 from bench.experiments.rest_estimate import finding
 from bench.loop import Reading
+from bench.reflected_load import load_current_a, torque_n_m_a
 from compensator.load_estimator import LoadEstimate
 
 

@@ -4,11 +4,11 @@ from math import nan, pi
 
 from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
-from bench.experiments.reflected_load import load_current_a, torque_n_m_a
 from bench.experiments.resolution import resolution_rad
 from bench.experiments.rest_estimate import RestFinding
 from bench.friction import FrictionCurve
 from bench.loop import Reading
+from bench.reflected_load import load_current_a, torque_n_m_a
 from bench.rest import RestSettings
 from bench.rig import Rig
 from compensator import load_estimator

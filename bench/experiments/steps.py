@@ -10,9 +10,9 @@ from bench.configuration import BenchConfiguration
 from bench.experiments.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.reflected_load import reflected_load_kg
 from bench.experiments.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.quantities import quantity
+from bench.reflected_load import reflected_load_kg
 
 GOLDEN_SECTION = (sqrt(5.0) - 1.0) / 2.0
 

@@ -3,7 +3,7 @@
 from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
 from bench.experiments.at_rest import RIGHT_ANGLE_RAD
-from bench.experiments.reflected_load import reflected_load_kg
+from bench.reflected_load import reflected_load_kg
 
 
 def grams_per_ma(configuration: BenchConfiguration) -> float:

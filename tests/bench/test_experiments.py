@@ -8,9 +8,9 @@ import pytest
 
 from bench.configuration import default_configuration
 from bench.errors import ConfigurationError, LimitError, ParameterError, UnknownKindError
-from bench.experiments.reflected_load import reflected_load_kg
 from bench.experiments.registry import KINDS, find_kind, parse_parameters
 from bench.quantities import unit_of
+from bench.reflected_load import reflected_load_kg
 from bench.rest import RestSettings
 from bench.rig import Arm, Gear, Motor, Rig
 from tests.bench.bench_run import Ran
