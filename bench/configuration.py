@@ -73,12 +73,22 @@ class SearchSettings(Section):
         return rates
 
 
+class RetentionSettings(Section):
+    """How long experiments are kept after their end, see `friction-bench store prune`; without a number: for ever."""
+
+    completed_days: float | None = quantity(None, "days", "Completed experiments and imports", gt=0)
+    incomplete_days: float | None = quantity(None, "days", "Stopped, tripped, failed, interrupted, refused ones", gt=0)
+    simulated_days: float | None = quantity(None, "days", "Those of a simulated drive, however they ended", gt=0)
+
+
 class StoreSettings(Section):
     """Where the trials are kept."""
 
     url: str = quantity(
         "sqlite:///friction-bench.sqlite", "", "Database address: sqlite:///FILE or postgresql://USER@HOST/DATABASE"
     )
+    reserve_mb: float = quantity(200.0, "MB", "Space that a new trial has to leave free on the disk", ge=0)
+    retention: RetentionSettings = RetentionSettings()
 
 
 class BenchConfiguration(Section):

@@ -1,7 +1,6 @@
 """One experiment under way: its trials one after the other, in a thread of its own, and how it ended."""
 
-import threading
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,9 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.live import LiveBuffer
 from bench.loop import RECORDED, ControlLoop, Outcome, OutcomeName, Reading
 from bench.recorder import Sink
+from bench.stop_request import StopRequest
 from bench.store import Store
+from bench.store.space import SpaceNeed
 from bench.technician import Technician
 
 
@@ -37,6 +38,7 @@ class Prepared:
     duration_s: float
     equipment: Equipment
     loop: ControlLoop
+    space: SpaceNeed
 
 
 @dataclass(slots=True)
@@ -55,16 +57,13 @@ class ExperimentRun:
     outcome: OutcomeName = "running"
     reason: str = ""
     trial_index: int = 0
-    _stop: threading.Event = field(default_factory=threading.Event)
-    _stop_reason: str = "stop was asked for"
+    _stop: StopRequest = field(default_factory=StopRequest)
     _prepared: Prepared | None = None
     _finished: list[FinishedTrial] = field(default_factory=list)
 
     def stop(self, reason: str) -> None:
         """Stop within one control cycle; also an experiment that is only about to begin."""
-        if not self._stop.is_set():
-            self._stop_reason = reason or self._stop_reason
-            self._stop.set()
+        self._stop.ask(reason)
 
     def is_stopped(self) -> bool:
         """Whether it has been asked to stop."""
@@ -121,7 +120,8 @@ class ExperimentRun:
             self.trial_index = index
             try:
                 if not self._hang_load(plan, prepared.equipment.technician):
-                    return "stopped", self._stop_reason
+                    return "stopped", self._stop.reason
+                store.require_space(prepared.space, trials=1)
                 outcome = self._run_trial(plan, prepared.loop, store, live)
             except Exception as error:
                 return "failed", f"trial '{plan.name}': {str(error) or type(error).__name__}"
@@ -143,8 +143,6 @@ class ExperimentRun:
         writer = store.begin_trial(self._id(), plan.name, self.request.kind, plan.conditions, RECORDED)
         live.begin_trial()
         outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
-        if outcome.outcome == "stopped" and self._stop_reason:
-            outcome = replace(outcome, reason=self._stop_reason)
         self._finished.append(FinishedTrial(plan.name, plan.conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
         writer.finish(outcome.outcome, outcome.reason, results)

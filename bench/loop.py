@@ -4,7 +4,6 @@ Each cycle: send the procedure's command, take the sample, compare it with the l
 procedure. However a run ends, it ends in power-off, and the outcome says why.
 """
 
-import threading
 from dataclasses import dataclass, field, replace
 from math import ceil, isnan, nan
 from typing import Any, Literal
@@ -15,6 +14,7 @@ from bench.errors import ConfigurationError, LimitTrip
 from bench.limits import Guard
 from bench.recorder import Recorder, Sink
 from bench.servo import CurrentServo
+from bench.stop_request import StopRequest
 from drivers.contract import Command, Drive, Mode, Sample, Status
 from drivers.errors import DriveStateError
 
@@ -78,7 +78,7 @@ class ControlLoop:
         self.cycles = 0
         self.last_reading: Reading | None = None
 
-    def run(self, procedure: Procedure, sink: Sink, stop: threading.Event) -> Outcome:
+    def run(self, procedure: Procedure, sink: Sink, stop: StopRequest) -> Outcome:
         """Run one trial to its end.
 
         Args:
@@ -104,7 +104,7 @@ class ControlLoop:
             ending = self._close(recorder, ending)
         return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
 
-    def _run_guarded(self, procedure: Procedure, recorder: Recorder, stop: threading.Event) -> Outcome:
+    def _run_guarded(self, procedure: Procedure, recorder: Recorder, stop: StopRequest) -> Outcome:
         """Run the cycles, and turn every way they can end into an outcome."""
         try:
             refusal = self._check_before_motion()
@@ -112,10 +112,10 @@ class ControlLoop:
                 return Outcome("refused", refusal)
             return Outcome("completed", results=self._run_cycles(procedure, recorder, stop))
         except _StopRequested:
-            return Outcome("stopped", "stop was asked for")
+            return Outcome("stopped", stop.reason)
         except KeyboardInterrupt:
-            stop.set()
-            return Outcome("stopped", "interrupted from the keyboard")
+            stop.ask("interrupted from the keyboard")
+            return Outcome("stopped", stop.reason)
         except LimitTrip as trip:
             return Outcome("tripped", str(trip))
         except Exception as error:
@@ -148,7 +148,7 @@ class ControlLoop:
             return f"before motion: {trip}"
         return ""
 
-    def _run_cycles(self, procedure: Procedure, recorder: Recorder, stop: threading.Event) -> dict[str, Any]:
+    def _run_cycles(self, procedure: Procedure, recorder: Recorder, stop: StopRequest) -> dict[str, Any]:
         exchange, check, wait, record = self._drive.exchange, self._guard.check, self._clock.wait, recorder.row
         send, stopping = procedure.send, stop.is_set
         action = next(procedure)

@@ -19,6 +19,7 @@ from bench.prompt import Prompt, PromptDesk
 from bench.provenance import provenance
 from bench.servo import check_modes, current_servo
 from bench.store import Store
+from bench.store.space import SpaceNeed
 from bench.timing import check_timing
 from drivers.contract import Description, Drive
 from drivers.errors import DriveError
@@ -193,6 +194,8 @@ class Runner:
         kind.refuse(parameters, configuration)
         plans = kind.plan(parameters, configuration)
         duration_s = kind.duration_s(parameters, configuration)
+        space = SpaceNeed.of(duration_s / len(plans), configuration.control.period_s, configuration.store.reserve_mb)
+        self._store.require_space(space, len(plans))
         equipment = make_equipment(configuration, lambda sentence: self._desk.ask(sentence, run.is_stopped))
         self._description = None
         try:
@@ -202,7 +205,7 @@ class Runner:
         except BaseException:
             equipment.drive.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, equipment, loop)
+        return Prepared(kind, parameters, plans, duration_s, equipment, loop, space)
 
     def _open(self, drive: Drive, clock: Clock) -> ControlLoop:
         """Open a drive, and refuse it where it does not fit the configuration."""

@@ -1,6 +1,5 @@
 """Runs a protocol of experiments through the ordinary control loop, and keeps the trials in memory."""
 
-import threading
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from bench.experiments.registry import find_kind, parse_parameters
 from bench.limits import Guard
 from bench.loop import RECORDED, ControlLoop
 from bench.servo import current_servo
+from bench.stop_request import StopRequest
 from compensator.lab.recording import Event, FloatArray, Recording
 
 Protocol = list[tuple[str, dict[str, Any]]]
@@ -75,7 +75,7 @@ def _loop(configuration: BenchConfiguration, equipment: Equipment) -> ControlLoo
 def _run(plan: TrialPlan, kind: str, loop: ControlLoop, equipment: Equipment) -> Recording:
     equipment.technician.hang_load(plan.load_kg, plan.balanced)
     kept = _Memory()
-    outcome = loop.run(plan.procedure(), kept, threading.Event())
+    outcome = loop.run(plan.procedure(), kept, StopRequest())
     if outcome.outcome != "completed":
         raise ExperimentError(f"trial '{plan.name}': {outcome.outcome}: {outcome.reason}")
     return Recording(plan.name, kind, plan.conditions, kept.channels(), kept.events)

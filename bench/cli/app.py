@@ -23,6 +23,7 @@ from bench.cli import (
     study,
     trials,
 )
+from bench.cli import store as store_commands  # `store` is an option of every command
 from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import HELP, errors_as_messages
 from bench.cli.output import say
@@ -42,6 +43,7 @@ _ORDER = (
     "import",
     "calibrate",
     "study",
+    "store",
     "effects",
     "simulate-device",
     "challenge",
@@ -111,6 +113,7 @@ app.command("export")(recordings.export)
 app.command("import")(recordings.import_)
 app.add_typer(calibrate.app, name="calibrate")
 app.add_typer(study.app, name="study")
+app.add_typer(store_commands.app, name="store")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
 app.command("paper")(paper.paper)

@@ -1,5 +1,6 @@
 """What a kind of database has to offer: all that differs between SQLite and PostgreSQL stands behind this."""
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 from sqlalchemy import Connection, Engine
@@ -19,8 +20,11 @@ class Claim(Protocol):
     def holds(self) -> bool:
         """Whether others still see it."""
 
-    def release(self) -> None:
-        """Let go. Safe to call twice."""
+    def note(self, ends: Mapping[int, tuple[str, str]]) -> None:
+        """Keep outcome and reason of experiments outside the database, where that is possible."""
+
+    def release(self, keep_note: bool = False) -> None:
+        """Let go; what was noted goes too, unless it is to be kept. Safe to call twice."""
 
 
 class Backend(Protocol):
@@ -42,11 +46,29 @@ class Backend(Protocol):
     def explain(self, error: BaseException | None) -> StoreError | None:
         """The store's error for an error of the driver, with the next step; None where it is none of these."""
 
+    def size_bytes(self) -> int:
+        """Of the database, with its log."""
+
+    def free_bytes(self) -> int | None:
+        """On its disk; None where that is another machine's."""
+
+    def check(self) -> list[str]:
+        """What the database itself finds wrong with what it keeps."""
+
+    def vacuum(self) -> None:
+        """Give unused space back to the disk. Waits for nobody: nothing may be recorded meanwhile."""
+
     def claim(self) -> Claim:
         """Say that this process runs experiments. Called inside a transaction that writes."""
 
     def lives(self, token: str | None) -> bool:
         """Whether the process that made this claim still holds it."""
+
+    def last_words(self, token: str | None) -> dict[int, tuple[str, str]]:
+        """Outcome and reason of experiments, as a process noted them before it was gone."""
+
+    def forget(self, token: str | None) -> None:
+        """Remove what a dead process left outside the database."""
 
 
 def backend_of(url: str, busy_timeout_s: float) -> Backend:

@@ -37,7 +37,7 @@ class Database:
     @contextmanager
     def reading(self) -> Iterator[Connection]:
         """A transaction that sees one state of the database throughout."""
-        with self._explained(), self.backend.engine.connect() as connection, connection.begin():
+        with self.explained(), self.backend.engine.connect() as connection, connection.begin():
             yield connection
 
     @contextmanager
@@ -49,7 +49,7 @@ class Database:
                 "wait until the import has ended"
             )
         try:
-            with self._explained(), self.backend.engine.connect() as connection:
+            with self.explained(), self.backend.engine.connect() as connection:
                 connection = connection.execution_options(**self.backend.write_options)
                 with connection.begin():
                     self.backend.begin_write(connection)
@@ -59,7 +59,7 @@ class Database:
 
     def claim(self) -> Claim:
         """Say that this process runs experiments. Called inside a transaction that writes."""
-        with self._explained():
+        with self.explained():
             return self.backend.claim()
 
     def close(self) -> None:
@@ -67,7 +67,8 @@ class Database:
         self.backend.engine.dispose()
 
     @contextmanager
-    def _explained(self) -> Iterator[None]:
+    def explained(self) -> Iterator[None]:
+        """Turn the errors of the driver into the store's."""
         try:
             yield
         except (

@@ -7,6 +7,7 @@ when the process, or its network, is gone.
 """
 
 import secrets
+from collections.abc import Mapping
 from types import ModuleType
 from typing import Any
 
@@ -89,6 +90,23 @@ class Postgresql:
             )
         return None
 
+    def size_bytes(self) -> int:
+        """Of the database on the server."""
+        with self.engine.connect() as connection:
+            return int(connection.execute(text("SELECT pg_database_size(current_database())")).scalar_one())
+
+    def free_bytes(self) -> None:
+        """The server does not tell."""
+
+    def check(self) -> list[str]:
+        """Nothing: a server checks what it reads (initdb --data-checksums), and says so in its log."""
+        return []
+
+    def vacuum(self) -> None:
+        """As the server's own autovacuum does from time to time."""
+        with self.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+            connection.execute(text("VACUUM (ANALYZE)"))
+
     def claim(self) -> "SessionClaim":
         """A session that holds a lock of its own."""
         return SessionClaim(self.engine.connect())
@@ -100,6 +118,13 @@ class Postgresql:
         with self.engine.connect() as connection, connection.begin():
             query = text("SELECT pg_try_advisory_xact_lock(:key)")
             return not connection.execute(query, {"key": int(token.removeprefix(CLAIM_PREFIX), 16)}).scalar_one()
+
+    def last_words(self, token: str | None) -> dict[int, tuple[str, str]]:  # noqa: ARG002
+        """None are kept."""
+        return {}
+
+    def forget(self, token: str | None) -> None:
+        """Nothing is left."""
 
 
 class SessionClaim:
@@ -119,7 +144,10 @@ class SessionClaim:
             return False
         return True
 
-    def release(self) -> None:
+    def note(self, ends: Mapping[int, tuple[str, str]]) -> None:
+        """Nothing is kept beside a server: an end that it does not take is known to this process alone."""
+
+    def release(self, keep_note: bool = False) -> None:  # noqa: ARG002
         """End the session, and with it the lock."""
         self._connection.invalidate()  # not back to the pool: the session would live on
         self._connection.close()

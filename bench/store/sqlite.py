@@ -6,8 +6,10 @@ Transactions that write take the write lock when they begin, so that the busy ti
 SQLite does not wait when a reading transaction turns into a writing one.
 """
 
+import shutil
 import sqlite3
 import time
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ from sqlalchemy import Connection, Engine, Pool, create_engine, event
 from sqlalchemy.engine import URL
 from sqlalchemy.pool import ConnectionPoolEntry
 
+from bench.store import owner
 from bench.store.errors import (
     StoreError,
     StoreFileError,
@@ -23,7 +26,6 @@ from bench.store.errors import (
     StoreReadOnlyError,
 )
 from bench.store.json_text import to_json
-from bench.store.owner import Owner, lives
 
 WAL_LIMIT_BYTES = 64 * 2**20  # the log is cut back to this after a large import
 PAGE_BYTES = 16_384  # of a new file: blocks are read 1.6 times as fast as with SQLite's 4096, measured
@@ -67,13 +69,45 @@ class Sqlite:
         """By SQLite's name of the error."""
         return explain(error, self.path, self._busy_timeout_s)
 
-    def claim(self) -> Owner:
+    def size_bytes(self) -> int:
+        """Of the file and its log."""
+        files = (self.path, self.path.with_name(f"{self.path.name}-wal"))
+        return sum(file.stat().st_size for file in files if file.exists())
+
+    def free_bytes(self) -> int:
+        """On the disk of the file."""
+        return shutil.disk_usage(self.path.parent).free
+
+    def check(self) -> list[str]:
+        """By SQLite's own check of the whole file, and of what belongs to what."""
+        with closing(sqlite3.connect(self.path)) as connection:
+            found = [str(row[0]) for row in connection.execute("PRAGMA integrity_check") if row[0] != "ok"]
+            broken = connection.execute("PRAGMA foreign_key_check").fetchall()
+        return found + [f"{table}, row {row}: its {parent} is gone" for table, row, parent, _ in broken]
+
+    def vacuum(self) -> None:
+        """Rewrite the file."""
+        with self.engine.connect() as connection:
+            raw = connection.connection.driver_connection
+            if raw is not None:  # outside a transaction, which SQLAlchemy would begin
+                for statement in ("VACUUM", "ANALYZE", "PRAGMA wal_checkpoint(TRUNCATE)"):
+                    raw.execute(statement).fetchall()
+
+    def claim(self) -> owner.Owner:
         """A locked file beside the database."""
-        return Owner(self.path)
+        return owner.Owner(self.path)
 
     def lives(self, token: str | None) -> bool:
         """Whether the file of a claim is still locked."""
-        return lives(self.path, token)
+        return owner.lives(self.path, token)
+
+    def last_words(self, token: str | None) -> dict[int, tuple[str, str]]:
+        """From the file of a claim."""
+        return owner.last_words(self.path, token)
+
+    def forget(self, token: str | None) -> None:
+        """Remove the file of a claim."""
+        owner.forget(self.path, token)
 
 
 def file_of(url: URL) -> Path:

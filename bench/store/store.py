@@ -1,14 +1,14 @@
 """The store: everything that was measured, and every model made from it."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
 
 from bench.store import experiments, samples, trials
-from bench.store.backend import Claim
 from bench.store.calibrations import Calibrations
 from bench.store.conditions import Wanted
+from bench.store.custody import UNWRITTEN, Custody
 from bench.store.database import Database
 from bench.store.errors import StoreError, StoreValueError
 from bench.store.importing import Import
@@ -16,18 +16,19 @@ from bench.store.migration import migrate
 from bench.store.overview import GROUP_ROWS
 from bench.store.records import Condition, Event, Experiment, Trial
 from bench.store.reduction import MIN_POINTS, rows_to_keep
-from bench.store.removal import remove
+from bench.store.retention import Retention
+from bench.store.space import SpaceNeed
 from bench.store.study_store import StudyStore
 from bench.store.trial_writer import TrialWriter
+from bench.store.upkeep import Upkeep
 from compensator.lab.recording import FloatArray, Recording
 
 BUSY_TIMEOUT_S = 10.0
 GROUPS_PER_POINT = 1.5  # fewer, and a plot is made from all rows: MinMaxLTTB wants about two
-LEFT_RUNNING = "the process that ran it ended without closing it (killed, crashed, or the power went)"
 
 
 class Store(StudyStore):
-    """Experiments, trials, samples, events, studies and models. Every method may be called from any thread.
+    """Experiments, trials, samples, events, studies, models. Every method may be called from any thread.
 
     One writer at a time, in all processes together; readers never wait and see whole transactions.
     Use `open`, then `close`, or a `with` block.
@@ -36,7 +37,7 @@ class Store(StudyStore):
     def __init__(self, database: Database) -> None:
         self._database = database
         self.calibrations = Calibrations(database)
-        self._owner: Claim | None = None
+        self._custody = Custody(database)
 
     @classmethod
     def open(cls, url: str, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Self:
@@ -54,7 +55,7 @@ class Store(StudyStore):
         store = cls(Database(url, busy_timeout_s))
         try:
             migrate(store._database)
-            store._settle(LEFT_RUNNING, lambda token: not store._database.backend.lives(token))
+            store._custody.settle()
         except BaseException:
             store.close()
             raise
@@ -62,13 +63,26 @@ class Store(StudyStore):
 
     def close(self) -> None:
         """Close the database. What this store left running is marked interrupted. Safe to call twice."""
-        if self._owner is not None:
-            mine = self._owner.token
-            with suppress(StoreError):  # a full or locked database: the next to open it marks them
-                self._settle("the store was closed while it ran", lambda token: token == mine)
-            self._owner.release()
-            self._owner = None
+        self._custody.close()
         self._database.close()
+
+    def require_space(self, need: SpaceNeed, trials: int) -> None:
+        """Refuse to begin what the disk has no room for.
+
+        Raises:
+            StoreFullError: with how much is free, how much is needed, and what to do.
+        """
+        need.check(self._database.backend.free_bytes(), trials, self._database.where)
+
+    @property
+    def upkeep(self) -> Upkeep:
+        """Information, check, backup, vacuum."""
+        return Upkeep(self._database)
+
+    @property
+    def retention(self) -> Retention:
+        """Removing what nobody needs any more."""
+        return Retention(self._database)
 
     def __enter__(self) -> Self:
         return self
@@ -103,8 +117,10 @@ class Store(StudyStore):
             "operator": operator,
             "note": note,
         }
+        self._custody.write_noted()
+        self._custody.settle()
         with self._database.writing() as connection:
-            return experiments.add(connection, self._claim(), values)
+            return experiments.add(connection, self._custody.token(), values)
 
     def finish_experiment(
         self, experiment_id: int, outcome: str, reason: str = "", results: dict[str, Any] | None = None
@@ -115,13 +131,17 @@ class Store(StudyStore):
             NotFoundError: no such experiment.
             StoreStateError: it is finished already.
         """
-        with self._database.writing() as connection:
-            experiments.finish(connection, experiment_id, outcome, reason, results or {})
+        try:
+            with self._database.writing() as connection:
+                experiments.finish(connection, experiment_id, outcome, reason, results or {})
+        except UNWRITTEN:
+            self._custody.note(experiment_id, outcome, reason)
+            raise
 
     def experiment(self, experiment_id: int) -> Experiment:
         """One experiment, or `NotFoundError`."""
         with self._database.reading() as connection:
-            return experiments.get(connection, experiment_id)
+            return self._custody.as_ended(experiments.get(connection, experiment_id))
 
     def experiments(
         self,
@@ -133,7 +153,8 @@ class Store(StudyStore):
     ) -> list[Experiment]:
         """Experiments, newest first; all of them without a limit."""
         with self._database.reading() as connection:
-            return experiments.find(connection, kind, outcome, source, limit, offset)
+            found = experiments.find(connection, kind, outcome, source, limit, offset)
+        return list(map(self._custody.as_ended, found))
 
     def add_imported(
         self,
@@ -148,7 +169,9 @@ class Store(StudyStore):
         Each recording comes with its trial's outcome and reason.
         """
         values = {"kind": kind, "parameters": parameters, "provenance": provenance, "rig": rig}
-        found = Import(self._database, self._claimed(), values)
+        with self._database.writing():
+            token = self._custody.token()
+        found = Import(self._database, token, values)
         try:
             for recording, outcome, reason in recordings:
                 found.add(recording, outcome, reason)
@@ -189,7 +212,7 @@ class Store(StudyStore):
     def trial(self, trial_id: int) -> Trial:
         """One trial, or `NotFoundError`."""
         with self._database.reading() as connection:
-            return trials.get(connection, trial_id)
+            return self._custody.as_ended(trials.get(connection, trial_id))
 
     def trials(
         self,
@@ -206,7 +229,9 @@ class Store(StudyStore):
         `conditions` maps a condition to the wanted value, or to the (lowest, highest) wanted number.
         """
         with self._database.reading() as connection:
-            return trials.find(connection, experiment_id, kind, outcome, source, conditions or {}, limit, offset)
+            wanted = conditions or {}
+            found = trials.find(connection, experiment_id, kind, outcome, source, wanted, limit, offset)
+        return list(map(self._custody.as_ended, found))
 
     def events(self, trial_id: int) -> list[Event]:
         """The events of a trial, in order of time, or `NotFoundError`."""
@@ -270,30 +295,3 @@ class Store(StudyStore):
                 found, asked = samples.read_overview(connection, trial, names)
                 rows = rows_to_keep(found, points, asked)
         return {name: values[rows] for name, values in found.items()}
-
-    # who runs what
-
-    def _claim(self) -> str:
-        """The token under which this store runs experiments. Called inside a transaction that writes."""
-        if self._owner is None or not self._owner.holds():
-            self._owner = self._database.claim()
-        return self._owner.token
-
-    def _claimed(self) -> str:
-        with self._database.writing():
-            return self._claim()
-
-    def _settle(self, reason: str, chosen: Callable[[str | None], bool]) -> None:
-        """Close the experiments that are marked running, and remove imports, whose owner's token is chosen."""
-        with self._database.reading() as connection:
-            if not experiments.unfinished(connection):
-                return
-        hidden = []
-        with self._database.writing() as connection:
-            for experiment_id, token, outcome in experiments.unfinished(connection):
-                if outcome == "running" and chosen(token):
-                    experiments.finish(connection, experiment_id, "interrupted", reason, {})
-                elif outcome != "running" and chosen(token):
-                    hidden.append(experiment_id)
-        for experiment_id in hidden:
-            remove(self._database, experiment_id)

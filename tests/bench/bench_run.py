@@ -1,7 +1,5 @@
 """Runs an experiment through the ordinary loop, into memory."""
 
-import threading
-
 import numpy as np
 
 from bench.clock import VirtualClock
@@ -10,6 +8,7 @@ from bench.experiments.registry import FinishedTrial, find_kind, parse_parameter
 from bench.limits import Guard
 from bench.loop import RECORDED, ControlLoop
 from bench.servo import CurrentServo
+from bench.stop_request import StopRequest
 from tests.bench.fake_drive import ListSink
 
 
@@ -30,7 +29,7 @@ class Ran:
         for plan in self.plans:
             technician.hang_load(plan.load_kg, plan.balanced)
             sink = ListSink()
-            self.outcomes.append(loop.run(plan.procedure(), sink, threading.Event()))
+            self.outcomes.append(loop.run(plan.procedure(), sink, StopRequest()))
             self.rows.append(np.vstack(sink.blocks))
             self.events.append(sink.events)
         drive.close()

@@ -11,6 +11,7 @@ from bench.clock import VirtualClock
 from bench.limits import Guard, Limits
 from bench.loop import OFF, RECORDED, Action, ControlLoop, Outcome
 from bench.servo import CurrentServo
+from bench.stop_request import StopRequest
 from compensator.lab.channels import CHANNELS
 from drivers.contract import Ages, Command, Mode, Status
 from drivers.errors import DriveFault
@@ -32,7 +33,7 @@ def run(drive, procedure, stop=None, sink=None, limits=None, rig=RIG) -> tuple[O
     drive.open(PERIOD_S)
     servo = CurrentServo(rig) if rig is not None else None
     loop = ControlLoop(drive, VirtualClock(), Guard(limits or Limits()), PERIOD_S, servo)
-    outcome = loop.run(procedure, sink, stop or threading.Event())
+    outcome = loop.run(procedure, sink, stop or StopRequest())
     assert not drive.powered
     assert drive.calls[-1] == "disable"
     return outcome, sink
@@ -123,7 +124,7 @@ def test_quantities_that_are_not_measured_do_not_trip():
 
 
 def test_stop_is_honoured_within_one_cycle():
-    stop = threading.Event()
+    stop = StopRequest()
     drive = FakeDrive(before=lambda cycle: stop.set() if cycle == 7 else None)
     outcome, _ = run(drive, push(1000), stop)
     assert (outcome.outcome, outcome.reason) == ("stopped", "stop was asked for")
@@ -155,7 +156,7 @@ def test_a_drive_that_switches_itself_off_is_noticed():
 
 
 def test_an_interrupt_from_the_keyboard_ends_in_power_off_and_stops_what_follows():
-    stop = threading.Event()
+    stop = StopRequest()
     outcome, _ = run(FakeDrive(before=raise_at(5, KeyboardInterrupt())), push(1000), stop)
     assert (outcome.outcome, outcome.reason) == ("stopped", "interrupted from the keyboard")
     assert stop.is_set()

@@ -13,6 +13,8 @@ from bench.errors import BusyError, ConfigurationError, LimitError, ParameterErr
 from bench.loop import RECORDED
 from bench.runner import Runner
 from bench.store import Store
+from bench.store.errors import StoreFullError
+from bench.store.sqlite import Sqlite
 from bench.store.trial_writer import TrialWriter
 from drivers.errors import DriveConnectionError
 from tests.bench.fake_drive import FakeDrive
@@ -122,7 +124,17 @@ def test_stop_powers_off_and_says_why(runner, store):
     [trial] = store.trials(experiment_id)
     assert (trial.outcome, trial.reason) == ("stopped", "cable is caught")
     assert store.samples(trial.id, ["enabled"])["enabled"][-1] == 0.0
+    assert (store.events(trial.id)[-1].name, store.events(trial.id)[-1].detail) == ("end", "stopped; cable is caught")
     assert store.experiment(experiment_id).outcome == "stopped"
+
+
+def test_a_disk_without_room_refuses_before_anything_moves(runner, store, monkeypatch):
+    monkeypatch.setattr(Sqlite, "free_bytes", lambda _self: 150_000_000)
+    with pytest.raises(StoreFullError, match=r"150 MB are free on its disk; 3 trials .*reserve of 200 MB need"):
+        runner.start("steps", {"repeats": 3})
+    [experiment] = store.experiments()
+    assert experiment.outcome == "refused"
+    assert "150 MB are free" in experiment.reason
 
 
 def test_only_one_at_a_time(runner, store):

@@ -89,6 +89,15 @@ def test_the_store_is_chosen_by_option_and_by_environment(command, monkeypatch, 
     assert not (tmp_path / "friction-bench.sqlite").exists()
 
 
+def wait_for_rows(path, count):
+    """Until so many rows are committed: a loaded machine takes its time to start a loop."""
+    deadline_s = time.monotonic() + 60.0
+    with Store.open(f"sqlite:///{path}") as store:
+        while not any(trial.rows >= count for trial in store.trials()):
+            assert time.monotonic() < deadline_s
+            time.sleep(0.02)
+
+
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize(
     ("number", "times", "code"), [(signal.SIGINT, 2, 130), (signal.SIGTERM, 1, 143), (signal.SIGHUP, 1, 143)]
@@ -98,7 +107,7 @@ def test_a_signal_stops_the_joint_and_is_recorded(tmp_path, number, times, code)
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert "trial 1 of 25" in process.stdout.readline()
-        time.sleep(0.3)
+        wait_for_rows(tmp_path / "friction-bench.sqlite", 21)
         for _ in range(times):
             process.send_signal(number)
         assert process.wait(10.0) == code

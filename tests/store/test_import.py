@@ -19,7 +19,9 @@ def recording(name: str, count: int = 10) -> Recording:
 
 def begin_import(store: Store) -> Import:
     values = {"kind": "import", "parameters": {}, "provenance": {}, "rig": {}}
-    return Import(store._database, store._claimed(), values)
+    with store._database.writing():
+        token = store._custody.token()
+    return Import(store._database, token, values)
 
 
 def tables(store: Store) -> dict[str, int]:
@@ -77,8 +79,8 @@ def test_what_a_dead_import_left_is_removed_by_the_next_to_open(store_url: str, 
     found = begin_import(store)
     found.add(recording("a", 20_000), "completed", "")
     if dies == "was killed":  # nothing of the store's own end happens
-        assert store._owner is not None
-        store._owner.release()
+        assert store._custody._claim is not None
+        store._custody._claim.release()
         store._database.close()
     else:
         store.close()
