@@ -1,6 +1,7 @@
 """The drive that the configuration names, and who hangs its load. The only file that knows the simulation."""
 
 from collections.abc import Callable
+from math import nan
 from typing import Any, NamedTuple
 
 from bench.configuration import BenchConfiguration
@@ -67,6 +68,13 @@ def seed_of(configuration: BenchConfiguration) -> int | None:
             return seed
         case _:
             return None
+
+
+def wall_torque_n_m(drive: Drive) -> float:
+    """Torque [N m] with which a wall or an end stop pushes the arm: the truth of a simulated joint; NaN of a real one."""
+    from sim_backend.drive import SimulatedDrive
+
+    return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan
 
 
 # each imports what it needs by itself: a bench needs neither the libraries nor the compiler of another kind

@@ -16,6 +16,7 @@ from bench.cli import (
     experiments,
     paper,
     recordings,
+    rivals,
     run,
     serve,
     service,
@@ -31,6 +32,7 @@ from bench.cli.output import say
 _ORDER = (
     "demo",
     "paper",
+    "rivals",
     "serve",
     "doctor",
     "run",
@@ -117,6 +119,7 @@ app.add_typer(store_commands.app, name="store")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
 app.command("paper")(paper.paper)
+app.command("rivals")(rivals.rivals)
 app.add_typer(simulate_device.app, name="simulate-device")
 app.command("challenge")(challenge.challenge)
 app.command("reveal")(challenge.reveal)

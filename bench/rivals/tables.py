@@ -1,0 +1,78 @@
+"""The comparison as tables, and as numbers."""
+
+from collections.abc import Sequence
+from math import degrees
+from typing import Any
+
+from bench.report import Section, Table
+from bench.rivals.comparison import LOAD_KG, Comparison
+from bench.rivals.scoring import REGIMES, Score
+from compensator.rivals import RIVALS
+
+_MEANS = ("seconds", "travel_rad", "energy_j")
+
+
+def section_of(comparisons: Sequence[Comparison], seeds: int) -> Section:
+    """One table for each rig."""
+    return Section(
+        title="Rivals on the same samples",
+        sentences=[
+            f"{1e3 * LOAD_KG:g} g, {seeds} seed{'s' if seeds > 1 else ''}. At rest after steps to 90 degrees, at steady speeds, in a sinusoid of "
+            "0.5 Hz and 45 degrees, within 0.15 s after its reversals, and pressed against a wall. All know the same "
+            "calibration. Those who know of no load have the curve of 50 g, which is the load that hangs there; breakaway "
+            "takes them as many encoder counts as the search takes for a departure. The errors are grams at 90 degrees: "
+            "mean absolute, and largest.",
+            "Those who need no search give something at once; at rest it is before the search. The two that search are "
+            "given the result of one at angle 0 before each motion.",
+        ],
+        tables=[_table(one) for one in comparisons],
+    )
+
+
+def numbers_of(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
+    """Rig, rival, and for each regime mean and largest error [g] and rows without an estimate; what a search took."""
+    return [
+        {
+            "rig": one.rig,
+            "rival": rival.name,
+            "title": rival.title,
+            "source": rival.source,
+            **{
+                regime.replace(" ", "_"): {
+                    "mean_absolute_error_g": score.mean_g(regime),
+                    "max_error_g": score.max_g(regime),
+                    "without_estimate": score.missing[regime],
+                }
+                for regime in REGIMES
+            },
+            **{f"search_{name}": _mean(getattr(score, name)) for name in _MEANS},
+        }
+        for one in comparisons
+        for rival in RIVALS
+        for score in [one.scores[rival.name]]
+    ]
+
+
+def _table(one: Comparison) -> Table:
+    columns = ["", *(f"{regime} [g]#" for regime in REGIMES), "search [s]#", "its way [deg]#", "its energy [J]#"]
+    rows = [(rival.title, *_cells(one.scores[rival.name])) for rival in RIVALS]
+    return Table(f"Error {one.rig}: mean / largest", columns, rows)
+
+
+def _cells(score: Score) -> list[str]:
+    errors = [_pair(score.mean_g(regime), score.max_g(regime)) for regime in REGIMES]
+    seconds, travel_rad, energy_j = (_mean(getattr(score, name)) for name in _MEANS)
+    way = None if travel_rad is None else degrees(travel_rad)
+    return [*errors, *(_short(value) for value in (seconds, way, energy_j))]
+
+
+def _pair(mean: float | None, largest: float | None) -> str:
+    return "-" if mean is None or largest is None else f"{mean:.2g} / {largest:.2g}"
+
+
+def _short(value: float | None) -> str:
+    return "none" if value is None else f"{value:.2g}"
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return sum(values) / len(values) if values else None
