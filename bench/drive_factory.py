@@ -71,7 +71,7 @@ def seed_of(configuration: BenchConfiguration) -> int | None:
 
 
 def wall_torque_n_m(drive: Drive) -> float:
-    """Torque [N m] with which a wall or an end stop pushes the arm: the truth of a simulated joint; NaN of a real one."""
+    """Torque [N m] with which a wall or an end stop pushes the arm of a simulated joint; NaN of a real one."""
     from sim_backend.drive import SimulatedDrive
 
     return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan

@@ -52,10 +52,13 @@ def with_friction(store: Store, configuration: BenchConfiguration) -> BenchConfi
     if configuration.friction is not None:
         return configuration
     found = in_use(store, configuration)
-    if found is None:
-        return configuration
-    rest = configuration.rest or rest_settings_of(found)
-    return configuration.model_copy(update={"friction": friction_of(found), "rest": rest})
+    return configuration if found is None else with_calibration(configuration, found)
+
+
+def with_calibration(configuration: BenchConfiguration, row: CalibrationRow) -> BenchConfiguration:
+    """The configuration with the curves of a calibration, and its corrections at rest where it names none itself."""
+    rest = configuration.rest or rest_settings_of(row)
+    return configuration.model_copy(update={"friction": friction_of(row), "rest": rest})
 
 
 def rest_settings_of(row: CalibrationRow) -> RestSettings | None:

@@ -10,6 +10,7 @@ from bench.configuration import BenchConfiguration
 from bench.drive_factory import is_simulated
 from bench.errors import ExperimentError
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.experiments.steady_speeds import PAPER_SPEEDS_RAD_S
 from bench.runner import Runner
 from bench.store import CalibrationRow, Experiment, Store
 from bench.store.errors import NotFoundError
@@ -48,12 +49,16 @@ class Plan:
         loads_kg: of the sweeps, from nothing to the heaviest.
         steps: repeated steps under the heaviest load (Fig. 4).
         trials: repeated steps under one load in the middle (Fig. 10).
+        speeds_rad_s: of the joint (Fig. 11).
+        periods: of the sinusoid.
         speed_sweep: further parameters of the speed sweep.
     """
 
     loads_kg: tuple[float, ...] = tuple(round(0.01 * step, 2) for step in range(11))
     steps: int = 25
     trials: int = 11
+    speeds_rad_s: tuple[float, ...] = PAPER_SPEEDS_RAD_S
+    periods: int = 4
     # what has not saturated after four strokes still counts: its inertia is taken off
     speed_sweep: tuple[tuple[str, Any], ...] = (("duties", (0.1, 0.2, 0.3)), ("strokes", 4))
 
@@ -63,13 +68,22 @@ class Plan:
         return self.loads_kg[len(self.loads_kg) // 2]
 
     def measurements(self) -> dict[str, Measurement]:
-        """By the name under which the page asks for them, in the order in which they are run."""
+        """By the name under which the page asks for them, in the order in which they are run.
+
+        The loads of the calibration are known to it; those of the load sweep after it are not: they are hung anew.
+        """
         sweep = {"loads_kg": self.loads_kg, **dict(self.speed_sweep)}
+        loads: dict[str, Any] = {"loads_kg": self.loads_kg, "angles_rad": (0.0, pi / 2)}
         return {
             "speed-sweep": Measurement("speed-sweep", sweep),
-            "load-sweep": Measurement("load-sweep", {"loads_kg": self.loads_kg, "angles_rad": (0.0, pi / 2)}),
+            "known-loads": Measurement("load-sweep", {**loads, "searches": 1}),
+            "load-sweep": Measurement("load-sweep", {**loads, "searches": 2}),
             "steps": Measurement("steps", {"load_kg": self.loads_kg[-1], "repeats": self.steps}),
             "trials": Measurement("steps", {"load_kg": self.middle_kg, "repeats": self.trials}),
+            "steady-speeds": Measurement(
+                "steady-speeds", {"load_kg": self.middle_kg, "speeds_rad_s": self.speeds_rad_s}
+            ),
+            "sinusoid": Measurement("sinusoid", {"load_kg": self.middle_kg, "periods": self.periods}),
         }
 
 

@@ -2,12 +2,15 @@
 
 from collections.abc import Callable, Sequence
 
+from bench.calibration import with_calibration
 from bench.configuration import BenchConfiguration
 from bench.paper import load_sweep, repeated_steps
+from bench.paper.accelerated import accelerated
 from bench.paper.friction_curves import friction_curves
 from bench.paper.measurements import Conduct, Plan, calibration_of, measure, quietly, recorded
 from bench.paper.reflection import grams_per_ma
 from bench.paper.row import Row
+from bench.paper.steady_speeds import fig_11
 from bench.report import Section, Table
 from bench.store import Experiment, Store
 
@@ -68,12 +71,15 @@ def reproduce(
             return recorded(store, wanted[name])
         return measure(configuration, store, wanted[name], conduct)
 
-    swept, loads = experiment("speed-sweep"), experiment("load-sweep")
-    add(friction_curves(calibration_of(store, [swept, loads])))
+    found = calibration_of(store, [experiment("speed-sweep"), experiment("known-loads")])
+    configuration = with_calibration(configuration, found)
+    add(friction_curves(found))
     steps = experiment("steps")
     add([repeated_steps.fig_4(steps, store.trials(steps.id))])
+    loads = experiment("load-sweep")
     trials = store.trials(loads.id)
     add([load_sweep.fig_7(loads, trials, per_ma_g), load_sweep.table_1(loads, trials), load_sweep.fig_9(loads, trials)])
     again = experiment("trials")
     add([repeated_steps.fig_10(again, store.trials(again.id), per_ma_g)])
+    add([fig_11(store, experiment("steady-speeds")), accelerated(store, experiment("sinusoid"))])
     return rows

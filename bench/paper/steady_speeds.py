@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.experiments.reflected_load import load_current_a
 from bench.paper.row import Row
+from bench.reflected_load import load_current_a
 from bench.report import Figure, Line, Points, Section, Table
 from bench.rig import Rig
 from bench.store import Experiment, Store, Trial
@@ -47,9 +47,9 @@ def fig_11(store: Store, experiment: Experiment) -> Row:
     section = Section(
         title="Fig. 11: one load at steady speeds",
         sentences=[
-            f"{actual_g:g} g carried through the travel, forwards and backwards. The mean absolute error of the compensated "
-            f"load is {ours['compensated_mean_absolute_error_g']:.2f} g over all cycles; the mean of a stroke is off by up "
-            f"to {ours['compensated_max_mean_error_g']:.2f} g, uncompensated by up to "
+            f"{actual_g:g} g carried through the travel, forwards and backwards. The mean absolute error of the "
+            f"compensated load is {ours['compensated_mean_absolute_error_g']:.2f} g over all cycles; the mean of a "
+            f"stroke is off by up to {ours['compensated_max_mean_error_g']:.2f} g, uncompensated by up to "
             f"{ours['uncompensated_max_mean_error_g']:.0f} g. The paper shows the same as a figure, without numbers."
         ],
         tables=[_table(strokes)],

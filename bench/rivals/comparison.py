@@ -9,7 +9,7 @@ import numpy as np
 from bench.configuration import BenchConfiguration
 from bench.drive_factory import seed_of
 from bench.errors import ConfigurationError
-from bench.experiments.reflected_load import load_current_a
+from bench.reflected_load import load_current_a
 from bench.rivals import scoring
 from bench.rivals.knowledge import calibrated, knowledge_of
 from bench.rivals.record import Recorded, record

@@ -5,7 +5,7 @@ from math import nan
 
 import numpy as np
 
-from bench.experiments.reflected_load import load_current_a
+from bench.reflected_load import load_current_a
 from bench.rig import Rig
 from bench.rivals.record import Recorded
 from compensator.kinetic_friction import FloatArray

@@ -112,7 +112,7 @@ def sinusoid_rows(trial: Recorded) -> Mask:
     moving = _moving(trial)
     started = motion_of(trial).first
     late = trial.channels["time_s"] > trial.channels["time_s"][started] + FADE_S
-    return moving & late
+    return np.asarray(moving & late)
 
 
 def reversal_rows(trial: Recorded) -> Mask:

@@ -17,11 +17,12 @@ def section_of(comparisons: Sequence[Comparison], seeds: int) -> Section:
     return Section(
         title="Rivals on the same samples",
         sentences=[
-            f"{1e3 * LOAD_KG:g} g, {seeds} seed{'s' if seeds > 1 else ''}. At rest after steps to 90 degrees, at steady speeds, in a sinusoid of "
-            "0.5 Hz and 45 degrees, within 0.15 s after its reversals, and pressed against a wall. All know the same "
-            "calibration. Those who know of no load have the curve of 50 g, which is the load that hangs there; breakaway "
-            "takes them as many encoder counts as the search takes for a departure. The errors are grams at 90 degrees: "
-            "mean absolute, and largest.",
+            f"{1e3 * LOAD_KG:g} g, {seeds} seeds: at rest after steps to 90 degrees, at steady speeds, in a sinusoid "
+            "of 0.5 Hz and 45 degrees, within 0.15 s of its reversals, and pressed against a wall. All know the same "
+            "calibration. Those who know of no load have the curve of 50 g, which is the load that hangs there; "
+            "breakaway takes them as many encoder counts as the search takes for a departure. What does not filter by "
+            "itself is smoothed as the observers are, at 5 Hz. The errors are grams at 90 degrees: mean absolute, and "
+            "largest.",
             "Those who need no search give something at once; at rest it is before the search. The two that search are "
             "given the result of one at angle 0 before each motion.",
         ],

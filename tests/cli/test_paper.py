@@ -8,7 +8,7 @@ from bench.paper import reproduction
 from bench.paper.measurements import Plan
 from tests.paper.test_reproduction import SWEEP
 
-TINY = Plan(loads_kg=(0.0, 0.1), steps=2, trials=1, speed_sweep=tuple(SWEEP.items()))
+TINY = Plan((0.0, 0.1), steps=2, trials=1, speeds_rad_s=(3.0,), periods=1, speed_sweep=tuple(SWEEP.items()))
 
 
 @pytest.fixture(autouse=True)
