@@ -15,7 +15,7 @@ SMALL = {
     "STEPS": {"load_kg": 0.05, "repeats": 1},
     "SPEEDS": {"load_kg": 0.05, "speeds_rad_s": (2.0,)},
     "SINUSOID": {"load_kg": 0.05, "frequency_hz": 0.5, "periods": 1},
-    "WALL_SINUSOID": {"load_kg": 0.05, "frequency_hz": 0.1, "amplitude_rad": 0.5, "periods": 1},
+    "WALL_SINUSOID": {"load_kg": 0.05, "frequency_hz": 0.2, "amplitude_rad": 0.5, "periods": 1},
     "RIGS": {"with free play": None},
 }
 
