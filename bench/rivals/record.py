@@ -1,6 +1,5 @@
 """One experiment through the ordinary loop, into memory, with what the arm truly leans on beside each row."""
 
-import threading
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +13,7 @@ from bench.experiments.registry import find_kind, parse_parameters
 from bench.limits import Guard
 from bench.loop import RECORDED, ControlLoop, Procedure
 from bench.servo import current_servo
+from bench.stop_request import StopRequest
 from compensator.kinetic_friction import FloatArray
 from compensator.lab.recording import Condition, Event
 from drivers.contract import Drive
@@ -79,7 +79,7 @@ def _run(
 ) -> Recorded:
     memory = _Memory()
     leant: list[float] = []
-    outcome = loop.run(_witnessed(procedure, drive, leant), memory, threading.Event())
+    outcome = loop.run(_witnessed(procedure, drive, leant), memory, StopRequest())
     if outcome.outcome != "completed":
         raise ExperimentError(f"trial '{name}': {outcome.outcome}: {outcome.reason}")
     rows = np.vstack(memory.blocks)
