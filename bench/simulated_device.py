@@ -85,6 +85,13 @@ def start_canopen(joint: Joint, **settings: Any) -> SimulatedDevice:
     return _made(lambda: serve_canopen(CanOpenSettings(**joint.values(), **settings)))
 
 
+def start_modbus(joint: Joint, **settings: Any) -> SimulatedDevice:
+    """Start a drive on Modbus; the settings are those of `ModbusSettings`."""
+    from sim_backend.devices.modbus.serve import ModbusSettings, serve_modbus
+
+    return _made(lambda: serve_modbus(ModbusSettings(**joint.values(), **settings)))
+
+
 def electronic_data_sheet(family: str) -> str:
     """The EDS of a simulated CiA 402 drive of a family, on the joint of the paper."""
     from sim_backend.devices.canopen.serve import data_sheet

@@ -11,7 +11,7 @@ from bench.cli.output import say
 if TYPE_CHECKING:
     from bench.simulated_device import SimulatedDevice
 
-Section = dict[str, str | int]
+Section = dict[str, str | int | float]
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -87,6 +87,42 @@ def canopen(
 
 
 @app.command()
+def modbus(
+    map_: Annotated[str, typer.Option("--map", help="Register map: friction-bench or roboteq.")] = "friction-bench",
+    transport: Annotated[str, typer.Option(help="rtu (a pseudo-terminal) or tcp.")] = "rtu",
+    unit: Annotated[int, typer.Option(min=1, max=247, help="Unit number.")] = 1,
+    low_word_first: Annotated[
+        bool, typer.Option("--low-word-first", help="32-bit values: low word first (friction-bench only).")
+    ] = False,
+    baud: Baud = 115200,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="TCP port; 0 is any free one.")] = 0,
+    link: Link = None,
+    preset: Preset = "paper",
+    plant: Plant = None,
+    seed: Seed = 1,
+    side_port: SidePort = 0,
+    json: Json = False,
+) -> None:
+    """A drive on Modbus RTU or TCP; docs/modbus-map.md is its manual."""
+    from bench.simulated_device import Joint, start_modbus
+
+    device = start_modbus(
+        Joint(preset, plant, seed),
+        map=map_, transport=transport, unit=unit, low_word_first=low_word_first, baud=baud or None, port=port,
+        link=link, side_port=side_port,
+    )  # fmt: skip
+    section: Section = {"kind": "modbus", "map": map_, "transport": transport, "unit": unit}
+    if transport == "tcp":
+        host, number = device.path.split(":")
+        section |= {"host": host, "port": number}
+    else:
+        section |= {"port": device.path, "baud_rate": baud or 115200}
+    if map_ == "roboteq":  # its watchdog has no register
+        section |= {"watchdog_s": 1.0, "watchdog_is_set_in_drive": True}
+    _serve(device, f"Modbus drive ({map_})", section, json)
+
+
+@app.command()
 def eds(family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic") -> None:
     """Print the electronic data sheet of the simulated CiA 402 drive, for masters that want a file."""
     from bench.simulated_device import electronic_data_sheet
@@ -105,6 +141,6 @@ def _serve(device: "SimulatedDevice", name: str, section: Section, json: bool) -
             say(f"{name}, simulated, on {device.path}; side channel on {device.side_channel}. For bench.toml:\n")
             say("[drive]")
             for key, value in section.items():
-                say(f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value}")
+                say(f"{key} = {json_text.dumps(value)}")  # a TOML value, too, where it is flat
             say("\nCtrl-C ends it.")
         device.wait(stop)

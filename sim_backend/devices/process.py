@@ -13,15 +13,15 @@ from sim_backend.devices.wall_time import Ticker, WallTime
 
 
 class Port(Protocol):
-    """A thread that carries the protocol.
+    """What carries the protocol, in threads of its own."""
 
-    Attributes:
-        path: what a host opens.
-        error: what ended the thread before its time.
-    """
+    @property
+    def path(self) -> str:
+        """What a host opens."""
 
-    path: str
-    error: BaseException | None
+    @property
+    def error(self) -> BaseException | None:
+        """What ended a thread before its time."""
 
     def start(self) -> None:
         """Begin."""

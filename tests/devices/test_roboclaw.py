@@ -157,6 +157,15 @@ def test_duty_turns_the_motor_and_is_read_back() -> None:
     assert host.read(18, "iB")[0] == pytest.approx(speed, rel=0.02)
 
 
+def test_mean_speed_is_that_of_the_last_second() -> None:
+    host = Host()
+    host.write(32, pack(">h", 6553))
+    host.wait(1.0)
+    before = host.read(78, "II")[0]
+    host.wait(1.0)
+    assert host.read(108, "ii")[0] == pytest.approx(host.read(78, "II")[0] - before, rel=0.01)
+
+
 def test_current_is_in_steps_of_ten_milliamperes() -> None:
     host = Host()
     host.write(32, pack(">h", 6553))

@@ -1,5 +1,6 @@
 """The RoboClaw: answers packets, drives motor 1. Nothing is wired to motor 2."""
 
+from collections import deque
 from math import exp, isnan
 from struct import pack
 from threading import RLock
@@ -44,6 +45,7 @@ class RoboClaw:
         self._channels = (Channel(), Channel())
         self._counters = (Counter(), Counter())
         self._speed = 0.0  # filtered [pulses/s]
+        self._past_counts = deque([0], maxlen=round(1.0 / TICK_S))
         self._heard_s = 0.0
         self._timeouts = 0
         self._silent = False
@@ -80,6 +82,7 @@ class RoboClaw:
     def demand(self, seen: Sample) -> Demand:
         """Return the duty of motor 1 for the coming tick."""
         self._counters[0].follow(self.axis.counts())
+        self._past_counts.append(self.axis.counts())
         raw = self.axis.counts_per_s()
         self._speed += (raw - self._speed) * (1.0 - exp(-TICK_S / _SPEED_LAG_S))
         self._watch()
@@ -129,8 +132,12 @@ class RoboClaw:
         return ()
 
     def read_speeds(self, raw: bool) -> Values:
-        """Commands 79, 108 [pulses/s]."""
+        """Command 79, and what 18, 19 tell [pulses/s]."""
         return round(self.axis.counts_per_s() if raw else self._speed), 0
+
+    def read_mean_speeds(self) -> Values:
+        """Command 108: pulses of the last second."""
+        return self.axis.counts() - self._past_counts[0], 0
 
     def read_speed(self, motor: int, raw: bool) -> Values:
         """Commands 18, 19, 30, 31: speed [pulses/s] and 1 for backward."""

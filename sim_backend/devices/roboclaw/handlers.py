@@ -66,7 +66,7 @@ def _encoders(device: "RoboClaw") -> dict[int, Handler]:
         91: lambda: tuple(device.settings.encoder_modes),
         92: lambda mode: _put(device.settings.encoder_modes, 0, mode),
         93: lambda mode: _put(device.settings.encoder_modes, 1, mode),
-        108: partial(device.read_speeds, raw=False),
+        108: device.read_mean_speeds,
     }
 
 

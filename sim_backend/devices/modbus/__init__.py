@@ -1,0 +1,1 @@
+"""Drives on Modbus RTU and TCP; the map of ours is docs/modbus-map.md."""

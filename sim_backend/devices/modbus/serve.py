@@ -1,0 +1,102 @@
+"""Starts a drive on Modbus RTU or TCP."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sim_backend.devices.link.line import Line
+from sim_backend.devices.link.relay import SerialRelay, TcpRelay
+from sim_backend.devices.modbus.own_drive import OwnDrive
+from sim_backend.devices.modbus.register_device import RegisterDevice
+from sim_backend.devices.modbus.roboteq import Roboteq
+from sim_backend.devices.modbus.server import ModbusServer
+from sim_backend.devices.plant_tables import behind_a_drive
+from sim_backend.devices.process import RunningDevice, Workplace
+from sim_backend.errors import ParameterError
+
+MAPS = ("friction-bench", "roboteq")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModbusSettings:
+    """A drive, its joint and its line.
+
+    Attributes:
+        map: one of `MAPS`.
+        transport: "rtu" (a pseudo-terminal) or "tcp" (a port of the loopback interface).
+        unit: number of the device.
+        low_word_first: word order of our own map at the start.
+        baud: pace of a serial line; None is as fast as the machine.
+        link: symbolic link to put on the pseudo-terminal; None: none.
+        port: TCP port; 0 is any free one.
+        preset, plant, seed: the joint.
+        side_port: TCP port of the side channel; 0 is any free one.
+    """
+
+    map: str = "friction-bench"
+    transport: str = "rtu"
+    unit: int = 1
+    low_word_first: bool = False
+    baud: int | None = None
+    link: Path | None = None
+    port: int = 0
+    preset: str = "paper"
+    plant: Mapping[str, Any] | None = None
+    seed: int = 1
+    side_port: int = 0
+
+
+def serve_modbus(settings: ModbusSettings) -> RunningDevice:
+    """Start one.
+
+    Raises:
+        ParameterError: the joint cannot be, or map or transport is not known.
+        OSError: a port is taken.
+    """
+    if settings.map not in MAPS:
+        raise ParameterError(f"register map '{settings.map}' is unknown; known are {', '.join(MAPS)}")
+    if settings.transport not in ("rtu", "tcp"):
+        raise ParameterError(f"transport '{settings.transport}' is unknown; known are rtu, tcp")
+    parameters = behind_a_drive(settings.preset, None, settings.plant)
+    device: OwnDrive | Roboteq
+    if settings.map == "roboteq":
+        device = Roboteq(parameters, seed=settings.seed)
+    else:
+        device = OwnDrive(parameters, settings.low_word_first, settings.seed)
+    return RunningDevice(device, lambda place: _ServedPort(device, settings, place), settings.side_port)
+
+
+class _ServedPort:
+    """A line to hosts, and the server behind it."""
+
+    def __init__(self, device: RegisterDevice, settings: ModbusSettings, place: Workplace) -> None:
+        line = Line(settings.baud if settings.transport == "rtu" else None, place.faults, settings.seed)
+        self._relay: SerialRelay | TcpRelay
+        if settings.transport == "rtu":
+            self._relay = SerialRelay(line, place.clock, settings.link)
+            self._server = ModbusServer(device, place.clock, settings.unit, self._relay.inner)
+            self._server.begin()
+        else:
+            self._server = ModbusServer(device, place.clock, settings.unit)
+            self._server.begin()
+            self._relay = TcpRelay(line, place.clock, self._server.address, settings.port)
+
+    @property
+    def path(self) -> str:
+        """What a host opens."""
+        return self._relay.path
+
+    @property
+    def error(self) -> BaseException | None:
+        """What ended the line or the server before its time."""
+        return self._relay.error or self._server.error
+
+    def start(self) -> None:
+        """Begin."""
+        self._relay.start()
+
+    def close(self) -> None:
+        """End."""
+        self._relay.close()
+        self._server.close()
