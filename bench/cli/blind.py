@@ -45,6 +45,7 @@ def _progress(done: int, whole: int) -> None:
 def _as_json(results: "list[Result]", seed: int, plants: int) -> dict[str, object]:
     from dataclasses import asdict
 
+    from bench.blind.calibration import names_by_detectability, p_values
     from bench.blind.confusion import confusions, rival_figures
     from bench.blind.figures import figures
 
@@ -53,6 +54,7 @@ def _as_json(results: "list[Result]", seed: int, plants: int) -> dict[str, objec
         "plants": plants,
         "figures": [asdict(one) for one in figures(results)],
         "confusion": [asdict(one) for one in confusions(results)],
+        "calibration": [asdict(one) for one in (*p_values(results), *names_by_detectability(results))],
         "rivals": [asdict(one) for one in rival_figures(results)],
         "items": [one.to_json() for one in results],
     }
@@ -86,12 +88,22 @@ def _print(results: "list[Result]") -> None:
         ["method", "false alarms#", "named first where d' >= 6#"],
         [(one.name, _percent(one.false_alarm), _percent(one.named_first)) for one in rival_figures(results)],
     )
+    _print_calibration(results)
     seconds = sorted(one.seconds for one in results if one.answer is not None)
     if seconds:
         say(f"a diagnosis took {seconds[len(seconds) // 2]:.2g} s of one core, half of them less")
     for one in results:
         if one.refusal:
             complain(f"item {one.key}: {one.refusal}")
+
+
+def _print_calibration(results: "list[Result]") -> None:
+    from bench.blind.calibration import names_by_detectability, p_values
+
+    rows = [(one.what, one.items, _percent(one.observed)) for one in p_values(results)]
+    table("p of complete models: stated and observed", ["stated", "items#", "observed#"], rows)
+    rows = [(one.what, one.items, _percent(one.observed)) for one in names_by_detectability(results)]
+    table("One effect hidden: named first, by d'", ["d'", "items#", "named first#"], rows)
 
 
 def _measured(one: "Figure") -> str:

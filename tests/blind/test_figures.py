@@ -2,6 +2,7 @@ from math import isnan
 
 import pytest
 
+from bench.blind.calibration import names_by_detectability, p_values
 from bench.blind.confusion import confusions, rival_figures
 from bench.blind.figures import Figure, figures
 from bench.blind.judge import Result
@@ -91,3 +92,17 @@ def test_confusion_by_effect_and_rivals_on_the_same_items() -> None:
     assert (ours.false_alarm, ours.named_first) == (0.0, 0.5)
     stepwise = next(one for one in theirs if one.name == "stepwise BIC")
     assert (stepwise.false_alarm, stepwise.named_first) == (1.0, 0.0)
+
+
+def test_calibration_counts_what_was_stated() -> None:
+    results = [
+        _result("complete", "", (), 0.0, 0.0),  # its p is 0.001
+        _result("single", "spring", ("spring",), 1.0, 4.5),
+        _result("single", "spring", ("gravity",), 1.0, 4.0),
+        _result("single", "spring", ("spring",), 1.0, 70.0),
+    ]
+    assert all((one.items, one.observed) == (1, 1.0) for one in p_values(results))
+    by_d = {one.what: (one.items, one.observed) for one in names_by_detectability(results)}
+    assert by_d["d' 4 .. 5"] == (2, 0.5)
+    assert by_d["d' >= 7"] == (1, 1.0)
+    assert by_d["d' 0 .. 2"][0] == 0
