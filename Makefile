@@ -29,10 +29,11 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 test: $(STAMP)   ## the tests
 	$(BIN)/pytest
 
-benchmark: $(STAMP) ## how fast plant and drive are beside MuJoCo, store and export beside pandas
+benchmark: $(STAMP) ## how fast plant and drive are beside MuJoCo, store and export beside pandas, drivers beside their libraries
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m tests.sim_backend.rates
 	$(BIN)/python -m tests.store.rates
+	$(BIN)/python -m tests.drivers.rates
 
 check: $(STAMP)  ## style, types and walls
 	$(BIN)/ruff check .

@@ -184,12 +184,13 @@ class CanopenDrive:
         """One cycle, with all that has to be looked after in it."""
         session.keep_alive()
         answered = session.cycle.run(cob_id, payload)
-        session.ask_slow()
+        now_s, monitor = perf_counter(), session.monitor
+        session.ask_slow(now_s)
         if not answered:
             self._check_silence(session)
-        silence_s = session.monitor.silence_s(perf_counter())
-        if session.monitor.restarted or silence_s > session.monitor.timeout_s:
-            what = "has restarted" if session.monitor.restarted else f"has sent no heartbeat for {silence_s:.3g} s"
+        silence_s = monitor.silence_s(now_s)
+        if monitor.restarted or silence_s > monitor.timeout_s:
+            what = "has restarted" if monitor.restarted else f"has sent no heartbeat for {silence_s:.3g} s"
             raise DriveConnectionError(self._device, f"{what}; check supply and cable, then open it again")
         return answered
 

@@ -113,7 +113,8 @@ class CanLink(canopen.Network):
 
     def _hand_out(self, message: can.Message) -> None:
         try:
-            self.notify(message.arbitration_id, message.data, message.timestamp)
+            for handler in self.subscribers.get(message.arbitration_id, ()):
+                handler(message.arbitration_id, message.data, message.timestamp)
         except (ValueError, struct.error):
             self.garbled += 1
 

@@ -1,15 +1,12 @@
 """From what the TPDOs and the slow poll tell to a sample, in SI, at the joint. Pure."""
 
 from math import copysign, isnan, nan
-from typing import Final
 
 from drivers.canopen.capabilities import Capabilities
 from drivers.canopen.objects import VELOCITY, DriveObject
 from drivers.canopen.pdo import PdoLayout
 from drivers.canopen.slow_poll import Reading
 from drivers.contract import Ages, Sample, Status
-
-_NEVER: Final = Reading(0, nan)
 
 
 class Measurement:
@@ -80,8 +77,8 @@ class Measurement:
         current_a = state[self._current_place] * self._current_a if self._current_place else nan
         # the magnitude is all that the drive tells
         duty = copysign(state[self._duty_place] * self._duty_scale, current_a) if self._duty_place else nan
-        supply = slow.get(self._supply, _NEVER) if self._supply else _NEVER
-        temperature = slow.get(self._temperature, _NEVER) if self._temperature else _NEVER
+        supply_v, supply_age_s = _slow(slow, self._supply, now_s)
+        temperature_c, temperature_age_s = _slow(slow, self._temperature, now_s)
         age_s = now_s - sync_s
         return Sample(
             sync_s,
@@ -90,12 +87,20 @@ class Measurement:
             motion[1] * self._velocity_rad_s if len(motion) > 1 else nan,
             duty,
             current_a,
-            _value(supply, self._supply),
-            _value(temperature, self._temperature),
+            supply_v,
+            temperature_c,
             status,
-            Ages(age_s, age_s, age_s, age_s, _age_s(supply, now_s), _age_s(temperature, now_s), age_s),
+            Ages(age_s, age_s, age_s, age_s, supply_age_s, temperature_age_s, age_s),
             number,
         )
+
+
+def _slow(readings: dict[DriveObject, Reading], item: DriveObject | None, now_s: float) -> tuple[float, float]:
+    """Value and age of what is polled; NaN and 0 where it is not measured."""
+    if item is None:
+        return nan, 0.0
+    value, time_s = readings[item]  # each was read when the drive was opened
+    return value * item.scale, now_s - time_s
 
 
 def _place(layout: PdoLayout, item: DriveObject | None) -> int:
@@ -105,11 +110,3 @@ def _place(layout: PdoLayout, item: DriveObject | None) -> int:
 
 def _polled(item: DriveObject | None, found: Capabilities) -> DriveObject | None:
     return item if item in found.present else None
-
-
-def _value(reading: Reading, item: DriveObject | None) -> float:
-    return nan if item is None or isnan(reading.time_s) else reading.value * item.scale
-
-
-def _age_s(reading: Reading, now_s: float) -> float:
-    return 0.0 if isnan(reading.time_s) else now_s - reading.time_s

@@ -42,6 +42,9 @@ class DriveObject:
     unit: str = ""
     mappable: bool = False
 
+    def __hash__(self) -> int:
+        return self.index << 8 | self.subindex  # looked up every cycle
+
     def pack(self, value: int) -> bytes:
         """The value as it is sent.
 

@@ -91,14 +91,14 @@ class Session:
         with suppress(Exception):
             self._nmt(_PRE_OPERATIONAL)
 
-    def keep_alive(self) -> None:
+    def keep_alive(self, now_s: float | None = None) -> None:
         """Send the host's heartbeat if it is due."""
-        if self.heartbeat.due(perf_counter()):
+        if self.heartbeat.due(perf_counter() if now_s is None else now_s):
             self.link.send_message(0x700 + self.settings.host_node_id, HostHeartbeat.PAYLOAD)
 
-    def ask_slow(self) -> None:
+    def ask_slow(self, now_s: float) -> None:
         """Send the request of the slow poll, if one is due."""
-        request = self.poll.request(perf_counter())
+        request = self.poll.request(now_s)
         if request is not None:
             self.link.send_message(0x600 + self.settings.node_id, request)
 
@@ -152,6 +152,7 @@ class Session:
         """PRE-OPERATIONAL, identity, power off, capabilities."""
         self._nmt(_PRE_OPERATIONAL)
         identity = identify(self.access, self.settings)
+        self.monitor.restarted = False  # it may have been switched on just now; from here on it must stay so
         self.access.write(CONTROLWORD, DISABLE_VOLTAGE)
         return probe(self.access, self.settings, joint, identity)
 

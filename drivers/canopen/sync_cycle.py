@@ -8,6 +8,7 @@ from drivers.canopen.link import CanLink
 from drivers.canopen.pdo import Pdo
 
 SYNC_COB_ID: Final = 0x80
+_PAUSE_S: Final = 0.1  # after that long, take in what has come meanwhile before anything is asked
 
 
 @dataclass(slots=True)
@@ -53,9 +54,10 @@ class SyncCycle:
         self.number = 0
         self.counts = CycleCounts()
         self._link = link
-        self._tpdos = tpdos
+        self._places = frozenset(range(len(tpdos)))
         self._wait_s = wait_s
         self._missing: set[int] = set()
+        self._in_doubt = False  # the last SYNC has been given up: its answer may still come
         self._arrived: dict[int, tuple[int, ...]] = {}
         self._sent_s = 0.0
         self._unanswered_s: float | None = None
@@ -70,11 +72,12 @@ class SyncCycle:
             payload: of the RPDO.
         """
         link, counts = self._link, self.counts
-        owing = bool(self._missing)
-        link.drain()
-        if owing:
+        if self._missing:
             self._settle()
-        self._missing = set(range(len(self._tpdos)))
+        elif self._in_doubt or perf_counter() - self._sent_s > _PAUSE_S:
+            link.drain()
+        self._in_doubt = bool(self._missing)
+        self._missing = set(self._places)
         self._arrived.clear()
         link.send_message(cob_id, payload)
         link.send_message(SYNC_COB_ID, b"")
@@ -93,6 +96,7 @@ class SyncCycle:
 
     def _settle(self) -> None:
         """Give the previous SYNC a second chance to be answered."""
+        self._link.drain()
         if self._await_answer():
             self.counts.late += 1
         else:

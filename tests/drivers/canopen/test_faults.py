@@ -224,6 +224,20 @@ def test_a_drive_that_restarts_in_motion_is_noticed(node, drive_of):
     _reconnects(drive)
 
 
+def test_a_drive_that_was_switched_on_just_now_may_be_opened(node, drive_of):
+    drive = drive_of()
+    answer = node._answer
+
+    def first_boots(data):
+        node._answer = answer
+        node.restart()
+        answer(data)
+
+    node._answer = first_boots
+    drive.open(0.005)
+    assert drive.exchange(OFF).status is Status.DISABLED
+
+
 def test_a_heartbeat_that_stays_away_is_an_error(node, drive_of):
     drive = _moving(drive_of())
     node.mute_heartbeat = True

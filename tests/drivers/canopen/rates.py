@@ -1,0 +1,139 @@
+"""How fast the CANopen driver is beside python-can used barely, and whether it keeps up: see `tests.drivers.rates`.
+
+The device is the simulated drive. "Barely" is what a script would do: send RPDO and SYNC, receive until both TPDOs
+are there, unpack them. Both talk to the same device, one after the other, in rounds.
+"""
+
+import struct
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from math import inf
+from time import perf_counter
+
+import can
+
+from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.contract import Command, Mode
+from drivers.errors import DriveError
+from tests.drivers.canopen.conversation import JOINT, bus_of, started
+
+ROUNDS, CYCLES = 12, 200
+WATCHDOG_S, ANSWER_S = 1.0, 0.5
+SPIN_S = 0.0002
+
+
+@contextmanager
+def in_one_process() -> Iterator[BusSettings]:
+    """The simulated drive on a virtual bus of this process."""
+    from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
+
+    with serve_canopen(CanOpenSettings(interface="virtual", channel="rates")):
+        yield BusSettings("virtual", "rates")
+
+
+@contextmanager
+def over(interface: str) -> Iterator[BusSettings]:
+    """The simulated drive in a process of its own."""
+    with started(interface) as device:
+        yield bus_of(device)
+
+
+PLACES: dict[str, Callable[[], object]] = {
+    "virtual bus, one process": in_one_process,
+    "slcan on a pseudo-terminal, two processes": lambda: over("slcan"),
+    "socketcand over TCP, two processes": lambda: over("socketcand"),
+}
+
+
+def drive_on(bus: BusSettings) -> CanopenDrive:
+    return CanopenDrive(CanopenSettings(bus, node_id=5, watchdog_s=WATCHDOG_S, answer_s=ANSWER_S), JOINT)
+
+
+def barely(bus: can.BusABC, cycles: int) -> float:
+    """Seconds per cycle of python-can and struct."""
+    began_s = perf_counter()
+    for _ in range(cycles):
+        bus.send(can.Message(arbitration_id=0x205, data=bytes(6), is_extended_id=False))
+        bus.send(can.Message(arbitration_id=0x080, data=b"", is_extended_id=False))
+        missing = {0x185, 0x285}
+        while missing:
+            message = bus.recv(1.0)
+            assert message is not None, "no answer to SYNC"
+            if message.arbitration_id in missing:
+                struct.unpack("<Hh" if message.arbitration_id == 0x185 else "<ii", message.data)
+                missing.discard(message.arbitration_id)
+    return (perf_counter() - began_s) / cycles
+
+
+def driven(drive: CanopenDrive, cycles: int) -> float:
+    """Seconds per cycle of the driver."""
+    off = Command(Mode.OFF)
+    began_s = perf_counter()
+    for _ in range(cycles):
+        drive.exchange(off)
+    return (perf_counter() - began_s) / cycles
+
+
+def side_by_side(bus: BusSettings) -> tuple[float, float]:
+    """Seconds per cycle of driver and bare library, best of some rounds each: what else runs only makes them longer."""
+    driver_s, bare_s = inf, inf
+    for _ in range(ROUNDS):
+        drive = drive_on(bus)
+        drive.open(0.005)
+        driver_s = min(driver_s, driven(drive, CYCLES))
+        drive.close()
+        arguments = bus.arguments() | ({"sleep_after_open": 0.0} if bus.interface == "slcan" else {})
+        with can.Bus(**arguments) as bare:
+            bare.send(can.Message(arbitration_id=0, data=[1, 5], is_extended_id=False))  # NMT start
+            time.sleep(0.05)
+            bare_s = min(bare_s, barely(bare, CYCLES))
+    return driver_s, bare_s
+
+
+def endurance(bus: BusSettings, rate_hz: float, duration_s: float) -> str:
+    """Cycle with the power on and no current for a time; a late cycle starts at once, and none is left out."""
+    drive, cycles = drive_on(bus), round(rate_hz * duration_s)
+    drive.open(1.0 / rate_hz)
+    drive.enable(Mode.CURRENT)
+    late_s: list[float] = []
+    ending = "to the end"
+    began_s = perf_counter()
+    try:
+        for number in range(cycles):
+            late_s.append(_wait_until(began_s + number / rate_hz))
+            drive.exchange(Command(Mode.CURRENT, 0.0))
+    except DriveError as error:
+        ending = str(error)
+    took_s, counts = perf_counter() - began_s, replace(drive.counts)
+    drive.close()
+    late_s.sort()
+    p50_s, p99_s = late_s[len(late_s) // 2], late_s[len(late_s) * 99 // 100]
+    return (
+        f"{len(late_s)} of {cycles} cycles in {took_s:.2f} s, {ending}; since opening {counts.sent} SYNC, "
+        f"{counts.answered} answered in time, {counts.late} after 10 ms, {counts.missed} never, {counts.surplus} TPDO "
+        f"too many; lateness p50 {p50_s * 1e3:.2f} ms, p99 {p99_s * 1e3:.2f} ms, max {late_s[-1] * 1e3:.1f} ms"
+    )
+
+
+def _wait_until(deadline_s: float) -> float:
+    """Sleep and spin until then; how late that is [s]."""
+    while (remaining_s := deadline_s - perf_counter()) > 0.0:
+        if remaining_s > SPIN_S:
+            time.sleep(remaining_s - SPIN_S)
+    return -remaining_s
+
+
+def report(duration_s: float) -> None:
+    """Print every figure."""
+    for place, start in PLACES.items():
+        with start() as bus:  # type: ignore[attr-defined]
+            driver_s, bare_s = side_by_side(bus)
+            print(
+                f"CANopen, {place}: {driver_s * 1e6:.0f} us a cycle, barely {bare_s * 1e6:.0f} us; "
+                f"ratio {driver_s / bare_s:.2f} (at most 1.25)"
+            )
+            rate_hz = {"virtual": 1000.0, "slcan": 500.0}.get(bus.interface)
+            if rate_hz is not None:
+                print(f"  {rate_hz:.0f} Hz for {duration_s:g} s: {endurance(bus, rate_hz, duration_s)}")
