@@ -10,7 +10,7 @@ from bench.drives.modbus import ModbusDriveSettings
 from bench.drives.real import RealDriveSettings, joint_scale
 from bench.drives.roboclaw import RoboclawDriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
-from bench.errors import ConfigurationError
+from bench.errors import ConfigurationError, ExperimentError
 from bench.rig import Rig
 from bench.technician import PersonTechnician, SimulatedTechnician, Technician
 from drivers.contract import Drive
@@ -61,6 +61,12 @@ def is_simulated(configuration: BenchConfiguration) -> bool:
     return configuration.drive.kind == "sim"
 
 
+def has_hardware(configuration: BenchConfiguration) -> bool:
+    """Whether what moves is real: neither the drive in this process nor a simulated device behind a real driver."""
+    drive = configuration.drive
+    return isinstance(drive, RealDriveSettings) and not drive.side_channel
+
+
 def seed_of(configuration: BenchConfiguration) -> int | None:
     """Seed of a simulated drive; None for a real one."""
     match configuration.drive:
@@ -99,7 +105,7 @@ def _roboclaw(settings: RoboclawDriveSettings, rig: Rig, ask: Ask) -> Equipment:
     from drivers.roboclaw.settings import RoboclawSettings
 
     line = RoboclawSettings(**_driver_values(settings))
-    return Equipment(RoboclawDrive(line, joint_scale(settings, rig)), PersonTechnician(ask))
+    return Equipment(RoboclawDrive(line, joint_scale(settings, rig)), _technician(settings, ask))
 
 
 def _canopen(settings: CanopenDriveSettings, rig: Rig, ask: Ask) -> Equipment:
@@ -112,7 +118,7 @@ def _canopen(settings: CanopenDriveSettings, rig: Rig, ask: Ask) -> Equipment:
         drive = CanopenDrive(CanopenSettings(bus=bus, **values), joint_scale(settings, rig))
     except DriveConfigurationError as error:
         raise ConfigurationError(str(error)) from error
-    return Equipment(drive, PersonTechnician(ask))
+    return Equipment(drive, _technician(settings, ask))
 
 
 def _modbus(settings: ModbusDriveSettings, rig: Rig, ask: Ask) -> Equipment:
@@ -127,7 +133,35 @@ def _modbus(settings: ModbusDriveSettings, rig: Rig, ask: Ask) -> Equipment:
     except MapError as error:
         raise ConfigurationError(f"drive.map: {error}") from error
     drive = ModbusDrive(ModbusSettings(**_driver_values(settings)), register_map, joint_scale(settings, rig))
-    return Equipment(drive, PersonTechnician(ask))
+    return Equipment(drive, _technician(settings, ask))
+
+
+class _FarJoint:
+    """A simulated device in another process, as far as loads go."""
+
+    def __init__(self, side_channel: str) -> None:
+        self._side_channel = side_channel
+
+    def hang_load(self, load_kg: float, balanced: bool) -> None:
+        """Hang a load.
+
+        Raises:
+            ExperimentError: the device says no, or is not there.
+        """
+        from sim_backend.devices.side_channel import ask_once
+        from sim_backend.errors import ParameterError
+
+        try:
+            ask_once(self._side_channel, "hang", load_kg=load_kg, balanced=balanced)
+        except (ParameterError, OSError, ValueError) as error:
+            raise ExperimentError(
+                f"the load of {load_kg * 1000:g} g was not hung: drive.side_channel '{self._side_channel}': {error}; "
+                "is the simulated device running, and is that what it printed?"
+            ) from error
+
+
+def _technician(settings: RealDriveSettings, ask: Ask) -> Technician:
+    return SimulatedTechnician(_FarJoint(settings.side_channel)) if settings.side_channel else PersonTechnician(ask)
 
 
 def _driver_values(settings: RealDriveSettings) -> dict[str, Any]:

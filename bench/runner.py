@@ -8,7 +8,7 @@ from bench import commissioned
 from bench.calibration import with_friction
 from bench.clock import Clock, VirtualClock, WallClock
 from bench.configuration import BenchConfiguration
-from bench.drive_factory import is_simulated, make_equipment, seed_of
+from bench.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiment_run import ExperimentRun, Prepared, Request
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
@@ -227,7 +227,7 @@ class Runner:
 
     def _begin(self, configuration: BenchConfiguration, request: Request, parameters: dict[str, Any]) -> int:
         drive = self._description
-        simulated = is_simulated(configuration) if drive is None else drive.simulated
+        simulated = not has_hardware(configuration) or (drive is not None and drive.simulated)
         return self._store.begin_experiment(
             request.kind,
             parameters,

@@ -134,6 +134,7 @@ def _serve(device: "SimulatedDevice", name: str, section: Section, json: bool) -
     """Say where the device is, and keep it until Ctrl-C or SIGTERM."""
     from bench.simulated_device import until_told_to_end
 
+    section |= {"side_channel": device.side_channel}
     with until_told_to_end() as stop, device:
         if json:
             typer.echo(json_text.dumps({"port": device.path, "side_channel": device.side_channel, "drive": section}))

@@ -11,11 +11,14 @@ Sign = Literal[1, -1]
 
 
 class RealDriveSettings(Section):
-    """Signs and zero. `friction-bench doctor` prints what stands now, and checks them with a small move."""
+    """Signs, zero, loads. `friction-bench doctor` prints what stands now, and checks it with a small move."""
 
     motor_sign: Sign = quantity(1, "", "-1 where a positive demand turns the joint to negative angles")
     encoder_sign: Sign = quantity(1, "", "-1 where the count falls while the joint turns to positive angles")
     zero_rad: float = quantity(0.0, "rad", "Joint angle by the drive's count while the arm hangs straight down")
+    side_channel: str = quantity(
+        "", "", "Only of a simulated device: where its loads are hung, as host:port; left out: a person is asked"
+    )
 
 
 def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:

@@ -49,7 +49,7 @@ class SideChannel(socketserver.ThreadingTCPServer):
 
 
 class SideChannelClient:
-    """The other end; also a technician who hangs loads.
+    """The other end.
 
     Args:
         address: host:port.
@@ -86,6 +86,21 @@ class SideChannelClient:
         """Hang up."""
         self._file.close()
         self._socket.close()
+
+
+def ask_once(address: str, deed: str, **values: Any) -> Answer:
+    """Have one thing done.
+
+    Raises:
+        ParameterError: the device says no, and why.
+        OSError: it is not there, or does not answer in time.
+        ValueError: the address is no host:port.
+    """
+    client = SideChannelClient(address)
+    try:
+        return client.ask(deed, **values)
+    finally:
+        client.close()
 
 
 class _Visitor(socketserver.StreamRequestHandler):

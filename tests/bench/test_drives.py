@@ -3,10 +3,11 @@
 import pytest
 
 from bench.configuration import default_configuration, parse_configuration
-from bench.drive_factory import is_simulated, make_equipment, seed_of
-from bench.errors import ConfigurationError
+from bench.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
+from bench.errors import ConfigurationError, ExperimentError
 from bench.technician import PersonTechnician
 from drivers.errors import DriveConnectionError
+from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 
 CANOPEN = {"kind": "canopen", "interface": "slcan", "channel": "/dev/absent", "node_id": 5, "watchdog_s": 0.2}
 ROBOCLAW = {"kind": "roboclaw", "port": "/dev/absent", "motor_sign": -1, "watchdog_s": 0.3}
@@ -85,3 +86,21 @@ def test_a_real_drive_needs_to_know_the_gear():
 def test_a_modbus_drive_that_cannot_be_made(changes, message):
     with pytest.raises(ConfigurationError, match=message):
         make_equipment(configured(MODBUS | changes))
+
+
+def test_loads_of_a_simulated_device_are_hung_over_its_side_channel():
+    with serve_roboclaw(RoboClawSettings()) as device:
+        configuration = configured(ROBOCLAW | {"port": device.path, "side_channel": device.side_channel})
+        _, technician = make_equipment(configuration)
+        technician.hang_load(0.05, balanced=True)
+        load = device.device.axis.plant.parameters.load
+        assert (load.mass_kg, load.balanced) == (0.05, True)
+    assert not has_hardware(configuration)
+    assert not is_simulated(configuration)  # its time is the wall's
+    with pytest.raises(ExperimentError, match=r"the load of 20 g was not hung: drive\.side_channel '127.*refused"):
+        technician.hang_load(0.02, balanced=True)
+
+
+def test_a_drive_without_side_channel_is_hardware():
+    assert has_hardware(configured(ROBOCLAW))
+    assert not has_hardware(default_configuration())
