@@ -58,7 +58,7 @@ def table_1(experiment: Experiment, trials: Sequence[Trial]) -> Row:
     paper_g = [reflected - actual for actual, reflected in TABLE_1_G.items()]
     ours, paper = _errors(errors_g), _errors(paper_g)
     rows = [
-        (round(actual, 3), round(reflected, 2), round(error, 2), TABLE_1_G.get(round(actual)))
+        (round(actual, 3), _rounded(reflected), _rounded(error), TABLE_1_G.get(round(actual)))
         for actual, reflected, error in zip(actual_g, reflected_g, errors_g, strict=True)
     ]
     titles = {
@@ -102,6 +102,10 @@ def table_1(experiment: Experiment, trials: Sequence[Trial]) -> Row:
         ],
     )
     return Row("table-1", section, dict(ours), dict(paper), (experiment.id,), _ids(found))
+
+
+def _rounded(value_g: float) -> float:
+    return round(value_g, 2) + 0.0  # never -0
 
 
 _BAND = ("min_current_a", "max_current_a")

@@ -8,6 +8,12 @@ from typing import Any
 from bench.report import Section
 
 Number = float | int | None
+FIGURES = {
+    "fig-2": "Fig. 2", "fig-3": "Fig. 3", "fig-4": "Fig. 4", "fig-7": "Fig. 7", "table-1": "Table 1, Fig. 8",
+    "fig-9": "Fig. 9", "fig-10": "Fig. 10", "fig-11": "Fig. 11", "accelerated": "future work",
+}  # fmt: skip
+"""The rows by name, as the paper calls them."""
+_UNITS = {"ma": "mA", "g": "g", "rpm": "rpm"}
 
 
 @dataclass(frozen=True)
@@ -40,14 +46,21 @@ class Row:
         }
 
     def lines(self) -> list[tuple[str, str, str, str]]:
-        """Name, quantity, ours, the paper's: one line for each number that is compared."""
+        """Figure, quantity, ours, the paper's, in words: one line for each number that is compared."""
         cells = {name: (_cell(value), _cell(self.paper.get(name))) for name, value in self.ours.items()}
-        return [(self.name, name, *pair) for name, pair in cells.items()]
+        return [(FIGURES[self.name], in_words(name), *pair) for name, pair in cells.items()]
 
     def with_source(self) -> Section:
         """The section, and a sentence that names its trials."""
-        where = f"Drawn from trials {spans(self.trial_ids)} of {_experiments(self.experiment_ids)}."
+        where = f"Drawn from {_named('trial', self.trial_ids)} of {_named('experiment', self.experiment_ids)}."
         return replace(self.section, sentences=[*self.section.sentences, where])
+
+
+def in_words(name: str) -> str:
+    """A quantity's name as people read it: `spread_ma` as "spread [mA]"."""
+    words = [_UNITS.get(word, word) if index else word for index, word in enumerate(name.split("_"))]
+    unit = f" [{words.pop()}]" if name.rsplit("_", 1)[-1] in _UNITS else ""
+    return " ".join(words) + unit
 
 
 def _cell(value: Number) -> str:
@@ -61,5 +74,5 @@ def spans(numbers: Sequence[int]) -> str:
     return ", ".join(f"{run[0]} .. {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
 
 
-def _experiments(ids: Sequence[int]) -> str:
-    return f"experiment{'s' if len(ids) > 1 else ''} {spans(ids)}"
+def _named(what: str, ids: Sequence[int]) -> str:
+    return f"{what}{'s' if len(ids) > 1 else ''} {spans(ids)}"

@@ -8,7 +8,7 @@ import pytest
 from bench.configuration import default_configuration
 from bench.paper import reproduce, summary
 from bench.paper.measurements import Plan
-from bench.paper.row import spans
+from bench.paper.row import in_words, spans
 from bench.report import write_html
 from bench.store import Store
 from bench.store.errors import NotFoundError
@@ -40,7 +40,7 @@ def test_every_row_names_the_trials_that_it_was_drawn_from(store, rows):
     for row in rows:
         assert row.trial_ids, row.name
         assert {known[trial_id] for trial_id in row.trial_ids} == set(row.experiment_ids), row.name
-        assert "Drawn from trials " in row.with_source().sentences[-1]
+        assert "Drawn from trial" in row.with_source().sentences[-1]
 
 
 def test_it_is_drawn_again_from_the_store_without_motion(store, rows):
@@ -87,8 +87,13 @@ def test_the_report_holds_every_number_and_asks_nothing_of_the_network(rows, tmp
     page = (tmp_path / "paper.html").read_text(encoding="utf-8")
     for row in rows:
         for name in row.ours:
-            assert name in page
+            assert in_words(name) in page
     assert not re.findall(r'<(?:script|link|img)[^>]+(?:src|href)="', page)
+
+
+def test_quantities_read_as_words_with_their_unit():
+    assert in_words("speed_at_500_ma_rpm") == "speed at 500 mA [rpm]"
+    assert in_words("spread_ratio") == "spread ratio"
 
 
 def test_runs_of_numbers_are_shortened():
