@@ -65,6 +65,9 @@ class PositionServo:
 class CurrentServo:
     """Eq. (3) both ways: current from duty and speed, and the duty that gives a wanted current.
 
+    By the supply that is measured, where it is; and by the motor as warm as it is, where the drive measures a
+    temperature and the rig says at which its constants hold. A temperature of the housing stands for the winding's.
+
     Args:
         rig: its resistance and back-EMF constant are needed; the supply voltage only where it is not measured.
 
@@ -82,6 +85,15 @@ class CurrentServo:
         self._motor = MotorConstants(resistance_ohm, back_emf_v_s_rad)
         self._ratio = rig.gear.ratio
         self._nominal_supply_v = rig.supply.voltage_v
+        self._reference_c = rig.motor.constants_at_c
+        self._copper_per_k, self._magnet_per_k = rig.motor.copper_per_k, rig.motor.magnet_per_k
+
+    def _warm_motor(self, sample: Sample) -> MotorConstants:
+        if self._reference_c is None or isnan(sample.temperature_c):
+            return self._motor
+        return motor.at_temperature(
+            self._motor, sample.temperature_c, self._reference_c, self._copper_per_k, self._magnet_per_k
+        )
 
     def _supply_v(self, sample: Sample) -> float:
         if not isnan(sample.supply_v):
@@ -92,11 +104,13 @@ class CurrentServo:
 
     def estimate_a(self, sample: Sample, velocity_rad_s: float) -> float:
         """Motor current of a sample [A], eq. (3). The velocity is the joint's."""
-        return motor.current_a(self._motor, sample.duty, velocity_rad_s * self._ratio, self._supply_v(sample))
+        return motor.current_a(
+            self._warm_motor(sample), sample.duty, velocity_rad_s * self._ratio, self._supply_v(sample)
+        )
 
     def duty(self, current_a: float, sample: Sample, velocity_rad_s: float) -> float:
         """Duty that gives a current [A], eq. (3) inverted, within -1 .. 1."""
-        wanted = motor.duty(self._motor, current_a, velocity_rad_s * self._ratio, self._supply_v(sample))
+        wanted = motor.duty(self._warm_motor(sample), current_a, velocity_rad_s * self._ratio, self._supply_v(sample))
         return min(max(wanted, -1.0), 1.0)
 
 

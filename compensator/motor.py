@@ -11,7 +11,7 @@ back-EMF share: d_friction = (R I_friction + Ke w) / Vs. With that, (5) and (7) 
 Every function takes floats or arrays of one shape. `speed_rad_s` is that of the motor shaft.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -39,6 +39,31 @@ class MotorConstants:
             raise ModelParameterError(f"motor resistance is {self.resistance_ohm} ohm; allowed is above 0 ohm")
         if not 0.0 <= self.back_emf_v_s_rad < float("inf"):
             raise ModelParameterError(f"back-EMF constant is {self.back_emf_v_s_rad} V s/rad; allowed is 0 or more")
+
+
+def at_temperature(
+    motor: MotorConstants, measured_c: float, reference_c: float, copper_per_k: float, magnet_per_k: float = 0.0
+) -> MotorConstants:
+    """The constants of a warm motor: copper resists more, magnets pull less.
+
+        R(T) = R (1 + a (T - T0)),  Ke(T) = Ke (1 - b (T - T0))
+
+    Args:
+        motor: the constants at the reference temperature.
+        measured_c: T [degC].
+        reference_c: T0 [degC].
+        copper_per_k: a [1/K]; 0.00393 for copper.
+        magnet_per_k: b [1/K]; 0.002 for ferrite, 0.0004 for samarium-cobalt.
+
+    Raises:
+        ModelParameterError: so far from the reference that the law leaves no resistance.
+    """
+    warmer_k = measured_c - reference_c
+    return replace(
+        motor,
+        resistance_ohm=motor.resistance_ohm * (1.0 + copper_per_k * warmer_k),
+        back_emf_v_s_rad=motor.back_emf_v_s_rad * (1.0 - magnet_per_k * warmer_k),
+    )
 
 
 def current_a(motor: MotorConstants, duty: Number, speed_rad_s: Number, supply_v: float) -> Number:

@@ -14,6 +14,7 @@ from bench.cli import (
     doctor,
     effects,
     experiments,
+    figures,
     paper,
     recordings,
     rivals,
@@ -33,6 +34,7 @@ _ORDER = (
     "demo",
     "paper",
     "rivals",
+    "figures",
     "serve",
     "doctor",
     "run",
@@ -118,6 +120,7 @@ app.add_typer(study.app, name="study")
 app.add_typer(store_commands.app, name="store")
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
+app.command("figures")(figures.figures)
 app.command("paper")(paper.paper)
 app.command("rivals")(rivals.rivals)
 app.add_typer(simulate_device.app, name="simulate-device")

@@ -53,6 +53,24 @@ def test_an_unmeasured_supply_is_the_rigs():
     assert servo.estimate_a(SAMPLE._replace(supply_v=nan), 2.0) == pytest.approx(2.5)
 
 
+def test_a_warm_winding_takes_more_duty_and_gives_less_current():
+    motor = Motor(resistance_ohm=8.0, back_emf_v_s_rad=0.05, constants_at_c=25.0)
+    servo = CurrentServo(Rig(name="r", motor=motor, gear=Gear(ratio=20.0)))
+    cold, warm = (SAMPLE._replace(temperature_c=celsius, supply_v=24.0) for celsius in (25.0, 75.0))
+    ratio = 1.0 + 0.00393 * 50.0
+    assert servo.estimate_a(warm, 0.0) == pytest.approx(servo.estimate_a(cold, 0.0) / ratio)
+    assert servo.duty(0.5, warm, 0.0) == pytest.approx(servo.duty(0.5, cold, 0.0) * ratio)
+
+
+def test_without_a_temperature_the_constants_of_the_rig_hold():
+    motor = Motor(resistance_ohm=8.0, back_emf_v_s_rad=0.05, constants_at_c=25.0)
+    known = CurrentServo(Rig(name="r", motor=motor, gear=Gear(ratio=20.0)))
+    plain = CurrentServo(Rig(name="r", motor=Motor(resistance_ohm=8.0, back_emf_v_s_rad=0.05), gear=Gear(ratio=20.0)))
+    unmeasured = SAMPLE._replace(temperature_c=nan, supply_v=24.0)
+    assert known.estimate_a(unmeasured, 0.1) == plain.estimate_a(unmeasured, 0.1)
+    assert plain.estimate_a(SAMPLE._replace(temperature_c=75.0), 0.1) == plain.estimate_a(SAMPLE, 0.1)
+
+
 def test_a_supply_that_nobody_knows_is_asked_for():
     rig = Rig(name="r", motor=Motor(resistance_ohm=1, back_emf_v_s_rad=1), gear=Gear(ratio=1))
     with pytest.raises(ConfigurationError, match=r"supply.voltage_v \[V\]"):

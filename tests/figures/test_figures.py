@@ -1,0 +1,134 @@
+"""The table of figures, from results made up here; and the rigs that it is measured on."""
+
+from math import isnan, pi
+
+import pytest
+
+from bench.configuration import default_configuration
+from bench.figures import figures_table, rigs
+from bench.figures.rigs import drawn_rig
+from bench.figures.table import COLUMNS
+from bench.figures.trials import SeedResults
+from bench.reflected_load import load_current_a
+from sim_backend.presets import paper
+
+CONFIGURATION = default_configuration()
+
+
+def results(error_kg=2e-4, held=True, search_s=2.0, hanging_a=0.001, ratio=0.05):
+    """One seed in which every number is known."""
+    truth_a = load_current_a(0.1, pi / 2, CONFIGURATION.rig)
+    raised = {
+        "load_kg": 0.1,
+        "angle_rad": pi / 2,
+        "reflected_load_kg": 0.1 + error_kg,
+        "load_interval_a": [truth_a - 0.01, truth_a + 0.01] if held else [truth_a + 0.01, truth_a + 0.02],
+        "load_current_a": truth_a,
+    }
+    hanging = {
+        **raised,
+        "angle_rad": 0.0,
+        "reflected_load_kg": None,
+        "load_interval_a": None,
+        "load_current_a": hanging_a,
+    }
+    stroke = {"mean_error_kg": error_kg, "forward_mean_error_kg": 2e-3, "backward_mean_error_kg": -2e-3}
+    return SeedResults(
+        {
+            "loads": {"rows": [raised, hanging]},
+            "steps": {"spread_ratio": 50.0},
+            "speeds": {"rows": [stroke]},
+            "sinusoid": {"rms_ratio": ratio},
+            "quick": {"rows": [{**raised, "search_s": search_s}]},
+            "paper": {"rows": [{**raised, "search_s": 8.0, "reflected_load_kg": 0.1 + 4e-4}]},
+        },
+        {},
+    )
+
+
+def table(*seeds, drawn=()):
+    rows = figures_table(CONFIGURATION, list(seeds), [CONFIGURATION] * len(drawn), list(drawn))
+    return {row.name: row for row in rows}
+
+
+def row(rows, start):
+    return next(one for name, one in rows.items() if name.startswith(start))
+
+
+def test_each_figure_is_taken_from_its_trials():
+    rows = table(results())
+    assert row(rows, "Table 1, 90 degrees: mean").measured == pytest.approx(0.2)
+    assert row(rows, "25 steps").measured == pytest.approx(0.02)
+    assert row(rows, "angle 0").measured == pytest.approx(1.0 / 4.903, rel=1e-3)
+    assert row(rows, "steady speeds 100").measured == pytest.approx(0.2)
+    assert row(rows, "sinusoid").measured == pytest.approx(0.05)
+    assert row(rows, "95 %").measured == 100.0
+    assert row(rows, "time of a search").measured == pytest.approx(0.25)
+    assert row(rows, "error rms of that search").measured == pytest.approx(0.5)
+    assert row(rows, "steady speeds: mean absolute error of each").measured == pytest.approx(2.0)
+
+
+def test_the_mean_of_the_seeds_and_the_worst_of_them():
+    rows = table(results(2e-4), results(-6e-4))
+    mean, largest = row(rows, "Table 1, 90 degrees: mean"), row(rows, "Table 1, 90 degrees: largest")
+    assert (mean.measured, mean.worst_seed) == pytest.approx((0.4, 0.6))
+    assert largest.measured == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize(
+    ("start", "wrong"),
+    [
+        ("Table 1, 90 degrees: mean", {"error_kg": 5e-4}),
+        ("Table 1, 90 degrees: largest", {"error_kg": -1.1e-3}),
+        ("angle 0", {"hanging_a": -0.006}),
+        ("steady speeds 100", {"error_kg": 9e-4}),
+        ("sinusoid", {"ratio": 0.13}),
+        ("time of a search", {"search_s": 4.1}),
+        ("95 %", {"held": False}),
+    ],
+)
+def test_what_is_not_reached_is_said(start, wrong):
+    good = [results(), *([results(held=False)] if start != "95 %" else [])]
+    assert row(table(results(**wrong)), start).reached is False
+    assert start == "95 %" or row(table(*good), start).reached is True
+
+
+def test_too_many_held_intervals_are_no_success_either():
+    assert row(table(results()), "95 %").reached is False
+
+
+def test_drawn_rigs_are_summed_up_by_median_worst_and_share():
+    drawn = [results(1e-4), results(3e-4), results(9e-4), SeedResults({}, {"everything": "not calibrated"})]
+    found = row(table(results(), drawn=drawn), "Table 1, 90 degrees: mean")
+    assert (found.rigs_median, found.rigs_worst) == pytest.approx((0.3, 0.9))
+    assert found.rigs_reached == pytest.approx(2 / 3)
+    assert found.rigs == 3
+
+
+def test_what_was_not_measured_is_no_number():
+    found = row(table(SeedResults({}, {"steps": "did not settle"})), "25 steps")
+    assert isnan(found.measured)
+    assert found.reached is False
+    assert len(found.cells()) == len(COLUMNS)
+
+
+def test_rigs_are_drawn_within_what_is_said_and_again_the_same():
+    for seed in range(40):
+        one, again = drawn_rig(CONFIGURATION, seed), drawn_rig(CONFIGURATION, seed)
+        assert one == again
+        plant = one.drive.plant
+        assert 0.5 <= plant["friction"]["static_n_m"] / 5e-3 <= 2.0
+        assert 0.0 <= one.rig.gear.backlash_rad == plant["gear"]["backlash_rad"] <= 0.03
+        assert abs(plant["coulomb_asymmetry"]["fraction"]) <= 0.2
+        assert (
+            one.rig.sensor.counts_per_turn == plant["encoder"]["counts_per_turn"] in {2**bits for bits in range(10, 15)}
+        )
+
+
+def test_the_friction_that_is_drawn_round_is_that_of_the_paper_rig():
+    plant = paper()
+    for name, value in rigs.DRIVE_SIDE.items():
+        assert getattr(plant.friction, name) == value
+    for name, value in rigs.ARM_SIDE.items():
+        assert getattr(plant.arm_friction, name) == value
+    assert plant.gear.backlash_rad == rigs.GAP_RAD
