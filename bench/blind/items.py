@@ -1,5 +1,6 @@
 """What is asked of the lab: families of items, and how each is drawn. The same seed draws the same items."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 from bench.challenge.hidden_plant import MECHANISMS, DrawnPlant, Wanted, draw_plant
 from bench.challenge.names import ABSORBED, ACCEPTED, accepted
 from bench.challenge.session import Protocol
+from bench.errors import ParameterError
 
 MEMORY = ("bristle", "backlash", "dwell", "shaft")
 OUTSIDE = tuple(name for name, names in ACCEPTED.items() if not names)
@@ -72,11 +74,25 @@ class Item:
     turn: int
 
 
-def items_of(seed: int, plants: int) -> list[Item]:
-    """Every item of a run; a longer run begins with the items of a shorter one."""
+def items_of(seed: int, plants: int, only: Sequence[str] = ()) -> list[Item]:
+    """Every item of a run; a longer run begins with the items of a shorter one.
+
+    Args:
+        seed: of the run.
+        plants: rounds.
+        only: families that are asked; all where none is named. Their items are those of a run of all.
+
+    Raises:
+        ParameterError: no such family.
+    """
+    for name in only:
+        if name not in FAMILIES:
+            raise ParameterError(f"there is no family '{name}' of items; known are {', '.join(FAMILIES)}")
     found = []
     for plant in range(plants):
         for number, family in enumerate(FAMILIES.values()):
+            if only and family.name not in only:
+                continue
             for repeat in range(family.per_plant):
                 drawn = np.random.SeedSequence((seed, plant, number, repeat)).generate_state(1)
                 turn = plant * family.per_plant + repeat

@@ -20,6 +20,9 @@ def blind(
         Path | None,
         typer.Option(help="Keep the results here, one a line; a run that was ended goes on from there."),
     ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(help="Ask this family of items alone, for instance complete; repeatable.")
+    ] = None,
     workers: Annotated[int | None, typer.Option(min=0, help="Processes; without it, one for each core.")] = None,
     as_json: Json = False,
 ) -> None:
@@ -30,7 +33,7 @@ def blind(
     from bench.blind.items import items_of
     from bench.blind.pool import run_items
 
-    items = items_of(seed, plants)
+    items = items_of(seed, plants, only or ())
     done = run_items(items, results, _progress, workers)
     if as_json:
         print_json(_as_json(done, seed, plants))

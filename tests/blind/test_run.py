@@ -9,6 +9,7 @@ from bench.blind.imperfections import worn
 from bench.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
 from bench.blind.judge import Result, judge
 from bench.blind.pool import ResultsError, run_items
+from bench.errors import ParameterError
 from compensator.lab.recording import Recording
 
 
@@ -23,6 +24,13 @@ def test_the_same_seed_draws_the_same_items_and_a_longer_run_begins_with_a_short
     for item in items_of(3, 1):
         assert draw_item(item, 0) == draw_item(item, 0)
         assert len(draw_item(item, 0).hidden) == FAMILIES[item.family].count
+
+
+def test_some_families_alone_are_asked_the_same_as_among_all() -> None:
+    wanted = [item for item in items_of(3, 2) if item.family in ("complete", "pair")]
+    assert items_of(3, 2, ("complete", "pair")) == wanted
+    with pytest.raises(ParameterError, match="known are complete"):
+        items_of(3, 2, ("simple",))
 
 
 def test_every_mechanism_of_a_family_comes_equally_often() -> None:
