@@ -94,6 +94,10 @@ class Guard:
         violation = next(self._violations(sample, velocity_rad_s, current_a, target_rad))
         raise LimitTrip(quantity_message(*violation))
 
+    def is_stale(self, sample: Sample) -> bool:
+        """Whether something in a sample is older than allowed."""
+        return not sample.age_s <= self.limits.sample_age_s or _slow_age_s(sample) > self.limits.slow_sample_age_s
+
     def _violations(
         self, sample: Sample, velocity_rad_s: float, current_a: float, target_rad: float
     ) -> Iterator[Violation]:

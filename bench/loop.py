@@ -20,6 +20,7 @@ from drivers.errors import DriveStateError
 
 __all__ = ["OFF", "RECORDED", "Action", "ControlLoop", "Outcome", "OutcomeName", "Procedure", "Reading"]
 
+WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
 BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
 OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
 
@@ -138,7 +139,7 @@ class ControlLoop:
         self.cycles = 0
         self._previous = None
         self._velocity_rad_s = 0.0
-        sample = self._drive.exchange(OFF)
+        sample = self._fresh_sample()
         self._origin_s = sample.time_s
         reading, _ = self._read(sample)
         self.last_reading = reading
@@ -147,6 +148,20 @@ class ControlLoop:
         except LimitTrip as trip:
             return f"before motion: {trip}"
         return ""
+
+    def _fresh_sample(self) -> Sample:
+        """A sample with the power off; nothing in it is too old, where the drive gets that far within a second.
+
+        After a pause - somebody has hung a load - what a drive asks for seldom is as old as the pause.
+        """
+        sample = self._drive.exchange(OFF)
+        self._clock.start(self._period_s)
+        for _ in range(ceil(WAKING_S / self._period_s)):
+            if not self._guard.is_stale(sample):
+                break
+            self._clock.wait()
+            sample = self._drive.exchange(OFF)
+        return sample
 
     def _run_cycles(self, procedure: Procedure, recorder: Recorder, stop: StopRequest) -> dict[str, Any]:
         exchange, check, wait, record = self._drive.exchange, self._guard.check, self._clock.wait, recorder.row

@@ -118,6 +118,23 @@ def test_each_limit_is_checked_before_motion(wrong, message):
     assert not any(call.startswith("enable") for call in drive.calls)
 
 
+def _stale_for(exchanges):
+    return lambda cycle, sample: sample._replace(ages=Ages(supply_s=60.0)) if cycle < exchanges else sample
+
+
+def test_a_drive_that_nobody_asked_for_a_while_is_asked_until_it_is_fresh():
+    outcome, _ = run(FakeDrive(alter=_stale_for(20)), push())
+    assert outcome.outcome == "completed"
+
+
+def test_a_drive_that_stays_stale_is_refused():
+    drive = FakeDrive(alter=_stale_for(100_000))
+    outcome, _ = run(drive, push())
+    assert outcome.outcome == "refused"
+    assert outcome.reason.startswith("before motion: age of supply voltage, temperature or state is 60 s")
+    assert drive.exchanges < 1000
+
+
 def test_quantities_that_are_not_measured_do_not_trip():
     drive = FakeDrive(alter=lambda _cycle, sample: sample._replace(temperature_c=nan, current_a=nan))
     assert run(drive, push(5))[0].outcome == "completed"
