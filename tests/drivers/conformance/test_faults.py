@@ -1,0 +1,239 @@
+"""What goes wrong on a bench, on each driver that has a wire. Each row ends the same way: the motor is off within the
+drive's watchdog, the run is marked with the reason, nothing hangs, and the drive opens again.
+
+The time at which the motor went off is the device's own; how quick the test's process is does not matter.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from contextlib import suppress
+
+import pytest
+import tomli_w
+
+from bench.cycle import OFF, Action
+from bench.drive_factory import make_equipment
+from bench.loop import Outcome
+from bench.runner import Runner
+from bench.store import Store
+from drivers.contract import Command, Mode
+from drivers.errors import DriveConnectionError, DriveError
+from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured, run
+
+PUSH_A = 0.25
+HALF_SWING_S = 0.2
+MARGIN_S = 0.4  # of the device: its tick, its thread on a busy machine
+WRONG = {
+    "roboclaw": {"address": 0x83},
+    "canopen": {"node_id": 77},
+    "modbus-rtu": {"unit": 9},
+    "modbus-tcp": {"unit": 9},
+}
+
+
+def to_and_fro():
+    """Push the joint to and fro until something ends it; gives up after a while."""
+    yield Action(OFF)
+    began_s = time.monotonic()
+    while time.monotonic() - began_s < 20.0:
+        direction = 1.0 if int((time.monotonic() - began_s) / HALF_SWING_S) % 2 == 0 else -1.0
+        yield Action(Command(Mode.CURRENT, direction * PUSH_A), target_rad=0.0)
+    return {}
+
+
+class Swinging:
+    """The joint of a bench in motion, in a thread; `outcome` is there when it has ended."""
+
+    def __init__(self, bench, drive):
+        self.outcome: Outcome | None = None
+        self.ended_s = 0.0
+        self._bench, self._drive = bench, drive
+        bench.device.side.hang_load(0.0, False)  # puts the arm back to angle 0
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+        bench.device.wait_for_power(True, timeout_s=15.0)
+
+    def _run(self):
+        self.outcome, _ = run(self._bench, self._drive, to_and_fro(), self._stop)
+        self.ended_s = time.monotonic()
+
+    def join(self, timeout_s=15.0):
+        self._thread.join(timeout_s)
+        assert not self._thread.is_alive(), "the run hangs"
+        return self.outcome
+
+    def stop(self):
+        self._stop.set()
+        self._thread.join(15.0)
+
+
+def broken(bench, drive, kind, **values):
+    """Break something while the joint moves. Returns the outcome, and how long the motor was on afterwards [s]."""
+    swinging = Swinging(bench, drive)
+    try:
+        time.sleep(3.0 * PERIOD_S)
+        before_s = time.monotonic()
+        bench.device.side.ask(kind, **values)
+        outcome = swinging.join()
+        off_s = bench.device.wait_for_power(False)
+        return outcome, off_s - before_s
+    finally:
+        swinging.stop()
+
+
+def opens_again(bench, drive):
+    """The drive opens and answers, after what was wrong has been put right."""
+    bench.repair()
+    deadline_s = time.monotonic() + 10.0
+    while True:
+        drive.close()
+        try:
+            drive.open(PERIOD_S)
+            drive.clear_fault()
+            drive.exchange(OFF)
+            return
+        except DriveError:  # a port that is plugged in takes a moment
+            assert time.monotonic() < deadline_s
+            time.sleep(0.1)
+
+
+@pytest.mark.parametrize("name", ["disconnect", "silent", "drop"])
+def test_the_cable_comes_out_in_mid_motion(wired, name):
+    with wired.opened() as drive:
+        outcome, on_s = broken(wired, drive, "link", name=name)
+        assert outcome.outcome == "failed"
+        assert any(word in outcome.reason for word in ("gone", "found", "answer", "heartbeat", "SYNC", "heard", "bus"))
+        assert on_s < wired.watched_s + MARGIN_S
+        opens_again(wired, drive)
+
+
+def test_one_corrupted_packet_does_not_end_the_run(wired):
+    with wired.opened() as drive:
+        swinging = Swinging(wired, drive)
+        for _ in range(3):
+            wired.device.side.ask("link", name="corrupt", packets=1)
+            time.sleep(0.3)
+        running = swinging.outcome is None
+        swinging.stop()
+        assert running, swinging.outcome
+        assert swinging.outcome.outcome == "stopped"
+
+
+def test_a_line_that_corrupts_everything_ends_in_power_off(wired):
+    with wired.opened() as drive:
+        outcome, on_s = broken(wired, drive, "link", name="corrupt")
+        assert outcome.outcome == "failed"
+        assert on_s < wired.watched_s + MARGIN_S
+        opens_again(wired, drive)
+
+
+@pytest.mark.parametrize("name", ["over-current", "drive-failed", "supply-lost"])
+def test_a_fault_of_the_drive_while_the_demand_rises(wired, name):
+    with wired.opened() as drive:
+        outcome, on_s = broken(wired, drive, "fault", name=name)
+        assert outcome.outcome == "failed"
+        assert outcome.reason
+        assert on_s < MARGIN_S  # the drive itself, at once
+        opens_again(wired, drive)
+
+
+def test_an_encoder_that_stands_still_trips_a_limit_or_is_noticed(wired):
+    """The joint moves on, its measured position does not: what the position servo would chase."""
+    tight = wired.configuration.limits.model_copy(update={"tracking_error_rad": 0.02})
+    with wired.opened() as drive:
+        bench = type(wired)(wired.name, wired.configuration.model_copy(update={"limits": tight}), wired.device)
+        wired.device.side.ask("fault", name="encoder-stuck")
+        outcome, _ = run(bench, drive, _far_away(), threading.Event())
+        assert outcome.outcome == "tripped"
+        assert "tracking error" in outcome.reason
+        wired.device.wait_for_power(False)
+
+
+def _far_away():
+    yield Action(OFF)
+    for cycle in range(500):
+        yield Action(Command(Mode.CURRENT, 0.0), target_rad=1e-4 * cycle)
+    return {}
+
+
+def exchange_until_it_fails(drive):
+    for _ in range(100):
+        drive.exchange(OFF)
+        time.sleep(PERIOD_S)
+
+
+def test_a_port_that_is_gone_and_comes_back(wired):
+    with wired.opened() as drive:
+        wired.device.side.ask("link", name="disconnect", duration_s=0.6)
+        with pytest.raises(DriveConnectionError):
+            exchange_until_it_fails(drive)
+        opens_again(wired, drive)
+
+
+def test_a_wrong_address_is_an_error_that_names_it(wired):
+    wrong = WRONG[wired.name]
+    values = wired.configuration.drive.model_dump() | wrong
+    drive = make_equipment(configured(**values)).drive
+    began_s = time.monotonic()
+    with pytest.raises(DriveError) as error:
+        drive.open(PERIOD_S)
+    drive.close()
+    [address] = wrong.values()
+    assert str(address) in str(error.value) or hex(address) in str(error.value)
+    assert time.monotonic() - began_s < drive.describe().longest_open_s + 5.0
+
+
+def test_every_call_is_bounded_while_the_device_is_silent(wired):
+    with wired.opened() as drive:
+        longest_s = drive.describe().longest_call_s
+        assert longest_s >= ANSWER_TIMEOUT_S
+        wired.device.side.ask("link", name="silent")
+        for call in (lambda: drive.exchange(OFF), drive.disable, drive.quick_stop, drive.clear_fault, drive.close):
+            began_s = time.monotonic()
+            with suppress(DriveError):
+                call()
+            assert time.monotonic() - began_s < longest_s + 2.0  # a busy machine's share
+        opens_again(wired, drive)
+
+
+def test_a_host_that_is_killed_in_mid_motion(wired, tmp_path):
+    """SIGKILL: nobody says good-bye. The drive stops by itself; the record says so when the store is opened again."""
+    url = f"sqlite:///{tmp_path / 'bench.sqlite'}"
+    configuration = tmp_path / "bench.toml"
+    configuration.write_text(tomli_w.dumps(wired.configuration.model_dump(mode="json", exclude_none=True)))
+    with Store.open(url) as store:
+        runner = Runner(wired.configuration, store)
+        runner.start("commissioning", {})
+        while not runner.wait(0.02):
+            if (prompt := runner.status().prompt) is not None:
+                runner.answer(prompt.number)
+        assert runner.status().outcome == "completed", runner.status().reason
+        runner.close()
+    words = ["--config", str(configuration), "--store", url, "run", "steps", "--load-kg", "0", "--repeats", "3"]
+    host = subprocess.Popen(
+        [sys.executable, "-m", "bench.cli", *words], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
+    )
+    try:
+        host.stdin.write(b"\n")
+        host.stdin.flush()
+        wired.device.wait_for_power(True, timeout_s=60.0)
+        time.sleep(0.3)
+        killed_s = time.monotonic()
+        os.kill(host.pid, signal.SIGKILL)
+        host.wait(10.0)
+        off_s = wired.device.wait_for_power(False)
+    finally:
+        host.kill()
+        host.stdin.close()
+        host.wait()
+    assert off_s - killed_s < wired.watched_s + MARGIN_S, "the drive's watchdog did not stop it"
+    with Store.open(url) as store:
+        newest = store.experiments()[0]
+        assert (newest.kind, newest.outcome) == ("steps", "interrupted")
+    with wired.opened() as drive:
+        opens_again(wired, drive)

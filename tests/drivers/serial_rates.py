@@ -1,0 +1,148 @@
+"""How quick the drivers of RoboClaw and Modbus are beside the same exchange written barely with the library.
+
+Each row is a ratio within one run, against one simulated device in a process of its own: some rounds of bare cycles and
+of the driver's in turn, the quickest round of each.
+"""
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import serial
+from pymodbus import FramerType
+from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+
+from drivers.contract import Command, Drive, Mode
+from drivers.joint import JointScale
+from drivers.modbus.drive import ModbusDrive
+from drivers.modbus.link import QuickSerialClient
+from drivers.modbus.map_file import load_map
+from drivers.modbus.settings import ModbusSettings
+from drivers.roboclaw.drive import RoboclawDrive
+from drivers.roboclaw.settings import RoboclawSettings
+from tests.devices.device_process import device_process
+from tests.drivers.roboclaw_answers import crc
+
+CYCLES, ROUNDS = 300, 9
+PERIOD_S = 0.02
+BAUD_RATE = 115200
+JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
+OFF = Command(Mode.OFF)
+NEVER = 1_000_000
+
+# of a cycle, in bytes there and back: duty, encoder, speed, applied PWM, currents
+ROBOCLAW_CYCLE = ((6, 1), (2, 7), (2, 7), (2, 6), (2, 6))
+Cycle = Callable[[], object]
+
+
+def report() -> None:
+    """Print the rows."""
+    print("a cycle of each driver beside the same exchange written barely with the library")
+    for row in (roboclaw_row, modbus_tcp_row, modbus_rtu_row):
+        print(row(), flush=True)
+    print(line_row(), flush=True)
+
+
+def roboclaw_row() -> str:
+    """Over a pty without pace."""
+    with device_process("roboclaw", "--baud", "0") as device:
+        settings = RoboclawSettings(device.port, answer_timeout_s=1.0, slow_every=NEVER)
+
+        def bare() -> tuple[Cycle, Cycle]:
+            port = serial.Serial(device.port, BAUD_RATE, timeout=1.0, exclusive=True)
+            duty = b"\x80\x20\x00\x00"
+            questions = [(duty + crc(duty), 1)] + [(bytes((0x80, number)), size) for number, size in _READS]
+
+            def cycle() -> None:
+                for packet, size in questions:
+                    port.write(packet)
+                    port.read(size)
+
+            return cycle, port.close
+
+        return _row("RoboClaw, pty, pyserial", bare, lambda: _opened(RoboclawDrive(settings, JOINT)))
+
+
+_READS = ((16, 7), (18, 7), (48, 6), (49, 6))
+
+
+def modbus_tcp_row() -> str:
+    """Function 23 over loopback."""
+    with device_process("modbus", "--transport", "tcp") as device:
+        settings = _modbus_settings(device.drive)
+
+        def bare() -> tuple[Cycle, Cycle]:
+            client = ModbusTcpClient(settings.host, port=int(settings.port), timeout=1.0, retries=0)
+            client.connect()
+            return _read_write(client), client.close
+
+        return _row("Modbus TCP, pymodbus", bare, lambda: _opened(ModbusDrive(settings, load_map(settings.map), JOINT)))
+
+
+def modbus_rtu_row() -> str:
+    """Function 23 over a pty without pace; beside pymodbus' own client and beside the quicker one of `link.py`."""
+    with device_process("modbus", "--transport", "rtu", "--baud", "0") as device:
+        settings = _modbus_settings(device.drive)
+
+        def bare(kind: type[ModbusSerialClient]) -> tuple[Cycle, Cycle]:
+            client = kind(settings.port, framer=FramerType.RTU, baudrate=BAUD_RATE, timeout=1.0, retries=0)
+            client.connect()
+            return _read_write(client), client.close
+
+        def driver() -> tuple[Cycle, Cycle]:
+            return _opened(ModbusDrive(settings, load_map(settings.map), JOINT))
+
+        own = _row("Modbus RTU, pty, pymodbus", lambda: bare(ModbusSerialClient), driver)
+        return f"{own}\n{_row('Modbus RTU, pty, its client without polling', lambda: bare(QuickSerialClient), driver)}"
+
+
+def line_row() -> str:
+    """A RoboClaw paced as 115200 baud: how much of the line is used."""
+    with device_process("roboclaw", "--baud", str(BAUD_RATE)) as device:
+        settings = RoboclawSettings(device.port, answer_timeout_s=1.0, slow_every=NEVER)
+        cycle, close = _opened(RoboclawDrive(settings, JOINT))
+        cycle_s = min(_round(cycle, 50) for _ in range(ROUNDS))
+        close()
+    line_s = sum(there + back for there, back in ROBOCLAW_CYCLE) * 10 / BAUD_RATE
+    share = 100.0 * line_s / cycle_s
+    return (
+        f"RoboClaw paced as {BAUD_RATE} baud: {1.0 / cycle_s:.0f} cycles/s of the {1.0 / line_s:.0f} that the line "
+        f"allows, {share:.1f} %"
+    )
+
+
+def _modbus_settings(drive: dict[str, Any]) -> ModbusSettings:
+    values = {name: value for name, value in drive.items() if name != "kind"}
+    return ModbusSettings(**{**values, "port": str(values["port"])}, answer_timeout_s=1.0, watchdog_s=1.0)
+
+
+def _read_write(client: Any) -> Cycle:
+    words = [0] * 5
+    return lambda: client.readwrite_registers(
+        read_address=100, read_count=12, write_address=0, values=words, device_id=1
+    )
+
+
+def _opened(drive: Drive) -> tuple[Cycle, Cycle]:
+    drive.open(PERIOD_S)
+    return lambda: drive.exchange(OFF), drive.close
+
+
+def _row(name: str, bare: Callable[[], tuple[Cycle, Cycle]], driver: Callable[[], tuple[Cycle, Cycle]]) -> str:
+    found: dict[str, list[float]] = {"bare": [], "driver": []}
+    for _ in range(ROUNDS):
+        for kind, make in (("bare", bare), ("driver", driver)):
+            cycle, close = make()  # one at a time: ports are exclusive
+            found[kind].append(_round(cycle, CYCLES))
+            close()
+    bare_s, driver_s = (min(found[kind]) for kind in ("bare", "driver"))
+    return f"{name:<44} bare {1e6 * bare_s:7.0f} us   driver {1e6 * driver_s:7.0f} us   ratio {driver_s / bare_s:.2f}"
+
+
+def _round(cycle: Cycle, count: int) -> float:
+    """Seconds per cycle."""
+    cycle()
+    began_s = perf_counter()
+    for _ in range(count):
+        cycle()
+    return (perf_counter() - began_s) / count
