@@ -1,6 +1,6 @@
 """From what a drive counts to what the joint does: encoder counts, gear ratio, signs and zero."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite, pi
 
 
@@ -24,6 +24,7 @@ class JointScale:
     motor_sign: int = 1
     encoder_sign: int = 1
     zero_rad: float = 0.0
+    _count_rad: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("counts_per_turn", "gear_ratio"):
@@ -35,11 +36,12 @@ class JointScale:
                 raise ValueError(f"{name} is {getattr(self, name)}; 1 or -1 is wanted")
         if not isfinite(self.zero_rad):
             raise ValueError(f"zero_rad is {self.zero_rad} rad; a finite angle is wanted")
+        object.__setattr__(self, "_count_rad", 2.0 * pi / (self.counts_per_turn * self.gear_ratio))
 
     @property
     def count_rad(self) -> float:
         """The joint angle of one count [rad]."""
-        return 2.0 * pi / (self.counts_per_turn * self.gear_ratio)
+        return self._count_rad
 
     def position_rad(self, counts: float) -> float:
         """Joint angle of a count [rad]."""

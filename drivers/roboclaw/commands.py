@@ -3,7 +3,7 @@
 Source: Basicmicro, RoboClaw Series User Manual, "Packet Serial" and "Advance Packet Serial".
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from struct import Struct
 
 ACKNOWLEDGED = b"\xff"
@@ -19,16 +19,16 @@ class Read:
         number: of the command.
         layout: of the data.
         meaning: used in messages.
+        reply_bytes: data and CRC.
     """
 
     number: int
     layout: Struct
     meaning: str
+    reply_bytes: int = field(init=False)
 
-    @property
-    def reply_bytes(self) -> int:
-        """Data and CRC."""
-        return self.layout.size + CRC_BYTES
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reply_bytes", self.layout.size + CRC_BYTES)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ CRC-16/XMODEM (polynomial 0x1021, start 0, neither reflected nor inverted), high
 
 from binascii import crc_hqx
 
-from drivers.roboclaw.commands import READ_VERSION, Read, Write
+from drivers.roboclaw.commands import CRC_BYTES, READ_VERSION, Read, Write
 
 VERSION_END = b"\n\0"
 
@@ -39,7 +39,12 @@ def version_packet(address: int) -> bytes:
     return bytes((address, READ_VERSION))
 
 
-def is_intact(request: bytes, reply: bytes) -> bool:
-    """Whether the CRC at the end of a reply to a read is right."""
-    # of data followed by its own CRC, this CRC is 0
-    return len(reply) > 2 and crc_hqx(reply, crc_hqx(request, 0)) == 0
+def is_intact(request_crc: int, reply: bytes) -> bool:
+    """Whether the CRC at the end of a reply to a read is right.
+
+    Args:
+        request_crc: `crc16` of the request.
+        reply: data and CRC.
+    """
+    # of data followed by its own CRC, the CRC is 0
+    return len(reply) > CRC_BYTES and crc_hqx(reply, request_crc) == 0

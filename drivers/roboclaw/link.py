@@ -8,7 +8,7 @@ from serial.tools import list_ports
 
 from drivers.errors import DriveConnectionError
 from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, Read, Write
-from drivers.roboclaw.frames import VERSION_END, is_intact, read_packet, version_packet, write_packet
+from drivers.roboclaw.frames import VERSION_END, crc16, is_intact, read_packet, version_packet, write_packet
 from drivers.roboclaw.settings import RoboclawSettings
 
 RESYNC_S = 0.012  # the controller forgets half a packet after 10 ms of silence
@@ -30,7 +30,7 @@ class Link:
         self._device = device
         self._address = settings.address
         self._timeout_s = settings.answer_timeout_s
-        self._requests: dict[int, bytes] = {}
+        self._requests: dict[int, tuple[bytes, int]] = {}
         self._deadline_s = 0.0
         try:
             self._port: Any = serial.Serial(
@@ -63,14 +63,16 @@ class Link:
         Raises:
             DriveConnectionError: no intact answer in time, or the port is gone.
         """
-        request = self._requests.get(command.number)
-        if request is None:
-            request = self._requests[command.number] = read_packet(self._address, command)
+        prepared = self._requests.get(command.number)
+        if prepared is None:
+            packet = read_packet(self._address, command)
+            prepared = self._requests[command.number] = packet, crc16(packet)
+        request, request_crc = prepared
         size = command.reply_bytes
         found = "nothing"
         for _ in range(ATTEMPTS):
             reply = self._ask(request, size)
-            if len(reply) == size and is_intact(request, reply):
+            if len(reply) == size and is_intact(request_crc, reply):
                 return command.layout.unpack_from(reply)
             found = _seen(reply, size)
             if not self._resync():
@@ -104,7 +106,7 @@ class Link:
         found = "nothing"
         for _ in range(ATTEMPTS):
             reply = self._ask_text(request)
-            if is_intact(request, reply):
+            if is_intact(crc16(request), reply):
                 return reply[: -CRC_BYTES - len(VERSION_END)].decode("ascii", "replace")
             found = "nothing" if not reply else f"{len(reply)} bytes that are no answer of a RoboClaw"
             if not self._resync():

@@ -44,16 +44,16 @@ ENCODER_ANSWER = bytes.fromhex("12 34 56 78 02") + crc(bytes.fromhex("80 10 12 3
 
 def test_an_answer_is_intact_only_with_the_crc_of_question_and_data():
     assert ENCODER_ANSWER.hex(" ") == "12 34 56 78 02 5a 60"
-    assert is_intact(b"\x80\x10", ENCODER_ANSWER)
+    assert is_intact(crc16(b"\x80\x10"), ENCODER_ANSWER)
     assert M1.encoder.layout.unpack_from(ENCODER_ANSWER) == (305419896, 2)
-    assert not is_intact(b"\x80\x11", ENCODER_ANSWER)
-    assert not is_intact(b"\x81\x10", ENCODER_ANSWER)
-    assert not is_intact(b"\x80\x10", b"")
+    assert not is_intact(crc16(b"\x80\x11"), ENCODER_ANSWER)
+    assert not is_intact(crc16(b"\x81\x10"), ENCODER_ANSWER)
+    assert not is_intact(crc16(b"\x80\x10"), b"")
     for place in range(len(ENCODER_ANSWER)):
         for bit in range(8):
             wrong = bytearray(ENCODER_ANSWER)
             wrong[place] ^= 1 << bit
-            assert not is_intact(b"\x80\x10", bytes(wrong))
+            assert not is_intact(crc16(b"\x80\x10"), bytes(wrong))
 
 
 def test_the_count_is_followed_through_its_wraps():
