@@ -52,6 +52,7 @@ class RoboclawDrive(Drive):
         self._state = Status.DISABLED
         self._told_s = 0.0  # when the last demand went out
         self._told_counts = 0  # that demand
+        self._silent_until_s = 0.0
         self._rest_rad, self._standing = 0.0, 0
 
     # the contract --------------------------------------------------------------------------------
@@ -91,6 +92,7 @@ class RoboclawDrive(Drive):
                 "a longer time-out is wanted: change watchdog_s",
             )
         self._link = Link(self._settings, self._device)
+        self._silent_until_s = 0.0
         try:
             self._identity = self._identify(self._link)
             self._tell(0)
@@ -107,7 +109,8 @@ class RoboclawDrive(Drive):
         if link is None:
             return
         try:
-            self._tell(0)
+            if time.perf_counter() >= self._silent_until_s:
+                self._tell(0)
         except DriveError:
             pass  # who does not answer any more is stopped by the serial time-out
         finally:
@@ -147,10 +150,14 @@ class RoboclawDrive(Drive):
         """Brake with a duty of 0, until the count stands still."""
         link, _ = self._opened("quick_stop")
         link.begin()
-        self._tell(0)
         if self._state is Status.ENABLED:
             self._state = Status.QUICK_STOP
             self._standing = 0
+        try:
+            self._tell(0)
+        except DriveConnectionError:
+            self._fall_silent(link)
+            raise
 
     def clear_fault(self) -> None:
         """Ask whether the fault is gone. The drive is left disabled.
@@ -185,11 +192,11 @@ class RoboclawDrive(Drive):
         else:
             self._check_motion(mode, value)
             counts = round(self._joint.motor_sign * value * DUTY_FULL)
-        before = self._told_counts
-        self._tell(counts)
-        sample = telemetry.sample(self._state)
-        if before and not sample.duty:  # demanded and not applied: something has switched it off
-            telemetry.read_status()
+        try:
+            sample = self._cycle(telemetry, counts)
+        except DriveConnectionError:
+            self._fall_silent(link)
+            raise
         if telemetry.faults and self._state is not Status.FAULT:
             self._trip()
             sample = sample._replace(status=self._state)
@@ -199,9 +206,23 @@ class RoboclawDrive(Drive):
 
     # the inside ----------------------------------------------------------------------------------
 
+    def _cycle(self, telemetry: Telemetry, counts: int) -> Sample:
+        before = self._told_counts
+        self._tell(counts)
+        sample = telemetry.sample(self._state)
+        if before and not sample.duty:  # demanded and not applied: something has switched it off
+            telemetry.read_status()
+        return sample
+
     def _opened(self, call: str) -> tuple[Link, Telemetry]:
         if self._link is None or self._telemetry is None:
             raise DriveStateError(self._device, f"{call} before open; call open(period_s) first")
+        if time.perf_counter() < self._silent_until_s:
+            raise DriveConnectionError(
+                self._device,
+                f"did not answer, and is left in silence so that its serial time-out ({self._watchdog_s:g} s) stops the "
+                "motor; check the cable, then open it again",
+            )
         return self._link, self._telemetry
 
     def _identify(self, link: Link) -> Identity:

@@ -1,6 +1,7 @@
 """The serial port: one question, one answer, in bounded time."""
 
 import time
+from contextlib import suppress
 from typing import Any
 
 import serial
@@ -95,6 +96,11 @@ class Link:
             if not self._resync():
                 break
         raise self._no_answer(command.meaning, found)
+
+    def shout(self, command: Write, *values: int) -> None:
+        """Tell once, and do not wait for the acknowledgement. Never raises."""
+        with suppress(Exception):
+            self._port.write(write_packet(self._address, command, *values))
 
     def version(self) -> str:
         """The text of command 21.

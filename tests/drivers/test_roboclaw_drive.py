@@ -156,6 +156,26 @@ def test_a_line_that_stays_corrupted_is_an_error(answers):
         drive.exchange(OFF)
 
 
+def test_who_does_not_answer_in_motion_is_left_in_silence(answers):
+    """Every byte may put off the serial time-out: retries would keep the motor on."""
+    drive = opened()
+    drive.enable(Mode.DUTY)
+    drive.exchange(duty(0.5))
+    answers.corrupt = 1000
+    with pytest.raises(DriveConnectionError, match="instead of ff"):
+        drive.exchange(duty(0.5))
+    assert answers.duties[-1] == 0  # the last word
+    answers.sent.clear()
+    for call in (drive.quick_stop, drive.disable, lambda: drive.exchange(OFF)):
+        with pytest.raises(DriveConnectionError, match=r"left in silence so that its serial time-out \(0.2 s\) stops"):
+            call()
+    drive.close()
+    assert answers.sent == []
+    answers.corrupt = 0
+    drive.open(0.01)
+    drive.exchange(OFF)
+
+
 def test_a_wrong_address_is_named(answers):
     with pytest.raises(DriveConnectionError, match=r"address 0x81 M1.*found nothing.*the address \(0x81\)"):
         opened(address=0x81)

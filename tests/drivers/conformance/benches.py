@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from bench.clock import Clock, VirtualClock, WallClock
@@ -95,15 +96,22 @@ def in_process() -> Iterator[Bench]:
 
 
 @contextmanager
+def port_name() -> Iterator[str]:
+    """A name for a port that stays while the port goes and comes back."""
+    with TemporaryDirectory(prefix="friction-bench-") as folder:
+        yield f"{folder}/port"
+
+
+@contextmanager
 def roboclaw() -> Iterator[Bench]:
-    with device_process("roboclaw", "--baud", "0") as device:
+    with port_name() as link, device_process("roboclaw", "--baud", "0", "--link", link) as device:
         settings = {"watchdog_s": WATCHDOG_S, "answer_timeout_s": ANSWER_TIMEOUT_S}
         yield Bench("roboclaw", configured(**device.drive, **settings), device)
 
 
 @contextmanager
 def canopen() -> Iterator[Bench]:
-    with device_process("canopen") as device:
+    with port_name() as link, device_process("canopen", "--link", link) as device:
         settings = {"watchdog_s": WATCHDOG_S, "answer_s": ANSWER_TIMEOUT_S}
         yield Bench("canopen", configured(**device.drive, **settings), device)
 
