@@ -220,8 +220,8 @@ class RoboclawDrive(Drive):
         if time.perf_counter() < self._silent_until_s:
             raise DriveConnectionError(
                 self._device,
-                f"did not answer, and is left in silence so that its serial time-out ({self._watchdog_s:g} s) stops the "
-                "motor; check the cable, then open it again",
+                f"did not answer, and is left in silence so that its serial time-out ({self._watchdog_s:g} s) stops "
+                "the motor; check the cable, then open it again",
             )
         return self._link, self._telemetry
 
@@ -265,9 +265,16 @@ class RoboclawDrive(Drive):
     def _tell(self, counts: int) -> None:
         """Send a duty [1/32767]."""
         assert self._link is not None
-        self._link.write(self._set_duty, counts)
         self._told_counts = counts
+        self._link.write(self._set_duty, counts)
         self._told_s = time.perf_counter()
+
+    def _fall_silent(self, link: Link) -> None:
+        """Where it does not answer: one last word, then none, as every byte may put off its serial time-out."""
+        if self._state in (Status.ENABLED, Status.QUICK_STOP):
+            link.shout(self._set_duty, 0)
+            self._silent_until_s = time.perf_counter() + self._watchdog_s
+            self._state = Status.DISABLED
 
     def _check_motion(self, mode: Mode, value: float) -> None:
         """Refuse a demand that the state does not allow, or that no drive can follow."""

@@ -71,7 +71,7 @@ def test_identity() -> None:
     assert host.drive.read(READ_HOLDING, 200, 4) == [0xFB01, 0x0100, 0, 1]
     words = host.drive.read(READ_INPUT, 210, 10)
     text = b"".join(word.to_bytes(2) for word in words)
-    assert text.rstrip(b"\0") == b"friction-bench demo"
+    assert text.rstrip(b"\0") == b"simulated drive"
 
 
 def test_duty_turns_the_motor_and_is_measured() -> None:

@@ -167,7 +167,9 @@ def test_who_does_not_answer_in_motion_is_left_in_silence(answers):
     assert answers.duties[-1] == 0  # the last word
     answers.sent.clear()
     for call in (drive.quick_stop, drive.disable, lambda: drive.exchange(OFF)):
-        with pytest.raises(DriveConnectionError, match=r"left in silence so that its serial time-out \(0.2 s\) stops"):
+        with pytest.raises(
+            DriveConnectionError, match=r"left in silence so that its serial time-out \(0.2 s\) stops the"
+        ):
             call()
     drive.close()
     assert answers.sent == []

@@ -5,7 +5,7 @@ from sim_backend.devices.modbus.registers import Kind, Register
 U16, I16, U32, I32 = Kind.U16, Kind.I16, Kind.U32, Kind.I32
 COMMAND_BLOCK = range(5)
 DEVICE, FIRMWARE, SERIAL = 0xFB01, 0x0100, 1
-PRODUCT = "friction-bench demo"
+PRODUCT = "simulated drive"
 _PRODUCT_AT, _PRODUCT_WORDS = 210, 10
 
 REGISTERS = (

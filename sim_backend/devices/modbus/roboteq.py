@@ -105,9 +105,9 @@ class Roboteq:
             0x21A1: lambda: 120,
             0x21A2: lambda: round(axis.seen.supply_v * 10.0),
             0x21A3: lambda: 4730,
-            0x2241: self._temperature,
-            0x2242: self._temperature,
-            0x22A1: self._faults,
+            0x21E1: self._temperature,
+            0x21E2: self._temperature,
+            0x2240: self._faults,
         }
 
     def _variable(self, place: int) -> Callable[[], int]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -17,8 +18,8 @@ from tests.bench.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
 
 PERIOD_S = 0.01
-WATCHDOG_S = 0.5  # a busy machine keeps a host waiting for longer than a lab's would
-ANSWER_TIMEOUT_S = 0.15
+WATCHDOG_S = 1.0  # a busy machine keeps a host waiting for longer than a lab's would
+ANSWER_TIMEOUT_S = 0.2
 
 # softer than on the quick in-process bench: cycles come late on a busy machine
 SERVO = {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_rad": 0.3}
@@ -82,7 +83,7 @@ def configured(**drive: Any) -> BenchConfiguration:
     values["control"]["period_s"] = PERIOD_S
     values["servo"] |= SERVO
     values["search"] |= SEARCH
-    values["limits"]["sample_age_s"] = 0.3
+    values["limits"]["sample_age_s"] = 0.5
     values["limits"]["tracking_error_rad"] = 1.0
     if drive:
         values["drive"] = drive
@@ -112,11 +113,26 @@ def roboclaw() -> Iterator[Bench]:
 @contextmanager
 def canopen() -> Iterator[Bench]:
     with port_name() as link, device_process("canopen", "--link", link) as device:
-        settings = {"watchdog_s": WATCHDOG_S, "answer_s": ANSWER_TIMEOUT_S}
+        settings = {"watchdog_s": WATCHDOG_S, "answer_s": 2.0 * ANSWER_TIMEOUT_S}
         yield Bench("canopen", configured(**device.drive, **settings), device)
 
 
-BENCHES: dict[str, Callable[[], Any]] = {"sim": in_process, "roboclaw": roboclaw, "canopen": canopen}
+@contextmanager
+def modbus(transport: str) -> Iterator[Bench]:
+    with port_name() as link:
+        options = ["--baud", "0", "--link", link] if transport == "rtu" else []
+        with device_process("modbus", "--transport", transport, *options) as device:
+            settings = {"watchdog_s": WATCHDOG_S, "answer_timeout_s": ANSWER_TIMEOUT_S}
+            yield Bench(f"modbus-{transport}", configured(**device.drive, **settings), device)
+
+
+BENCHES: dict[str, Callable[[], Any]] = {
+    "sim": in_process,
+    "roboclaw": roboclaw,
+    "canopen": canopen,
+    "modbus-rtu": partial(modbus, "rtu"),
+    "modbus-tcp": partial(modbus, "tcp"),
+}
 
 
 def run(bench: Bench, drive: Drive, procedure: Any, stop: Any) -> tuple[Outcome, ListSink]:

@@ -19,6 +19,7 @@ from bench.cycle import OFF, Action
 from bench.drive_factory import make_equipment
 from bench.loop import Outcome
 from bench.runner import Runner
+from bench.stop_request import StopRequest
 from bench.store import Store
 from drivers.contract import Command, Mode
 from drivers.errors import DriveConnectionError, DriveError
@@ -53,7 +54,7 @@ class Swinging:
         self.ended_s = 0.0
         self._bench, self._drive = bench, drive
         bench.device.side.hang_load(0.0, False)  # puts the arm back to angle 0
-        self._stop = threading.Event()
+        self._stop = StopRequest()
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
         bench.device.wait_for_power(True, timeout_s=15.0)
@@ -68,7 +69,7 @@ class Swinging:
         return self.outcome
 
     def stop(self):
-        self._stop.set()
+        self._stop.ask("the test is over")
         self._thread.join(15.0)
 
 
@@ -89,7 +90,7 @@ def broken(bench, drive, kind, **values):
 def opens_again(bench, drive):
     """The drive opens and answers, after what was wrong has been put right."""
     bench.repair()
-    deadline_s = time.monotonic() + 10.0
+    deadline_s = time.monotonic() + 20.0
     while True:
         drive.close()
         try:
@@ -148,7 +149,7 @@ def test_an_encoder_that_stands_still_trips_a_limit_or_is_noticed(wired):
     with wired.opened() as drive:
         bench = type(wired)(wired.name, wired.configuration.model_copy(update={"limits": tight}), wired.device)
         wired.device.side.ask("fault", name="encoder-stuck")
-        outcome, _ = run(bench, drive, _far_away(), threading.Event())
+        outcome, _ = run(bench, drive, _far_away(), StopRequest())
         assert outcome.outcome == "tripped"
         assert "tracking error" in outcome.reason
         wired.device.wait_for_power(False)
