@@ -112,7 +112,7 @@ def line_row() -> str:
 
 
 def _modbus_settings(drive: dict[str, Any]) -> ModbusSettings:
-    values = {name: value for name, value in drive.items() if name != "kind"}
+    values = {name: value for name, value in drive.items() if name not in ("kind", "side_channel")}
     return ModbusSettings(**{**values, "port": str(values["port"])}, answer_timeout_s=1.0, watchdog_s=1.0)
 
 

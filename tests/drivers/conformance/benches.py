@@ -86,6 +86,7 @@ def configured(**drive: Any) -> BenchConfiguration:
     values["limits"]["sample_age_s"] = 0.5
     values["limits"]["tracking_error_rad"] = 1.0
     if drive:
+        drive.pop("side_channel", None)  # loads are hung by a person here, whom the tests play
         values["drive"] = drive
     return parse_configuration(values, "bench.toml")
 
