@@ -35,6 +35,9 @@ benchmark: $(STAMP) ## how fast plant and drive are beside MuJoCo, store and exp
 	$(BIN)/python -m tests.store.rates
 	$(BIN)/python -m tests.drivers.rates
 
+kills: $(STAMP)  ## 200 runs ended at random moments, in every way: what is left of each
+	$(BIN)/python -m tests.stopping.kills --kills 200
+
 check: $(STAMP)  ## style, types and walls
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
