@@ -1,7 +1,8 @@
 """The regression behind a friction curve: bounded, robust, with the covariance of what it found.
 
 Robust: soft-L1 loss of residuals over a scale, and the scale is the spread of the bulk of them. Covariance: that of an
-M-estimator (Huber, Ann. Statist. 1 (1973), 799), which for residuals small against the scale is least squares' own.
+M-estimator (Huber, Ann. Statist. 1 (1973), 799) whose residuals do not all scatter alike (HC3 of MacKinnon and White,
+J. Econometrics 29 (1985), 305): at creeping speed a window averages over little of the path, and scatters more.
 """
 
 from typing import NamedTuple
@@ -16,6 +17,7 @@ SHAPES = (0.3, 4.0)  # allowed ds; the literature has 0.5 .. 2
 STARTS = tuple((share, shape) for share in (0.005, 0.02, 0.06, 0.2) for shape in (1.0, 2.0))
 SCALE_PASSES = 5
 SOFTNESS = 2.0  # scale of the loss over the spread: 95 % as efficient as least squares where there are no outliers
+MOST_LEVERAGE = 0.9  # of one point, in the covariance: beyond, its own residual tells nothing
 PLAIN = (0, 4, 5)  # parameters without the Stribeck shape
 WHOLE = (0, 1, 2, 3, 4, 5)
 INERTIA = 6  # fitted where accelerations are known
@@ -121,13 +123,12 @@ def _spread(residual_a: FloatArray, parameters: int) -> float:
 
 def _covariance(problem: _Problem, best: OptimizeResult, free: NDArray[np.bool_], scale_a: float) -> FloatArray:
     columns = problem.derivatives(best.x)[:, free[problem.fitted]]
-    count, parameters = columns.shape
     bend = 1.0 + (best.fun / scale_a) ** 2
     influence_a, slope = best.fun / np.sqrt(bend), bend**-1.5
-    mean_slope = float(np.mean(slope))
-    inflation = 1.0 + parameters / count * float(np.var(slope)) / mean_slope**2
-    variance = inflation**2 * float(np.sum(influence_a**2)) / (count - parameters) / mean_slope**2
-    covariance = np.zeros((COUNT, COUNT))
     # pinv: with the Stribeck rise at 0 its speed and shape move nothing
-    covariance[np.ix_(free, free)] = variance * np.linalg.pinv(columns.T @ columns, rcond=1e-14, hermitian=True)
+    bread = np.linalg.pinv(columns.T @ (slope[:, None] * columns), rcond=1e-14, hermitian=True)
+    leverage = np.clip(np.sum((columns @ bread) * columns, axis=1) * slope, 0.0, MOST_LEVERAGE)
+    swayed = columns * (influence_a / (1.0 - leverage))[:, None]
+    covariance = np.zeros((COUNT, COUNT))
+    covariance[np.ix_(free, free)] = bread @ (swayed.T @ swayed) @ bread
     return covariance

@@ -9,6 +9,7 @@ from bench.rivals.comparison import LOAD_KG, Comparison
 from bench.rivals.scoring import REGIMES, Score
 from compensator.rivals import RIVALS
 
+DYNAMIC = ("dahl", "reset-integrator", "lugre-observer")
 _MEANS = ("seconds", "travel_rad", "energy_j")
 
 
@@ -17,7 +18,7 @@ def section_of(comparisons: Sequence[Comparison], seeds: int) -> Section:
     return Section(
         title="Rivals on the same samples",
         sentences=[
-            f"{1e3 * LOAD_KG:g} g, {seeds} seeds: at rest after steps to 90 degrees, at steady speeds, in a sinusoid "
+            f"{1e3 * LOAD_KG:g} g, seeds: {seeds}. At rest after steps to 90 degrees, at steady speeds, in a sinusoid "
             "of 0.5 Hz and 45 degrees, within 0.15 s of its reversals, and pressed against a wall. All know the same "
             "calibration. Those who know of no load have the curve of 50 g, which is the load that hangs there; "
             "breakaway takes them as many encoder counts as the search takes for a departure. What does not filter by "
@@ -25,9 +26,25 @@ def section_of(comparisons: Sequence[Comparison], seeds: int) -> Section:
             "largest.",
             "Those who need no search give something at once; at rest it is before the search. The two that search are "
             "given the result of one at angle 0 before each motion.",
+            *_free_play(comparisons),
         ],
         tables=[_table(one) for one in comparisons],
     )
+
+
+def _free_play(comparisons: Sequence[Comparison]) -> list[str]:
+    """What free play, the paper's reason to set the dynamic models aside, makes of them."""
+    if len(comparisons) < 2:
+        return []
+    found = []
+    for rival in RIVALS:
+        if rival.name in DYNAMIC:
+            errors = (f"{one.scores[rival.name].mean_g('at rest') or 0.0:.1f} g {one.rig}" for one in comparisons)
+            found.append(f"{rival.title} {', '.join(errors)}")
+    return [
+        "The paper sets dynamic models aside because free play parts the surfaces. Their mean error at rest here: "
+        f"{'; '.join(found)}."
+    ]
 
 
 def numbers_of(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
@@ -68,7 +85,7 @@ def _cells(score: Score) -> list[str]:
 
 
 def _pair(mean: float | None, largest: float | None) -> str:
-    return "-" if mean is None or largest is None else f"{mean:.2g} / {largest:.2g}"
+    return "-" if mean is None or largest is None else f"{mean:.3g} / {largest:.3g}"
 
 
 def _short(value: float | None) -> str:

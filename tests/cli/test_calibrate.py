@@ -2,6 +2,9 @@
 
 import json
 
+import pytest
+
+pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 LEVELS = ("--loads-kg", "0,0.1", "--duties", "0.2")
 
 

@@ -8,6 +8,7 @@ from bench.paper import reproduction
 from bench.paper.measurements import Plan
 from tests.paper.test_reproduction import SWEEP
 
+pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 TINY = Plan((0.0, 0.1), steps=2, trials=1, speeds_rad_s=(3.0,), periods=1, speed_sweep=tuple(SWEEP.items()))
 
 

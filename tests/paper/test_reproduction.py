@@ -13,6 +13,7 @@ from bench.report import write_html
 from bench.store import Store
 from bench.store.errors import NotFoundError
 
+pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 SWEEP = {"currents_a": (0.3,), "duties": (0.2,), "speeds_rad_s": (0.03, 0.1, 0.3, 0.6, 1.5), "strokes": 3}
 SMALL = Plan(
     loads_kg=(0.0, 0.05, 0.1), steps=4, trials=2, speeds_rad_s=(1.0, 3.0), periods=1, speed_sweep=tuple(SWEEP.items())

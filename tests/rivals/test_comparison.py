@@ -11,6 +11,7 @@ from bench.rivals import compare, comparison, numbers_of, scoring, section_of
 from bench.rivals.record import record
 from bench.rivals.replay import search_of, truth_of
 
+pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 SMALL = {
     "STEPS": {"load_kg": 0.05, "repeats": 1},
     "SPEEDS": {"load_kg": 0.05, "speeds_rad_s": (2.0,)},
@@ -73,6 +74,9 @@ def test_in_motion_taking_friction_and_inertia_off_pays(compared):
 
 def test_the_table_names_every_rival(compared):
     (table,) = section_of(compared, 1).tables
+    twice = section_of([*compared, *compared], 1)
+    assert twice.sentences[-1].startswith("The paper sets dynamic models aside")
+    assert twice.sentences[-1].count("with free play") == 6
     assert len(table.rows) == 8
     assert all(len(row) == len(table.columns) for row in table.rows)
 
