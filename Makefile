@@ -29,7 +29,7 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 test: $(STAMP)   ## the tests
 	$(BIN)/pytest
 
-benchmark: $(STAMP) ## how fast plant and drive are beside MuJoCo, store and export beside pandas, drivers beside their libraries
+benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo, store and export beside pandas, drivers beside their libraries
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m tests.sim_backend.rates
 	$(BIN)/python -m tests.store.rates

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import nan
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bench.configuration import BenchConfiguration
 from bench.drives.canopen import CanopenDriveSettings
@@ -14,6 +14,9 @@ from bench.errors import ConfigurationError, ExperimentError
 from bench.rig import Rig
 from bench.technician import PersonTechnician, SimulatedTechnician, Technician
 from drivers.contract import Drive
+
+if TYPE_CHECKING:
+    from sim_backend.faults import Fault
 
 Ask = Callable[[str], bool]
 """Shows a sentence to the person at the bench; returns True when it is done, False when the person gives up."""
@@ -94,10 +97,25 @@ def _simulated(settings: SimulatedDriveSettings) -> Equipment:
 
     try:
         parameters = PlantParameters.from_dict(settings.plant, base=by_name(settings.preset))
-        drive = SimulatedDrive(parameters, seed=settings.seed)
+        drive = SimulatedDrive(parameters, seed=settings.seed, faults=_script(settings))
     except ParameterError as error:
         raise ConfigurationError(f"simulated drive: {error}") from error
     return Equipment(drive, SimulatedTechnician(drive))
+
+
+def _script(settings: SimulatedDriveSettings) -> "list[Fault]":
+    """The faults of bench.toml as the simulation plays them; both name each kind alike."""
+    from sim_backend import faults
+
+    return [
+        getattr(faults, type(fault).__name__)(
+            start_s=fault.at_s,
+            duration_s=fault.for_s or faults.FOR_GOOD_S,
+            by_the_wall=fault.clock == "wall",
+            **fault.values(),
+        )
+        for fault in settings.faults
+    ]
 
 
 def _roboclaw(settings: RoboclawDriveSettings, rig: Rig, ask: Ask) -> Equipment:

@@ -102,6 +102,9 @@ class Guard:
         self, sample: Sample, velocity_rad_s: float, current_a: float, target_rad: float
     ) -> Iterator[Violation]:
         limits, position_rad = self.limits, sample.position_rad
+        # a stale sample tells nothing else
+        if not sample.age_s <= limits.sample_age_s:
+            yield Violation("age of the sample", sample.age_s, f"at most {limits.sample_age_s:g}", "s")
         error_rad = target_rad - position_rad
         if not limits.position_min_rad <= position_rad <= limits.position_max_rad:
             yield Violation("position", position_rad, limits.position_range(), "rad")
@@ -113,8 +116,6 @@ class Guard:
             yield Violation("temperature", sample.temperature_c, f"at most {limits.temperature_c:g}", "degC")
         if abs(error_rad) > limits.tracking_error_rad:
             yield Violation("tracking error", error_rad, _either_way(limits.tracking_error_rad), "rad")
-        if not sample.age_s <= limits.sample_age_s:
-            yield Violation("age of the sample", sample.age_s, f"at most {limits.sample_age_s:g}", "s")
         allowed = f"at most {limits.slow_sample_age_s:g}"
         yield Violation("age of supply voltage, temperature or state", _slow_age_s(sample), allowed, "s")
 

@@ -172,7 +172,8 @@ class ControlLoop:
             wait()
             if stopping():
                 raise _StopRequested
-            sample = exchange(self._wire_command(action.command))
+            command = self._wire_command(action.command)
+            sample = exchange(command)
             reading, estimate_a = self._read(sample)
             self.cycles += 1
             self.last_reading = reading
@@ -181,6 +182,8 @@ class ControlLoop:
                 recorder.event(reading.time_s, *action.event)
             check(sample, reading.velocity_rad_s, reading.current_a, action.target_rad)
             if self._mode is not Mode.OFF and sample.status is not Status.ENABLED:
+                if sample.status is Status.FAULT:
+                    exchange(command)  # a drive in fault refuses it, and says what the fault is
                 raise DriveStateError(
                     self._drive.describe().device,
                     f"status is {sample.status.name} during motion; ENABLED is wanted. See the drive's own display",

@@ -110,7 +110,10 @@ class CurrentServo:
 
     def duty(self, current_a: float, sample: Sample, velocity_rad_s: float) -> float:
         """Duty that gives a current [A], eq. (3) inverted, within -1 .. 1."""
-        wanted = motor.duty(self._warm_motor(sample), current_a, velocity_rad_s * self._ratio, self._supply_v(sample))
+        supply_v = self._supply_v(sample)
+        if supply_v <= 0.0:
+            return 0.0  # no duty gives any current; what is wrong with the supply is the drive's to say
+        wanted = motor.duty(self._warm_motor(sample), current_a, velocity_rad_s * self._ratio, supply_v)
         return min(max(wanted, -1.0), 1.0)
 
 

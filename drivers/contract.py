@@ -164,7 +164,11 @@ class Drive(Protocol):
         """Brake as fast as the drive can, then power off."""
 
     def clear_fault(self) -> None:
-        """Acknowledge a fault. The drive is left disabled."""
+        """Acknowledge a fault. The drive is left disabled.
+
+        Raises:
+            DriveFault: the cause is still there, and so is the fault.
+        """
 
     def exchange(self, command: Command) -> Sample:
         """Send one command and return the sample of this cycle.

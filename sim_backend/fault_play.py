@@ -59,7 +59,7 @@ class FaultPlay:
         jump = self._script.holding(EncoderJump, sample.time_s)
         if jump:
             window_s = self._plant.parameters.encoder.speed_window_s
-            news = sample.time_s - jump.start_s < window_s
+            news = self._script.time_of(jump, sample.time_s) - jump.start_s < window_s
             sample = sample._replace(
                 position_rad=sample.position_rad + jump.jump_rad,
                 velocity_rad_s=sample.velocity_rad_s + (jump.jump_rad / window_s if news else 0.0),

@@ -1,8 +1,9 @@
-"""What may go wrong on a bench, scripted in the drive's own time."""
+"""What may go wrong on a bench, scripted in the drive's own time or by the wall clock."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from time import monotonic
 from typing import TypeVar
 
 from sim_backend.component import Component, quantity
@@ -15,8 +16,9 @@ FOR_GOOD_S = 1e12
 class Fault(Component):
     """Something that is wrong from a time on, for a while or for good."""
 
-    start_s: float = quantity("s, the drive's time", at_least=0)
+    start_s: float = quantity("s, since the drive was made", at_least=0)
     duration_s: float = quantity("s", above=0, default=FOR_GOOD_S)
+    by_the_wall: bool = False  # seconds of the wall clock, not the drive's own
 
     def holds(self, time_s: float) -> bool:
         """Tell whether it is wrong at a time."""
@@ -116,11 +118,17 @@ Kind = TypeVar("Kind", bound=Fault)
 class FaultScript:
     """The faults of a run, in any order. Two of a kind may not overlap.
 
+    Args:
+        faults: what goes wrong.
+        wall: the wall clock [s]; for faults that go by it the script begins now.
+
     Raises:
         ParameterError: two of a kind overlap.
     """
 
-    def __init__(self, faults: Iterable[Fault] = ()) -> None:
+    def __init__(self, faults: Iterable[Fault] = (), wall: Callable[[], float] = monotonic) -> None:
+        self._wall = wall
+        self._origin_s = wall()
         self._faults: list[Fault] = []
         for fault in sorted(faults, key=lambda one: one.start_s):
             self.add(fault)
@@ -133,7 +141,8 @@ class FaultScript:
         """
         for other in self._faults:
             first, second = sorted((other, fault), key=lambda one: one.start_s)
-            if type(other) is type(fault) and first.holds(second.start_s):
+            alike = type(other) is type(fault) and other.by_the_wall == fault.by_the_wall
+            if alike and first.holds(second.start_s):
                 raise ParameterError(
                     f"{type(fault).__name__}.start_s = {second.start_s:g} [s]: the one of {first.start_s:g} s is "
                     f"not over before {first.start_s + first.duration_s:g} s; one of a kind at a time"
@@ -143,7 +152,7 @@ class FaultScript:
 
     def lift(self, time_s: float) -> None:
         """Put right whatever is wrong at a time; what is to come stays."""
-        self._faults = [fault for fault in self._faults if not fault.holds(time_s)]
+        self._faults = [fault for fault in self._faults if not fault.holds(self.time_of(fault, time_s))]
 
     def __bool__(self) -> bool:
         return bool(self._faults)
@@ -151,10 +160,14 @@ class FaultScript:
     def holding(self, kind: type[Kind], time_s: float) -> Kind | None:
         """Return the fault of a kind that is there at a time, or None."""
         for fault in self._faults:
-            if isinstance(fault, kind) and fault.holds(time_s):
+            if isinstance(fault, kind) and fault.holds(self.time_of(fault, time_s)):
                 return fault
         return None
 
+    def time_of(self, fault: Fault, time_s: float) -> float:
+        """Return the time by which a fault goes [s]: the drive's, as given, or the wall clock's."""
+        return self._wall() - self._origin_s if fault.by_the_wall else time_s
+
     def trip(self, time_s: float) -> Trip | None:
         """Return what switches the drive off at a time, or None."""
-        return next((fault for fault in self._faults if isinstance(fault, Trip) and fault.holds(time_s)), None)
+        return self.holding(Trip, time_s)  # type: ignore[type-abstract]

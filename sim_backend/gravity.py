@@ -38,19 +38,6 @@ class CentreOfMass(Component):
 
 
 @jitted
-def moment_kg_m(arm: Arm, load: Load) -> float:
-    """Return the sum of mass times lever [kg m]."""
-    hung_kg_m = 0.0 if load.balanced != 0.0 else load.mass_kg * arm.length_m
-    return hung_kg_m + arm.mass_kg * arm.centre_of_mass_m
-
-
-@jitted
-def arm_inertia(arm: Arm, load: Load) -> float:
-    """Return the inertia of arm and load about the axis [kg m2]."""
-    return arm.inertia_kg_m2 + load.mass_kg * arm.length_m**2
-
-
-@jitted
 def gravity_torque(moment_kg_m: float, centre_of_mass: CentreOfMass, angle_rad: float) -> float:
     """Return the torque of gravity on the arm [N m]."""
     return -STANDARD_GRAVITY_M_S2 * moment_kg_m * sin(angle_rad + centre_of_mass.angle_rad)

@@ -11,13 +11,12 @@ from sim_backend.bristle import bristle_energy
 from sim_backend.cogging import cogging_energy
 from sim_backend.contact import contact_energy
 from sim_backend.current_sensor import measured_current
-from sim_backend.gravity import arm_inertia, gravity_energy, moment_kg_m
+from sim_backend.gravity import gravity_energy
 from sim_backend.hose import Bend, hose_energy
 from sim_backend.jit import jitted_and_cached
 from sim_backend.obstacles import obstacles_energy
 from sim_backend.record import Records
 from sim_backend.sensing import counts, radians_per_count
-from sim_backend.shaft import stiffness
 from sim_backend.spring import spring_energy
 from sim_backend.step import step
 
@@ -28,43 +27,44 @@ POSITION, VELOCITY, CURRENT, TEMPERATURE, SUPPLY = range(5)
 
 def _advance_of(mechanisms: int) -> Callable[..., None]:
     def advance(
-        parameters: Records, states: Records, history: Floats, measured: Floats,
-        stage: int, demand: float, steps: int, step_s: float, window: int, delay: int,
+        parameters: Records, derived: Records, states: Records, history: Floats, measured: Floats,
+        stage: int, demands: Floats, steps: int, step_s: float, window: int, delay: int,
     ) -> None:  # fmt: skip
-        """Advance the plant at a constant demand, then measure.
+        """Advance the plant demand after demand, and measure after each.
 
         Args:
             parameters: `record.pack(PlantParameters)`, shape (1,).
+            derived: `record.pack(constants.Constants)`, shape (1,).
             states: `record.pack(state.State)`, shape (1,); advanced in place.
             history: last rotor angles and currents, shape (n, 2), n > window + delay; a ring, advanced in place.
             measured: filled with position [rad], velocity [rad/s], current [A], temperature [degC],
-                supply [V]; shape (5,).
+                supply [V]; shape (demands, 5).
             stage: state of the power stage, see motor.py.
-            demand: duty or current [A], after the stage.
-            steps: number of steps.
+            demands: duty or current [A], after the stage; shape (demands,).
+            steps: number of steps at each demand.
             step_s: length of a step [s].
             window: steps over which the drive measures speed.
             delay: steps by which all measurement is late.
         """
         mechanisms  # noqa: B018  (part of the cache's key, see below)
-        plant, state = parameters[0], states[0]
+        plant, constants, state = parameters[0], derived[0], states[0]
         ratio, length = plant.gear.ratio, len(history)
-        place = state.steps % length
-        for _ in range(steps):
-            step(plant, state, stage, demand, step_s)
-            place = place + 1 if place + 1 < length else 0
-            history[place, 0] = state.rotor_rad
-            history[place, 1] = state.current_a
-        seen = (place - delay) % length
-        before = (place - delay - window) % length
-        now_counts = counts(plant.encoder, plant.eccentricity, ratio, history[seen, 0])
-        gained = now_counts - counts(plant.encoder, plant.eccentricity, ratio, history[before, 0])
         unit_rad = radians_per_count(plant.encoder, ratio)
-        measured[POSITION] = now_counts * unit_rad
-        measured[VELOCITY] = gained * unit_rad / (window * step_s)
-        measured[CURRENT] = measured_current(state, plant.current_sensor, history[seen, 1])
-        measured[TEMPERATURE] = state.housing_c if plant.heat.present else np.nan
-        measured[SUPPLY] = state.supply_v
+        place = state.steps % length
+        for row in range(len(demands)):
+            for _ in range(steps):
+                step(plant, constants, state, stage, demands[row], step_s)
+                place = place + 1 if place + 1 < length else 0
+                history[place, 0] = state.rotor_rad
+                history[place, 1] = state.current_a
+            seen, before = (place - delay) % length, (place - delay - window) % length
+            now_counts = counts(plant.encoder, plant.eccentricity, ratio, history[seen, 0])
+            gained = now_counts - counts(plant.encoder, plant.eccentricity, ratio, history[before, 0])
+            measured[row, POSITION] = now_counts * unit_rad
+            measured[row, VELOCITY] = gained * unit_rad / (window * step_s)
+            measured[row, CURRENT] = measured_current(state, plant.current_sensor, history[seen, 1])
+            measured[row, TEMPERATURE] = state.housing_c if plant.heat.present else np.nan
+            measured[row, SUPPLY] = state.supply_v
 
     return jitted_and_cached(advance)
 
@@ -83,21 +83,20 @@ _MECHANISMS = _fingerprint()
 advance = _advance_of(_MECHANISMS)
 
 
-def _stored_energy_of(mechanisms: int) -> Callable[[Records, Records], float]:
-    def stored_energy(parameters: Records, states: Records) -> float:
+def _stored_energy_of(mechanisms: int) -> Callable[[Records, Records, Records], float]:
+    def stored_energy(parameters: Records, derived: Records, states: Records) -> float:
         """Return kinetic, height, spring, tooth, wall, magnet, bristle and inductor energy [J]."""
         mechanisms  # noqa: B018
-        plant, state = parameters[0], states[0]
-        ratio: float = plant.gear.ratio
+        plant, constants, state = parameters[0], derived[0], states[0]
         twist_rad: float = state.rotor_rad - state.arm_rad - state.clutch_rad
         energy_j: float = (
-            0.5 * ratio**2 * plant.motor.rotor_inertia_kg_m2 * state.rotor_rad_s**2
-            + 0.5 * arm_inertia(plant.arm, plant.load) * state.arm_rad_s**2
-            + gravity_energy(moment_kg_m(plant.arm, plant.load), plant.centre_of_mass, state.arm_rad)
+            0.5 * constants.rotor_kg_m2 * state.rotor_rad_s**2
+            + 0.5 * constants.arm_kg_m2 * state.arm_rad_s**2
+            + gravity_energy(constants.moment_kg_m, plant.centre_of_mass, state.arm_rad)
             + spring_energy(plant.spring, state.arm_rad)
-            + contact_energy(plant.gear, stiffness(plant.gear, plant.shaft), twist_rad)
+            + contact_energy(plant.gear, constants.teeth_n_m_rad, twist_rad)
             + obstacles_energy(plant, state.arm_rad)
-            + cogging_energy(plant.cogging, ratio * state.rotor_rad)
+            + cogging_energy(plant.cogging, plant.gear.ratio * state.rotor_rad)
             + bristle_energy(plant.bristle, state.bristle_rad)
             + bristle_energy(plant.arm_bristle, state.arm_bristle_rad)
             + hose_energy(plant.hose, Bend(state.hose_first_rad, state.hose_second_rad, state.hose_third_rad))

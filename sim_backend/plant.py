@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim_backend.clutch import Clutch
+from sim_backend.constants import constants_of
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
 from sim_backend.kernel import advance, stored_energy
@@ -67,10 +68,10 @@ class Plant:
 
     def __init__(self, parameters: PlantParameters, seed: int = 0, step_s: float = COARSEST_STEP_S) -> None:
         self.parameters = parameters
-        self._packed = pack(parameters)
+        self._packed, self._derived = pack(parameters), pack(constants_of(parameters))
         self._state = pack(at_rest(seed, parameters.heat.start_c))
         self._state["supply_v"] = parameters.supply.voltage_v
-        self._measured = np.zeros(5)
+        self._demand, self._measured = np.zeros(1), np.zeros((1, 5))
         self.step_s = step_s
         self.use_step(step_s)
 
@@ -106,11 +107,31 @@ class Plant:
             position [rad], velocity [rad/s], current [A], temperature [degC], supply [V] as the drive measures them;
             shape (5,), overwritten by the next call.
         """
+        self._demand[0] = demand
+        self._follow(stage, self._demand, steps, self._measured)
+        measured: NDArray[np.float64] = self._measured[0]
+        return measured
+
+    def follow(self, stage: int, demands: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
+        """Advance demand after demand, as many calls of `advance` would, without the interpreter's lock.
+
+        Args:
+            stage: OPEN, VOLTAGE, CURRENT or BRAKE of `motor`.
+            demands: duty -1 .. 1, or current [A], after the stage; shape (n,).
+            steps: number of integration steps at each.
+
+        Returns:
+            what the drive measures after each demand, columns as of `advance`; shape (n, 5).
+        """
+        measured = np.zeros((len(demands), 5))
+        self._follow(stage, np.ascontiguousarray(demands, dtype=np.float64), steps, measured)
+        return measured
+
+    def _follow(self, stage: int, demands: NDArray[np.float64], steps: int, measured: NDArray[np.float64]) -> None:
         advance(
-            self._packed, self._state, self._history, self._measured,
-            stage, demand, steps, self.step_s, self._window, self._delay,
+            self._packed, self._derived, self._state, self._history, measured,
+            stage, demands, steps, self.step_s, self._window, self._delay,
         )  # fmt: skip
-        return self._measured
 
     def hang(self, load: Load) -> None:
         """Hang a load on the arm and put the arm at rest at angle 0, in the middle of the free play."""
@@ -127,7 +148,7 @@ class Plant:
 
     def _change(self, **components: Any) -> None:
         self.parameters = replace(self.parameters, **components)
-        self._packed = pack(self.parameters)
+        self._packed, self._derived = pack(self.parameters), pack(constants_of(self.parameters))
 
     def place(self, rotor_rad: float, arm_rad: float, rotor_rad_s: float = 0.0, arm_rad_s: float = 0.0) -> None:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
@@ -154,7 +175,7 @@ class Plant:
         return Energy(
             float(state["supplied_j"]),
             float(sum(state[name] for name in lost)),
-            stored_energy(self._packed, self._state),
+            stored_energy(self._packed, self._derived, self._state),
         )
 
     def _check_step(self, step_s: float) -> None:

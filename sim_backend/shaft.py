@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 from sim_backend.component import Component, quantity
-from sim_backend.contact import Gear
-from sim_backend.jit import jitted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,18 +17,6 @@ class Shaft(Component):
 
     compliance_rad_n_m: float = quantity("rad/(N m) at the joint", at_least=0, default=0.0)
 
-
-@jitted
-def stiffness(gear: Gear, shaft: Shaft) -> float:
-    """Return the stiffness of teeth and shaft in series [N m/rad]."""
-    if shaft.compliance_rad_n_m == 0.0:
-        return gear.stiffness_n_m_rad
-    return gear.stiffness_n_m_rad / (1.0 + shaft.compliance_rad_n_m * gear.stiffness_n_m_rad)
-
-
-@jitted
-def damping(gear: Gear, shaft: Shaft) -> float:
-    """Return the damping of teeth and shaft in series [N m s/rad]."""
-    if shaft.compliance_rad_n_m == 0.0:
-        return gear.damping_n_m_s_rad
-    return gear.damping_n_m_s_rad / (1.0 + shaft.compliance_rad_n_m * gear.stiffness_n_m_rad)
+    def softening(self, teeth_n_m_rad: float) -> float:
+        """Return how many times softer teeth and shaft in series are than the teeth alone."""
+        return 1.0 + self.compliance_rad_n_m * teeth_n_m_rad

@@ -6,44 +6,35 @@ spring) are taken half a step ahead. So every torque does exactly the work that 
 never blow up, and smooth motion is second order in the step.
 """
 
-from typing import NamedTuple
-
 from sim_backend.bristle import bend
-from sim_backend.clutch import carried, slipped
 from sim_backend.cogging import cogging_torque
-from sim_backend.contact import contact_energy, flank, is_pull, penetration
+from sim_backend.constants import Constants
+from sim_backend.crossing import MOST_TRIES
 from sim_backend.dwell import aged
 from sim_backend.friction_jump import flip
-from sim_backend.gravity import STANDARD_GRAVITY_M_S2, arm_inertia, gravity_torque, moment_kg_m
+from sim_backend.gravity import gravity_torque
 from sim_backend.heat import warm
 from sim_backend.hose import Bend, bent, hose_energy, hose_torque
 from sim_backend.jit import jitted
 from sim_backend.motor import CurrentLine, current_line, stage_loss, supply_voltage, winding_energy
 from sim_backend.obstacle import Push, push_torque
-from sim_backend.obstacles import obstacles_energy, obstacles_push
+from sim_backend.obstacles import leant_loss, obstacles_push, obstacles_tried
 from sim_backend.operator import Hold, hand_torque, hold_of
 from sim_backend.parameters import PlantParameters
 from sim_backend.randomness import draw_static_factor, wander
 from sim_backend.resistance import Resistance, arm_side, drive_side
-from sim_backend.shaft import damping, stiffness
 from sim_backend.spring import spring_torque
 from sim_backend.state import State
-from sim_backend.stick_slip import Body, coupled_speeds, free_speeds
+from sim_backend.stick_slip import Body
 from sim_backend.supply_ripple import ripple_scale, turned
 from sim_backend.thermal_drift import Winding, drifted
-
-
-class Motion(NamedTuple):
-    """What comes of a step: speeds at its end [rad/s], the torque of the teeth on the arm during it [N m], slip."""
-
-    rotor_rad_s: float
-    arm_rad_s: float
-    contact_n_m: float
-    clutch_slips: bool
+from sim_backend.transmission import Motion, move, slip_clutch
 
 
 @jitted
-def step(parameters: PlantParameters, state: State, stage: int, demand: float, step_s: float) -> None:
+def step(
+    parameters: PlantParameters, constants: Constants, state: State, stage: int, demand: float, step_s: float
+) -> None:
     """Advance the state by one step at a constant demand (duty or current [A], after the stage)."""
     ratio = parameters.gear.ratio
     winding = _winding(parameters, state)
@@ -51,20 +42,24 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     line = current_line(
         stage, demand, state.current_a, ratio * state.rotor_rad_s, winding, supply_v, parameters, step_s
     )
-    drive_friction = drive_side(parameters, state, _weight(parameters), step_s)
-    arm_friction = arm_side(parameters, state, _weight(parameters), step_s)
-    rotor = _rotor(parameters, state, winding, line, drive_friction, step_s)
+    drive_friction = drive_side(parameters, state, constants.weight_n, step_s)
+    arm_friction = arm_side(parameters, state, constants.weight_n, step_s)
+    rotor = _rotor(parameters, constants, state, winding, line, drive_friction, step_s)
     time_s = state.origin_s + (state.steps - state.origin_steps) * step_s
     guess_rad_s = 2.0 * state.arm_rad_s - state.arm_mean_rad_s
     hold = hold_of(parameters.operator, time_s, state.arm_rad, guess_rad_s, step_s)
-    arm = _held(_arm(parameters, state, arm_friction, step_s), hold, state.arm_rad_s, step_s)
+    arm = _held(_arm(parameters, constants, state, arm_friction, step_s), hold, state.arm_rad_s, step_s)
     push = obstacles_push(parameters, state.arm_rad, step_s)
-    leaning = _leaning(arm, push, state.arm_rad_s, step_s)
-    motion = _move(parameters, state, rotor, leaning, step_s)
-    if push.known_n_m != 0.0 and push_torque(push, 0.5 * (state.arm_rad_s + motion.arm_rad_s)) == 0.0:
-        # the arm leaves what it leant on
-        push, leaning = Push(0.0, 0.0, 0.0), arm
-        motion = _move(parameters, state, rotor, arm, step_s)
+    leaning, way_rad = arm, 0.0
+    motion = Motion(0.0, 0.0, 0.0, False, 0.0)
+    for _ in range(MOST_TRIES):
+        leaning = _leaning(arm, push, state.arm_rad_s, step_s)
+        motion = move(parameters, constants, state, rotor, leaning, step_s)
+        before_rad, way_rad = way_rad, 0.5 * step_s * (state.arm_rad_s + motion.arm_rad_s)
+        settled, better = obstacles_tried(parameters, push, state.arm_rad, before_rad, way_rad, step_s)
+        if settled:
+            break
+        push = better
     mean_r = 0.5 * (state.rotor_rad_s + motion.rotor_rad_s)
     mean_a = 0.5 * (state.arm_rad_s + motion.arm_rad_s)
     current_a = line.constant_a - line.slope_a_s_rad * ratio * mean_r
@@ -86,10 +81,9 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
     state.friction_loss_j += friction_j
     state.arm_friction_loss_j += arm_friction_j + _drag_hose(parameters, state, mean_a, step_s)
     if motion.clutch_slips:
-        state.contact_loss_j += _slip_clutch(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
-    else:
-        state.contact_loss_j += _contact_loss(parameters, state, motion.contact_n_m, mean_r - mean_a, step_s)
-    state.leant_loss_j += _leant_loss(parameters, state.arm_rad, push, mean_a, step_s)
+        state.contact_loss_j += slip_clutch(parameters, constants, state, motion.contact_n_m, mean_r - mean_a, step_s)
+    state.contact_loss_j += motion.lost_j
+    state.leant_loss_j += leant_loss(parameters, state.arm_rad, push, mean_a, step_s)
 
     # what friction and temperature remember
     if _stops(state, motion.rotor_rad_s, mean_r):
@@ -119,13 +113,14 @@ def step(parameters: PlantParameters, state: State, stage: int, demand: float, s
 
 @jitted
 def _rotor(
-    parameters: PlantParameters, state: State, winding: Winding, line: CurrentLine, friction: Resistance, step_s: float
-) -> Body:
+    parameters: PlantParameters, constants: Constants, state: State, winding: Winding, line: CurrentLine,
+    friction: Resistance, step_s: float,
+) -> Body:  # fmt: skip
     """Return the rotor's share: motor and cogging torque, the drive side's friction, and the back-EMF as viscous."""
     ratio, speed = parameters.gear.ratio, state.rotor_rad_s
     strength = ratio * winding.torque_constant_n_m_a
     drag = friction.viscous_n_m_s_rad + strength * ratio * line.slope_a_s_rad + friction.bristle.slope_n_m_s_rad
-    inertia = ratio * ratio * parameters.motor.rotor_inertia_kg_m2
+    inertia = constants.rotor_kg_m2
     impulse = inertia * speed + step_s * (strength * line.constant_a - 0.5 * drag * speed - friction.bristle.known_n_m)
     impulse += step_s * ratio * cogging_torque(parameters.cogging, ratio * (state.rotor_rad + 0.5 * step_s * speed))
     return Body(
@@ -135,16 +130,16 @@ def _rotor(
 
 
 @jitted
-def _arm(parameters: PlantParameters, state: State, friction: Resistance, step_s: float) -> Body:
+def _arm(parameters: PlantParameters, constants: Constants, state: State, friction: Resistance, step_s: float) -> Body:
     """Return the arm's share: gravity and spring, half a step ahead, and the arm side's friction."""
     speed = state.arm_rad_s
     middle_rad = state.arm_rad + 0.5 * step_s * speed
-    pull = gravity_torque(moment_kg_m(parameters.arm, parameters.load), parameters.centre_of_mass, middle_rad)
+    pull = gravity_torque(constants.moment_kg_m, parameters.centre_of_mass, middle_rad)
     pull += spring_torque(parameters.spring, middle_rad)
     pull += hose_torque(parameters.hose, bent(parameters.hose, _bend(state), 0.5 * step_s * speed))
     pull -= friction.bristle.known_n_m
     drag = friction.viscous_n_m_s_rad + friction.bristle.slope_n_m_s_rad
-    inertia = arm_inertia(parameters.arm, parameters.load)
+    inertia = constants.arm_kg_m2
     impulse = inertia * speed + step_s * (pull - 0.5 * drag * speed)
     return Body(
         inertia + 0.5 * step_s * drag, impulse,
@@ -166,38 +161,6 @@ def _leaning(arm: Body, push: Push, speed_rad_s: float, step_s: float) -> Body:
     """Return the arm's share while wall or end stop pushes it."""
     impulse = arm.impulse + step_s * (push.known_n_m - 0.5 * push.slope_n_m_s_rad * speed_rad_s)
     return Body(arm.diagonal + 0.5 * step_s * push.slope_n_m_s_rad, impulse, arm.lower, arm.upper, arm.viscous)
-
-
-@jitted
-def _move(parameters: PlantParameters, state: State, rotor: Body, arm: Body, step_s: float) -> Motion:
-    """Return the motion: through the teeth where they touch and push, each body on its own where they do not."""
-    gear, shaft = parameters.gear, parameters.shaft
-    twist_rad = state.rotor_rad - state.arm_rad - state.clutch_rad
-    side = flank(gear, twist_rad)
-    if side != 0.0:
-        # spring and damper at mid-step: a known part, and one that follows the new speeds
-        rate = 0.25 * step_s * stiffness(gear, shaft) + 0.5 * damping(gear, shaft)
-        slip_rad_s = state.rotor_rad_s - state.arm_rad_s
-        known_n_m = stiffness(gear, shaft) * penetration(gear, side, twist_rad) + rate * slip_rad_s
-        rotor_rad_s, arm_rad_s = coupled_speeds(
-            rotor, arm, step_s * rate, step_s * known_n_m, state.rotor_rad_s, state.arm_rad_s
-        )
-        contact_n_m = known_n_m + rate * (rotor_rad_s - arm_rad_s)
-        carried_n_m = carried(parameters.clutch, contact_n_m)
-        if carried_n_m != contact_n_m:
-            rotor_rad_s, arm_rad_s = free_speeds(
-                _pushed(rotor, -step_s * carried_n_m), _pushed(arm, step_s * carried_n_m)
-            )
-            return Motion(rotor_rad_s, arm_rad_s, carried_n_m, True)
-        if not is_pull(gear, side, contact_n_m):
-            return Motion(rotor_rad_s, arm_rad_s, contact_n_m, False)
-    rotor_rad_s, arm_rad_s = free_speeds(rotor, arm)
-    return Motion(rotor_rad_s, arm_rad_s, 0.0, False)
-
-
-@jitted
-def _pushed(body: Body, impulse: float) -> Body:
-    return Body(body.diagonal, body.impulse + impulse, body.lower, body.upper, body.viscous)
 
 
 @jitted
@@ -228,12 +191,6 @@ def _winding(parameters: PlantParameters, state: State) -> Winding:
 
 
 @jitted
-def _weight(parameters: PlantParameters) -> float:
-    """Return the weight hung on the axis [N]."""
-    return STANDARD_GRAVITY_M_S2 * parameters.load.mass_kg
-
-
-@jitted
 def _friction_loss(body: Body, contact_n_m: float, new_rad_s: float, mean_rad_s: float, step_s: float) -> float:
     """Return what friction took from a body [J]: dry (the impulse that is missing) and viscous."""
     dry_impulse = body.impulse + step_s * contact_n_m - body.diagonal * new_rad_s
@@ -247,40 +204,3 @@ def _stops(state: State, new_rad_s: float, mean_rad_s: float) -> bool:
         state.slid = False
         return True
     return new_rad_s == 0.0 and state.rotor_rad_s != 0.0
-
-
-@jitted
-def _contact_loss(
-    parameters: PlantParameters, state: State, contact_n_m: float, slip_rad_s: float, step_s: float
-) -> float:
-    """Return what the teeth took [J]: damping while they push; what is left in the spring when they let go."""
-    if contact_n_m != 0.0:
-        return step_s * damping(parameters.gear, parameters.shaft) * slip_rad_s * slip_rad_s
-    twist_rad = state.rotor_rad - state.arm_rad - state.clutch_rad
-    if flank(parameters.gear, twist_rad) == 0.0:
-        return 0.0
-    rigidity = stiffness(parameters.gear, parameters.shaft)
-    left_j = contact_energy(parameters.gear, rigidity, twist_rad)
-    return left_j - contact_energy(parameters.gear, rigidity, twist_rad + step_s * slip_rad_s)
-
-
-@jitted
-def _slip_clutch(
-    parameters: PlantParameters, state: State, contact_n_m: float, slip_rad_s: float, step_s: float
-) -> float:
-    """Move the clutch on to where the teeth carry its limit; return what teeth and clutch took [J]."""
-    gear, rigidity = parameters.gear, stiffness(parameters.gear, parameters.shaft)
-    apart_rad = state.rotor_rad - state.arm_rad
-    before_j = contact_energy(gear, rigidity, apart_rad - state.clutch_rad)
-    apart_rad += step_s * slip_rad_s
-    state.clutch_rad = slipped(gear, rigidity, contact_n_m, apart_rad)
-    return step_s * contact_n_m * slip_rad_s + before_j - contact_energy(gear, rigidity, apart_rad - state.clutch_rad)
-
-
-@jitted
-def _leant_loss(parameters: PlantParameters, arm_rad: float, push: Push, mean_rad_s: float, step_s: float) -> float:
-    """Return what wall and stops took [J]: damping while they push; what is left in them when the arm leaves."""
-    if push.known_n_m != 0.0:
-        return step_s * push.damping_n_m_s_rad * mean_rad_s * mean_rad_s
-    left_j = obstacles_energy(parameters, arm_rad)
-    return left_j - obstacles_energy(parameters, arm_rad + step_s * mean_rad_s) if left_j > 0.0 else 0.0

@@ -15,13 +15,11 @@ class Stiff(NamedTuple):
         parameter: the name of its stiffness.
         stiffness: its value [N m/rad].
         inertia: of what swings on it, reduced [kg m2].
-        reach: the largest step times natural frequency that is integrated well.
     """
 
     parameter: str
     stiffness: float
     inertia: float
-    reach: float = 1.0
 
     def check(self, step_s: float) -> None:
         """Refuse a step that is too coarse.
@@ -30,10 +28,10 @@ class Stiff(NamedTuple):
             ParameterError: it is.
         """
         fastest_rad_s = sqrt(self.stiffness / self.inertia)
-        if step_s * fastest_rad_s > self.reach:
+        if step_s * fastest_rad_s > 1.0:
             raise ParameterError(
                 f"step = {step_s:g} [s]: too coarse for {self.parameter} = {self.stiffness:g} [N m/rad], which swings "
-                f"at {fastest_rad_s:.3g} rad/s; at most {self.reach / fastest_rad_s:.3g} s, or a softer one"
+                f"at {fastest_rad_s:.3g} rad/s; at most {1.0 / fastest_rad_s:.3g} s, or a softer one"
             )
 
 
@@ -41,7 +39,7 @@ def stiffest(parameters: PlantParameters) -> Iterator[Stiff]:
     """Yield what is stiff in a plant, with the least inertia that swings on it."""
     gear, arm_kg_m2, rotor_kg_m2 = parameters.gear, parameters.arm.inertia_kg_m2, parameters.motor.rotor_inertia_kg_m2
     reduced = 1.0 / (1.0 / (gear.ratio**2 * rotor_kg_m2) + 1.0 / arm_kg_m2)
-    softened = 1.0 + parameters.shaft.compliance_rad_n_m * gear.stiffness_n_m_rad
+    softened = parameters.shaft.softening(gear.stiffness_n_m_rad)
     yield Stiff("Gear.stiffness_n_m_rad", gear.stiffness_n_m_rad / softened, reduced)
     yield Stiff("bristle.stiffness_n_m_rad", parameters.bristle.stiffness_n_m_rad, rotor_kg_m2)
     yield Stiff("hose.stiffness_n_m_rad", parameters.hose.stiffness_n_m_rad, arm_kg_m2)
@@ -51,7 +49,6 @@ def stiffest(parameters: PlantParameters) -> Iterator[Stiff]:
         lever2_m2 = operator.lever_m**2
         held_kg_m2 = arm_kg_m2 + lever2_m2 * operator.mass_kg
         yield Stiff("operator.stiffness_n_m at the joint", lever2_m2 * operator.stiffness_n_m, held_kg_m2)
-    # an arm that is found inside a surface is given the energy of that depth: (step times frequency)^2 / 3 of its own
     for name, surface in (("wall", parameters.wall), ("end_stops", parameters.end_stops)):
         if surface.present:
-            yield Stiff(f"{name}.stiffness_n_m_rad", surface.stiffness_n_m_rad, arm_kg_m2, reach=0.3)
+            yield Stiff(f"{name}.stiffness_n_m_rad", surface.stiffness_n_m_rad, arm_kg_m2)

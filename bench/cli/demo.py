@@ -1,12 +1,14 @@
 """`friction-bench demo`: the main job, end to end, on the simulated bench."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from bench.cli.output import say, table
-from bench.report import Section
+
+if TYPE_CHECKING:
+    from bench.report import Section
 
 
 def demo(
@@ -23,7 +25,7 @@ def demo(
     say(f"Look at the trials and the study on the page: friction-bench --store sqlite:///{database} serve")
 
 
-def _print(section: Section) -> None:
+def _print(section: "Section") -> None:
     say("")
     say(section.title)
     for sentence in section.sentences:

@@ -1,13 +1,15 @@
 """`friction-bench status` and `stop`: a service that is running, by its address."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-import httpx
 import typer
 
 from bench.cli.bench_session import BenchSession, session_of
 from bench.cli.exit_codes import ServiceError
 from bench.cli.output import Json, print_json, say, table
+
+if TYPE_CHECKING:
+    import httpx
 
 TIMEOUT_S = 5.0
 Url = Annotated[str, typer.Option(envvar="FRICTION_BENCH_URL", help="Address of the service.")]
@@ -33,6 +35,8 @@ def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) 
 
 
 def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
+    import httpx  # here: its import takes longer than most commands
+
     from bench.service.tokens import find_token, token_file
 
     token = find_token(token_file(session.store_url()))
@@ -46,7 +50,7 @@ def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str
     return answer.json()
 
 
-def _detail(answer: httpx.Response) -> str:
+def _detail(answer: "httpx.Response") -> str:
     try:
         return str(answer.json()["detail"])
     except (ValueError, KeyError, TypeError):

@@ -4,6 +4,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from bench.drives.faults import AnyFault
 from bench.quantities import quantity
 from bench.rig import Section
 
@@ -14,4 +15,5 @@ class SimulatedDriveSettings(Section):
     kind: Literal["sim"] = "sim"
     preset: str = quantity("paper", "", "Plant that is simulated")
     seed: int = quantity(1, "", "Seed of the plant's scatter and noise; the same seed gives the same samples", ge=0)
+    faults: tuple[AnyFault, ...] = Field(default=(), description="What goes wrong with drive and joint, and when")
     plant: dict[str, Any] = Field(default_factory=dict, description="Plant parameters that differ from the preset")

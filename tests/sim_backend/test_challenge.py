@@ -16,7 +16,7 @@ OF_THE_JOINT = {
     "motor", "supply", "gear", "arm", "load", "encoder", "friction", "arm_friction", "heat", "scatter",
     "current_sensor",
 }  # fmt: skip
-NOT_HIDDEN = {"current_loop", "overload", "end_stops", "wall", "arm_bristle", "arm_dwell"}
+NOT_HIDDEN = {"current_loop", "overload", "end_stops", "wall", "arm_bristle", "arm_dwell", "operator"}
 """What does not explain an effort, is seen at a glance, or is on the arm's side what another is on the drive's."""
 
 

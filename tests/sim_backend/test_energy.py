@@ -1,5 +1,3 @@
-from math import sqrt
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -59,35 +57,52 @@ def test_energy_balance_closes_over_a_long_mixed_run_with_every_mechanism_on() -
     busy = Plant(PlantParameters.from_dict(EVERYTHING, presets.paper()), seed=3)
     left_over_j, through_j = _mixed_run(busy, seed=3, pieces=400)
     assert through_j > 50.0
-    # what is left over is what teeth gain when they close in the middle of a step
-    assert abs(left_over_j) < 1e-4 * through_j
+    assert abs(left_over_j) < 1e-6 * through_j
 
 
 @settings(deadline=None, max_examples=60)
 @given(
     seed=st.integers(0, 2**32 - 1),
     ratio=st.floats(1.0, 100.0),
-    backlash=st.floats(0.0, 0.05),
+    backlash=st.one_of(st.just(0.0), st.floats(0.0, 0.05)),
     stiffness=st.floats(50.0, 3e4),
     damping=st.floats(0.0, 5.0),
+    compliance=st.one_of(st.just(0.0), st.floats(0.0, 1e-2)),
+    clutch=st.one_of(st.just(0.0), st.floats(0.05, 2.0)),
     load=st.floats(0.0, 0.3),
     coulomb=st.floats(0.0, 0.02),
     rise=st.floats(1.0, 2.0),
     stribeck=st.floats(0.5, 50.0),
     viscous=st.floats(0.0, 1e-3),
     mesh=st.floats(0.0, 0.6),
-    inductance=st.floats(0.0, 5e-3),
-    bristles=st.floats(0.0, 50.0),
+    dwell=st.floats(0.0, 1.0),
+    bristles=st.one_of(st.just(0.0), st.floats(0.01, 50.0)),
+    arm_bristles=st.one_of(st.just(0.0), st.floats(0.1, 500.0)),
     micro=st.floats(0.0, 1.0),
     elastic=st.floats(0.0, 0.95),
+    inductance=st.floats(0.0, 5e-3),
+    source=st.floats(0.0, 2.0),
+    dead_s=st.floats(0.0, 1e-5),
+    wall=st.booleans(),
+    wall_rad=st.floats(0.01, 1.0),
+    stops=st.booleans(),
+    stop_rad=st.floats(0.01, 1.0),
+    surface=st.floats(10.0, 9e5),
+    surface_damping=st.floats(0.0, 20.0),
 )
 def test_no_plant_blows_up_or_makes_energy(
-    seed: int, ratio: float, backlash: float, stiffness: float, damping: float, load: float, coulomb: float,
-    rise: float, stribeck: float, viscous: float, mesh: float, inductance: float,
-    bristles: float, micro: float, elastic: float,
+    seed: int, ratio: float, backlash: float, stiffness: float, damping: float, compliance: float, clutch: float,
+    load: float, coulomb: float, rise: float, stribeck: float, viscous: float, mesh: float, dwell: float,
+    bristles: float, arm_bristles: float, micro: float, elastic: float, inductance: float, source: float,
+    dead_s: float, wall: bool, wall_rad: float, stops: bool, stop_rad: float, surface: float, surface_damping: float,
 ) -> None:  # fmt: skip
+    friction = {"coulomb_n_m": coulomb, "static_n_m": rise * coulomb, "stribeck_rad_s": stribeck}
+    bristle = {"damping_n_m_s_rad": micro * 9.0 * coulomb / stribeck, "elastic_fraction": elastic}
+    surface_of = {"stiffness_n_m_rad": surface, "damping_n_m_s_rad": surface_damping}
     drawn = parameters(
         motor={"inductance_h": inductance, "rotor_inertia_kg_m2": 5e-5},
+        supply={"source_resistance_ohm": source},
+        dead_time={"time_s": dead_s},
         arm={"inertia_kg_m2": 0.01},
         gear={
             "ratio": ratio,
@@ -95,30 +110,29 @@ def test_no_plant_blows_up_or_makes_energy(
             "stiffness_n_m_rad": min(stiffness, 4e5 * ratio**2 * 5e-5),
             "damping_n_m_s_rad": damping,
         },
+        shaft={"compliance_rad_n_m": compliance},
+        clutch={"limit_n_m": clutch},
         load={"mass_kg": load},
-        friction={
-            "coulomb_n_m": coulomb,
-            "static_n_m": rise * coulomb,
-            "stribeck_rad_s": stribeck,
-            "viscous_n_m_s_rad": viscous,
-        },
+        friction=friction | {"viscous_n_m_s_rad": viscous},
+        arm_friction=friction,
         load_friction={"driving": mesh, "back_driving": mesh},
-        bristle={
-            "stiffness_n_m_rad": bristles,
-            "damping_n_m_s_rad": micro * 9.0 * coulomb / stribeck,
-            "elastic_fraction": elastic,
-        },
+        dwell={"rise_fraction": dwell},
+        bristle=bristle | {"stiffness_n_m_rad": bristles},
+        arm_bristle=bristle | {"stiffness_n_m_rad": arm_bristles},
+        wall=surface_of | {"present": wall, "angle_rad": wall_rad},
+        end_stops=surface_of | {"present": stops, "lower_rad": -stop_rad, "upper_rad": 0.9 * stop_rad},
         current_sensor={"present": True},
         current_loop={"present": True},
     )
-    coarse = Plant(drawn, seed)
-    _mixed_run(coarse, seed, pieces=12)
-    truth = coarse.truth()
+    # at the coarsest step there is, also for the stiffest contact that it allows
+    mixed = Plant(drawn, seed)
+    left_over_j, through_j = _mixed_run(mixed, seed, pieces=12)
+    truth = mixed.truth()
     assert all(np.isfinite(getattr(truth, name)) for name in truth.__dataclass_fields__)
-    assert coarse.energy().stored_j >= 0.0
-    # teeth that close within a step gain up to (step times frequency)^2 of the impact, 3e-4 of it here
-    reduced = 1.0 / (1.0 / (ratio**2 * 5e-5) + 1.0 / 0.01)
-    frequency_rad_s = sqrt(drawn.gear.stiffness_n_m_rad / reduced)
-    fine = Plant(drawn, seed, step_s=min(1e-4, 0.017 / frequency_rad_s))
-    left_over_j, through_j = _mixed_run(fine, seed, pieces=12)
+    assert mixed.energy().stored_j >= 0.0
     assert abs(left_over_j) <= 1e-3 * through_j + 1e-6
+    # nothing sticks for ever: a torque that no friction can hold moves the rotor, unless something stands in its way
+    before = mixed.truth()
+    mixed.advance(VOLTAGE, 1.0, 3000)
+    after = mixed.truth()
+    assert after.rotor_rad != before.rotor_rad or after.leant_n_m != 0.0
