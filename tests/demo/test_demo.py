@@ -8,6 +8,8 @@ from bench.demo import run_demo
 from bench.demo.hidden_effect import draw
 from bench.store import Store
 
+pytestmark = pytest.mark.timeout(600)  # a minute by itself; a shared machine may take several
+
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory):
