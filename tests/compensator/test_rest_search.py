@@ -91,6 +91,22 @@ def test_the_servo_is_not_needed_in_between_and_the_joint_hardly_moves():
     assert state.travel_rad < 0.02
 
 
+def test_the_current_of_a_breakaway_is_that_of_the_cycle_in_which_motion_was_seen():
+    joint, seen = KnownJoint(), []
+    state, command_a = rest_search.begin(1.5), joint.held_a
+    while not state.finished:
+        before = len(state.breakaways)
+        position_rad = np.floor(joint.position_rad / COUNT_RAD) * COUNT_RAD
+        state, ramp_a = rest_search.advance(SETTINGS, state, SearchReading(position_rad, command_a, joint.held_a))
+        if len(state.breakaways) > before:
+            seen.append((state.breakaways[-1], command_a))
+        command_a = joint.held_a if ramp_a is None else ramp_a
+        joint.servo() if ramp_a is None else joint.push(command_a)
+    assert len(seen) == 2 * SETTINGS.pairs
+    for breakaway, flowing_a in seen:
+        assert breakaway.current_a == pytest.approx(flowing_a, abs=1e-9)
+
+
 def test_asymmetric_friction_shows_as_a_load_and_no_more():
     found = fit(search(KnownJoint(0.5, 0.36, 0.24))[0].breakaways)
     assert found.load_current_a.value == pytest.approx(0.56, abs=2e-3)
