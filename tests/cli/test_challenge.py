@@ -10,10 +10,11 @@ from bench.challenge.difficulty import Difficulty
 
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch):
-    quick = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (0.0, 1.0), 3.0, 1, 0)
+    quick = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 3.0, 1, 0)
     monkeypatch.setitem(difficulty.DIFFICULTIES, "easy", quick)
 
 
+@pytest.mark.timeout(400)
 def test_from_the_draw_to_the_score(command):
     made = command("challenge", "--seed", 11, "--output", "set")
     assert made.exit_code == 0, made.output
