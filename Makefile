@@ -1,13 +1,14 @@
 # Needs Python 3.11, make and a C library. Everything else arrives in .venv.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
+VM_KERNEL ?= out/vm/kernel
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo paper serve test benchmark check format clean help
+.PHONY: demo paper serve test test-vm benchmark check format clean help
 
 help:            ## this list
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
 
 $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null \
@@ -28,6 +29,9 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 
 test: $(STAMP)   ## the tests
 	$(BIN)/pytest
+
+test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
+	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)
 
 benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo, store and export beside pandas, drivers beside their libraries
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'

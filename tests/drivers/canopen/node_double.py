@@ -16,8 +16,8 @@ EPOS_LIKE = {(0x1018, 1): ("<I", 0xFB)}
 class NodeDouble:
     """A drive at node 5. `objects` may be changed before use; the flags make it fail."""
 
-    def __init__(self, channel: str, node_id: int = 5) -> None:
-        self.bus = can.Bus(interface="virtual", channel=channel)
+    def __init__(self, channel: str, node_id: int = 5, interface: str = "virtual", **bus: object) -> None:
+        self.bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **bus)
         self.node_id = node_id
         self.objects: dict[tuple[int, int], list] = {
             key: list(value)
