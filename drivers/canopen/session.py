@@ -71,7 +71,7 @@ class Session:
         self._read_slow_once()
         self.cycle = SyncCycle(link, (self.data.state, self.data.motion), answer_wait_s(period_s))
         self.start()
-        self.round_trip_s = self._try_cycles()
+        self.round_trip_s = self._try_cycles(period_s)
 
     def start(self) -> None:
         """Enter OPERATIONAL.
@@ -171,7 +171,7 @@ class Session:
         for item in self.measurement.slow:
             self.poll.put(item, self.access.read(item), perf_counter())
 
-    def _try_cycles(self) -> float:
+    def _try_cycles(self, period_s: float) -> float:
         """Exchange with the power off; the shortest time of a cycle [s]: what drive and line need, not a busy host.
 
         Raises:
@@ -183,10 +183,9 @@ class Session:
             start_s = perf_counter()
             if self.cycle.run(self.data.torque.cob_id, off):
                 times_s.append(perf_counter() - start_s)
-        if len(times_s) < _TRIAL_CYCLES // 2:
+        if not self.cycle.number:
             raise DriveConnectionError(
                 self.settings.device,
-                f"{len(times_s)} of {_TRIAL_CYCLES} SYNC frames were answered by TPDOs; all are wanted. "
-                "Check cable, termination and bit rate",
+                f"none of {_TRIAL_CYCLES} SYNC frames was answered by TPDOs. Check cable, termination and bit rate",
             )
-        return min(times_s)
+        return min(times_s, default=answer_wait_s(period_s))

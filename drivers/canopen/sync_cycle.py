@@ -113,15 +113,14 @@ class SyncCycle:
 
     def _receiver(self, place: int, pdo: Pdo) -> Any:
         """The handler of a TPDO. Values are shown when all of one SYNC are there: they belong together."""
-        size, unpack = pdo.layout.size, pdo.layout.unpack
+        unpack = pdo.layout.unpack
 
         def receive(_cob_id: int, data: bytes, _timestamp: float) -> None:
-            if len(data) != size:
-                raise ValueError(f"{pdo} has {size} bytes, not {len(data)}")
+            values = unpack(data)  # raises where there are more or fewer bytes than were mapped
             if place not in self._missing:
                 self.counts.surplus += 1
                 return
-            self._arrived[place] = unpack(data)
+            self._arrived[place] = values
             self._missing.discard(place)
             if not self._missing:
                 self._show()

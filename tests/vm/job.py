@@ -81,10 +81,10 @@ def loses_and_finds_its_bus(channel: str, node: NodeDouble, drive: CanopenDrive,
 @contextmanager
 def slcand() -> Iterator[str]:
     """The kernel's serial-line CAN at one end of a line; the path of the other."""
-    line = subprocess.Popen(["socat", "pty,raw,echo=0,link=/run/kernel", "pty,raw,echo=0,link=/run/node"])
-    while not (Path("/run/kernel").exists() and Path("/run/node").exists()):
+    line = subprocess.Popen(["socat", "pty,raw,echo=0,link=/dev/vmkernel", "pty,raw,echo=0,link=/run/node"])
+    while not (Path("/dev/vmkernel").exists() and Path("/run/node").exists()):
         time.sleep(0.1)
-    daemon = subprocess.Popen(["slcand", "-F", "-o", "-s8", "/run/kernel", "slcan0"])
+    daemon = subprocess.Popen(["slcand", "-F", "-o", "-s8", "vmkernel", "slcan0"])
     while not Path("/sys/class/net/slcan0").exists():
         time.sleep(0.1)
     sh("ip link set slcan0 up")

@@ -53,13 +53,13 @@ def exchange_for(drive: CanopenDrive, duration_s: float, command: Command, perio
 
 
 def hold(drive: CanopenDrive, target_rad: float, duration_s: float) -> Sample:
-    """Close the position in the host, by a current command each cycle; the last sample."""
+    """Close the position in the host, by a current command each cycle; the last sample. Soft: cycles may come late."""
     sample = drive.exchange(Command(Mode.CURRENT, 0.0))
     integral_a, end_s = 0.0, time.perf_counter() + duration_s
     while time.perf_counter() < end_s:
         error_rad = target_rad - sample.position_rad
-        integral_a = min(max(integral_a + 60.0 * error_rad * PERIOD_S, -0.5), 0.5)
-        current_a = 15.0 * error_rad + integral_a - 0.5 * sample.velocity_rad_s
+        integral_a = min(max(integral_a + 10.0 * error_rad * PERIOD_S, -0.5), 0.5)
+        current_a = 4.0 * error_rad + integral_a - 0.4 * sample.velocity_rad_s
         sample = drive.exchange(Command(Mode.CURRENT, min(max(current_a, -1.0), 1.0)))
         time.sleep(PERIOD_S)
     return sample

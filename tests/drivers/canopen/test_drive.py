@@ -213,8 +213,10 @@ def test_quick_stop_ends_in_power_off_by_the_drive_itself(node, drive_of):
 def test_the_drive_hears_the_host_between_arming_and_power(node, drive_of):
     drive = drive_of(watchdog_s=1.0)
     drive.open(0.005)
-    node.received.clear()
     drive.enable(Mode.CURRENT)
+    drive.disable()
+    node.received.clear()
+    drive.enable(Mode.CURRENT)  # soon after: the next heartbeat would not be due for a while
     frames = node.received
     armed = next(place for place, (_, data) in enumerate(frames) if data == bytes.fromhex("23161001e8037f00"))
     powered = next(place for place, (cob, data) in enumerate(frames) if cob == 0x205 and data[0] == 0x0F)

@@ -278,5 +278,5 @@ def test_nobody_at_the_node_id_is_said_in_bounded_time(node, drive_of):
 
 def test_a_drive_that_does_not_answer_sync_is_not_opened(node, drive_of):
     node.drop_answers = 10**6
-    with pytest.raises(DriveConnectionError, match="0 of 15 SYNC frames were answered"):
+    with pytest.raises(DriveConnectionError, match="none of 15 SYNC frames was answered"):
         drive_of().open(0.005)
