@@ -2,6 +2,9 @@
 
 import subprocess
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
 from drivers.contract import Command, Mode, Status
@@ -75,6 +78,23 @@ def loses_and_finds_its_bus(channel: str, node: NodeDouble, drive: CanopenDrive,
     drive.close()
 
 
+@contextmanager
+def slcand() -> Iterator[str]:
+    """The kernel's serial-line CAN at one end of a line; the path of the other."""
+    line = subprocess.Popen(["socat", "pty,raw,echo=0,link=/dev/vmkernel", "pty,raw,echo=0,link=/run/node"])
+    while not (Path("/dev/vmkernel").exists() and Path("/run/node").exists()):
+        time.sleep(0.1)
+    daemon = subprocess.Popen(["slcand", "-F", "-o", "-s8", "vmkernel", "slcan0"])
+    while not Path("/sys/class/net/slcan0").exists():
+        time.sleep(0.1)
+    sh("ip link set slcan0 up")
+    try:
+        yield "/run/node"
+    finally:
+        daemon.terminate()
+        line.terminate()
+
+
 def main() -> None:
     vcan_up = "ip link set vcan0 up"
     sh(f"ip link add vcan0 type vcan; {vcan_up}")
@@ -91,6 +111,9 @@ def main() -> None:
         loses_and_finds_its_bus("can0", node, drive, up.format("can0"))
     print("can0 - can1, two emulated SJA1000 controllers: passed")
 
+    with slcand() as path, NodeDouble(path, interface="slcan", bitrate=1_000_000, sleep_after_open=0.0) as node:
+        drives("slcan0", node).close()
+    print("slcan0, the kernel's own reading of slcan lines: passed")
     print("VM TESTS PASSED")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs tests/vm/job.py in a guest with Debian's kernel and real SocketCAN: vcan, two emulated controllers.
+# Runs tests/vm/job.py in a guest with Debian's kernel and real SocketCAN: vcan, two emulated controllers, slcand.
 # Everything but the kernel is this machine's own, read-only. Needs no privileges and no image; see tests/vm/README.md.
 #   tests/vm/run.sh KERNEL_DIR     an unpacked linux-image package (boot/ and lib/modules/)
 set -euo pipefail
@@ -9,7 +9,7 @@ python=$(realpath -s "${PYTHON:-$root/.venv/bin/python}") # its own name: what i
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 version=$(ls "$kernel_dir/lib/modules")
-modules="virtio_pci 9pnet_virtio 9p can can-raw vcan kvaser_pci"
+modules="virtio_pci 9pnet_virtio 9p can can-raw vcan slcan kvaser_pci"
 
 depmod -b "$kernel_dir" "$version"
 mkdir -p "$work"/initramfs/{bin,proc,sys,dev,host,modules}
