@@ -8,6 +8,7 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load, model_of
 from bench.study.models import result_of
 from compensator.lab.catalogue import effect_named
+from compensator.lab.fit import Fit, fit_model
 from compensator.lab.gain import Gain, held_out_gain
 from compensator.lab.validation import held_out
 
@@ -42,11 +43,14 @@ def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None =
 
 
 def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], what: str) -> dict[str, Any]:
-    before = held_out(material.fit_of(parent))
     fit = material.fit(effects)
-    after = held_out(fit)
+    # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
+    changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
+    rows = material.dataset.choice_for(changed)
+    before = held_out(_refitted(material, parent, fit), rows)
+    after = held_out(fit, rows)
     gain = held_out_gain(before, after)
-    result = result_of(fit, after)
+    result = result_of(fit, held_out(fit))
     model_id = store.add_model(material.study_id, parent.id, effects, result)
     return {
         "model_id": model_id,
@@ -59,6 +63,15 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
         "gain_high": gain.high,
         "sentence": _sentence(what, before.relative, after.relative, gain),
     }
+
+
+def _refitted(material: Material, parent: ModelRow, child: Fit) -> Fit:
+    """The parent, fitted to the very rows of its child: a wider choice of rows is no change of the model."""
+    fit = material.fit_of(parent)
+    if (fit.training == child.training).all():
+        return fit
+    with lab_errors():
+        return fit_model(material.dataset, parent.effects, fit.training | child.training, fit.shapes)
 
 
 def _sentence(what: str, before: float, after: float, gain: Gain) -> str:

@@ -10,7 +10,9 @@ from bench.rig import Rig
 from bench.store import Store
 from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
-from compensator.lab.dataset import Dataset, Processing, RowChoice, make_dataset
+from compensator.lab.assembly import make_dataset
+from compensator.lab.catalogue import effect_named
+from compensator.lab.dataset import Dataset, Processing, RowChoice
 from compensator.lab.facts import Facts
 from compensator.lab.fit import Fit, fit_model
 from compensator.lab.regimes import BoolArray
@@ -62,9 +64,12 @@ class Material:
 
     @property
     def training(self) -> BoolArray:
-        """Rows that models are fitted to, shape (N,)."""
+        """Rows of the study's choice that models are fitted to, shape (N,)."""
+        return self._training(self.dataset.rows)
+
+    def _training(self, rows: RowChoice) -> BoolArray:
         held = np.array(self.definition.held_out)[self.dataset.trial_index]
-        chosen: BoolArray = self.dataset.counted & ~held
+        chosen: BoolArray = self.dataset.in_regimes(rows) & ~held
         return chosen
 
     @property
@@ -73,9 +78,13 @@ class Material:
         return {"name": self.dataset.effort_definition.title, "unit": self.dataset.effort_definition.unit}
 
     def fit(self, effects: list[str], shapes: dict[str, tuple[float, ...]] | None = None) -> Fit:
-        """Fit a model to the training rows; errors of the lab become `StudyError`."""
+        """Fit a model to the training rows; errors of the lab become `StudyError`.
+
+        Effects with memory are fitted to rows near reversals too, whatever the study counts: they live there.
+        """
         with lab_errors():
-            return fit_model(self.dataset, effects, self.training, shapes)
+            rows = self.dataset.choice_for([effect_named(name) for name in effects])
+            return fit_model(self.dataset, effects, self._training(rows), shapes)
 
     def fit_of(self, model: ModelRow) -> Fit:
         """The stored model again, at the very shapes that were found when it was made."""

@@ -1,11 +1,11 @@
 """Every effect and driver spline that could be missing from a fitted model, as blocks to be screened."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from compensator.lab import catalogue
-from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.evidence import Base, Block
 from compensator.lab.fit import Fit
@@ -25,6 +25,7 @@ class Candidates:
 
     Attributes:
         fit: the model, its own prediction in every motion.
+        show_in: which rows are tested.
         rows: tested, shape (N,).
         weights: of those rows, shape (n,).
         bases: what blocks are judged on top of.
@@ -35,6 +36,7 @@ class Candidates:
     """
 
     fit: Fit
+    show_in: EffectRows
     rows: BoolArray
     weights: FloatArray
     bases: list[Base]
@@ -45,24 +47,25 @@ class Candidates:
 
     def with_block(self, block: Block) -> "Candidates":
         """The same candidates judged on top of one more block."""
-        effort = self.weights * self.fit.dataset.effort[self.rows]
-        bases = [Base.of(np.column_stack([base.basis, block.columns]), effort) for base in self.bases]
-        return Candidates(
-            self.fit, self.rows, self.weights, bases, self.named, self.splines, self.generic, self.left_out
-        )
+        return replace(self, bases=[base.extended(block.columns) for base in self.bases])
 
 
-def gather(fit: Fit) -> Candidates:
-    """Collect candidates for a fitted model: sliding training rows, weighted, on top of model and nuisance columns."""
+def gather(fit: Fit, show_in: EffectRows = "sliding") -> Candidates:
+    """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.
+
+    Args:
+        fit: of the model.
+        show_in: the rows that are tested, and the effects that show in them.
+    """
     dataset = with_own_prediction(fit)
-    fit = Fit(dataset, fit.training, fit.terms, fit.columns)
-    rows = fit.training & dataset.in_regimes("sliding")
+    fit = replace(fit, dataset=dataset)
+    rows = fit.training & dataset.in_regimes(show_in)
     weights = row_weights(dataset, fit.residual, rows)
     builder = _Builder(fit, rows, weights)
-    named, left_out = builder.named()
+    named, left_out = builder.named(show_in)
     splines = {f"{b.driver}{' against motion' if b.against_motion else ''}": b for b in driver_blocks(dataset)}
     generic = [Block(name, builder.weighted(b.columns), 0, 1) for name, b in splines.items()]
-    return Candidates(fit, rows, weights, builder.bases, named, splines, generic, left_out)
+    return Candidates(fit, show_in, rows, weights, builder.bases, named, splines, generic, left_out)
 
 
 class _Builder:
@@ -77,9 +80,11 @@ class _Builder:
     def weighted(self, columns: FloatArray) -> FloatArray:
         return columns[self._rows] * self._weights[:, None]
 
-    def named(self) -> tuple[list[Block], dict[str, str]]:
+    def named(self, show_in: EffectRows) -> tuple[list[Block], dict[str, str]]:
         blocks, left_out = [], {}
         for effect in catalogue.candidates(self._fit.names, self._fit.dataset.facts):
+            if effect.rows != show_in:
+                continue
             try:
                 blocks += self._blocks(effect)
             except NotApplicableError as reason:

@@ -6,10 +6,19 @@ from functools import cache
 from importlib.metadata import entry_points
 
 from compensator.lab.effects import (
+    back_driving_friction,
+    backlash,
     centre_of_mass_angle,
+    cogging,
     coulomb,
     coulomb_asymmetry,
     coulomb_temperature,
+    current_gain_asymmetry,
+    dead_time,
+    dwell_strengthening,
+    elasticity,
+    encoder_eccentricity,
+    frictional_lag,
     gravity,
     inertia,
     load_friction,
@@ -17,13 +26,17 @@ from compensator.lab.effects import (
     measurement_delay,
     offset,
     position_periodic_friction,
+    pre_sliding,
     spring,
     stribeck,
+    torque_constant_saturation,
     viscous,
     viscous_asymmetry,
     viscous_quadratic,
     viscous_temperature,
+    warm_up,
     weight_friction,
+    winding_temperature,
 )
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import UnknownEffectError
@@ -44,12 +57,25 @@ _OURS = (
     load_friction,
     load_friction_quadratic,
     weight_friction,
+    back_driving_friction,
     coulomb_temperature,
     viscous_temperature,
+    warm_up,
     position_periodic_friction,
+    cogging,
     spring,
     centre_of_mass_angle,
+    torque_constant_saturation,
+    winding_temperature,
+    pre_sliding,
+    backlash,
+    frictional_lag,
+    dwell_strengthening,
+    elasticity,
     measurement_delay,
+    encoder_eccentricity,
+    current_gain_asymmetry,
+    dead_time,
 )
 
 

@@ -7,19 +7,24 @@ shapes), does it help (held-out error, resampled by whole trials).
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from compensator.lab.candidates import Candidates, gather
-from compensator.lab.catalogue import effect_named
+from compensator.lab.catalogue import candidates, effect_named
 from compensator.lab.data_checks import data_problems
 from compensator.lab.diagnosis import Candidate, Diagnosis, Verdict
 from compensator.lab.drivers import DRIVERS
+from compensator.lab.effects.effect import EffectRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.evidence import Evidence, Screening, screen
 from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
-from compensator.lab.fit import Fit, with_columns
+from compensator.lab.fit import Fit, fit_model, with_columns
 from compensator.lab.gain import held_out_gain
+from compensator.lab.regimes import Regime
 from compensator.lab.validation import held_out
 from compensator.lab.wording import answer_in_words
 
+FEWEST_REVERSAL_ROWS = 40
 EXAMINED = 6  # candidates that are refitted and drawn
 FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
 
@@ -27,8 +32,9 @@ FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less i
 def diagnose(fit: Fit) -> Diagnosis:
     """Diagnose a fitted model on its training rows.
 
-    Effects of the joint are judged first. Effects of the measuring chain are named only where no effect of the joint
-    is, and are a note otherwise: every other effect is judged with their columns already in the base.
+    Three families are judged one after the other: effects of the joint that show in steady sliding; effects with
+    memory, which live near reversals and starts; effects of the measuring chain. The first that has something missing
+    is the answer, the others are notes: while something large is missing, the smaller may be its shadow.
 
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
@@ -42,22 +48,49 @@ def diagnose(fit: Fit) -> Diagnosis:
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
     generic = screen(gathered.bases, gathered.generic, stretch)
-    answer = _answer(fit, gathered, screen(gathered.bases, physical, stretch), generic)
+    steady = _answer(fit, gathered, screen(gathered.bases, physical, stretch), generic)
     chain = _answer(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
-    first, second = (chain, answer) if answer.verdict == "nothing" and chain.verdict == "missing" else (answer, chain)
-    candidates = [*first.candidates, *second.candidates]
-    notes = [second.sentence] if second is chain and chain.verdict == "missing" else []
+    memory, not_judged = _memory(fit)
+    families = [steady, *([memory] if memory else []), chain]
+    first = next((answer for answer in families if answer.verdict != "nothing"), steady)
+    others = [answer for answer in families if answer is not first]
+    ranked = [candidate for answer in (first, *others) for candidate in answer.candidates]
+    notes = [answer.sentence for answer in others if answer.verdict == "missing"]
     return Diagnosis(
         verdict=first.verdict,
         sentence=first.sentence,
         p_value=first.p_value,
-        classes=_classes(candidates),
-        candidates=candidates,
+        classes=_classes(ranked),
+        candidates=ranked,
         driver=first.driver,
         data_problems=data_problems(fit),
         notes=[*first.notes, *notes],
-        left_out=gathered.left_out,
+        left_out={**gathered.left_out, **not_judged},
     )
+
+
+def best_named(fit: Fit, show_in: EffectRows) -> str | None:
+    """The effect of one family that the rows speak for most, by score alone; None where none can be judged."""
+    gathered = gather(fit, show_in)
+    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
+    return screening.evidence[0].block.name if screening.evidence else None
+
+
+def _memory(fit: Fit) -> tuple["_Answer | None", dict[str, str]]:
+    """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
+    dataset = fit.dataset
+    trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
+    moving = trained & dataset.in_regimes("moving")
+    near_reversals = int((moving & (dataset.regime == Regime.TRANSIENT)).sum())
+    wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
+    if near_reversals < FEWEST_REVERSAL_ROWS:
+        why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
+        return None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
+    wide = fit_model(dataset, fit.names, moving, fit.shapes)
+    gathered = gather(wide, "moving")
+    screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
+    return _answer(wide, gathered, screening, None), gathered.left_out
 
 
 @dataclass(frozen=True)
@@ -76,12 +109,12 @@ def _answer(fit: Fit, gathered: Candidates, named: Screening, generic: Screening
     best_of_each = _best_shapes(named)
     if not best_of_each:
         return _Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
-    candidates = examine(fit, gathered, best_of_each[:EXAMINED])
-    best = next(item for item in best_of_each if item.block.name == candidates[0].effect.name)
-    verdict, driver = _verdict(fit, gathered, named, generic, best, candidates[0])
+    examined = examine(fit, gathered, best_of_each[:EXAMINED])
+    best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
+    verdict, driver = _verdict(fit, gathered, named, generic, best, examined[0])
     p_value = generic.p_value if generic is not None and verdict == "unknown-effect" else named.p_value
-    sentence = answer_in_words(verdict, p_value, candidates, driver)
-    return _Answer(verdict, sentence, p_value, candidates, driver, _notes(gathered, best, verdict))
+    sentence = answer_in_words(verdict, p_value, examined, driver)
+    return _Answer(verdict, sentence, p_value, examined, driver, _notes(gathered, best, verdict))
 
 
 def _best_shapes(screening: Screening) -> list[Evidence]:

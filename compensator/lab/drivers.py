@@ -8,6 +8,7 @@ import numpy as np
 from compensator.lab.dataset import Dataset, Trial
 from compensator.lab.facts import Facts
 from compensator.lab.recording import FloatArray
+from compensator.lab.reversals import since_rest, strokes_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,15 @@ def _constant(condition: str) -> Callable[[Trial], FloatArray]:
     return lambda trial: np.full(len(trial.motion.time_s), trial.motion.condition(condition, 0.0))
 
 
+def _since_reversal(trial: Trial) -> FloatArray:
+    return strokes_of(trial.motion.position).travel
+
+
+def _rest(trial: Trial) -> FloatArray:
+    motion = trial.motion
+    return since_rest(motion.position, motion.velocity, motion.time_s, motion.slow)[0]
+
+
 DRIVERS: dict[str, Driver] = {
     driver.name: driver
     for driver in (
@@ -47,6 +57,9 @@ DRIVERS: dict[str, Driver] = {
         Driver("time", "time in the trial", "s", lambda t: t.motion.time_s),
         Driver("direction", "direction of motion", "1", lambda t: t.motion.direction),
         Driver("effort_rate", "rate of the predicted effort", "{effort}/s", lambda t: t.motion.effort_rate),
+        Driver("effort", "predicted effort", "{effort}", lambda t: t.motion.predicted),
+        Driver("since_reversal", "travel since the last reversal", "{position}", _since_reversal),
+        Driver("rest", "length of the last rest", "s", _rest),
     )
 }
 

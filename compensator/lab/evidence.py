@@ -49,6 +49,13 @@ class Base:
         basis = orthonormal(columns)
         return cls(basis, effort - basis @ (basis.T @ effort))
 
+    def extended(self, columns: FloatArray) -> "Base":
+        """The base with columns (n, k) beside its own."""
+        rest = columns - self.basis @ (self.basis.T @ columns)
+        added = orthonormal(rest - self.basis @ (self.basis.T @ rest))  # twice is enough (Kahan, Parlett)
+        residual = self.residual - added @ (added.T @ self.residual)
+        return Base(np.column_stack([self.basis, added]), residual)
+
 
 @dataclass(frozen=True)
 class Evidence:

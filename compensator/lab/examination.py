@@ -15,14 +15,16 @@ from compensator.lab.validation import HeldOut, held_out
 SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
+LEAST_FALL = 1e-4  # of the effort: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
-    before = held_out(fit)
-    afters = [held_out(_with_effect(fit, item)) for item in evidence]
+    rows = gathered.show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
+    before = held_out(fit, rows)
+    afters = [held_out(_with_effect(fit, item), rows) for item in evidence]
     given = [_evidence_given(gathered, item) for item in evidence]
     candidates = [
         _candidate(gathered, item, (before, after), _rivals(index, evidence, afters, given[index]))
@@ -37,7 +39,8 @@ def is_confirmed(candidate: Candidate) -> bool:
     The p-value cannot fall far where a few stretches hold most of the evidence; a very strong score stands without it.
     """
     no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
-    helps = candidate.gain.low > 0.0 and candidate.gain.value >= LEAST_GAIN
+    falls = candidate.before - candidate.after >= LEAST_FALL
+    helps = candidate.gain.low > 0.0 and candidate.gain.value >= LEAST_GAIN and falls
     return candidate.score > 0.0 and no_luck and helps
 
 

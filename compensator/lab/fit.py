@@ -1,7 +1,7 @@
 """Fit a model (a list of effects) to the rows of a study: bounded least squares, shapes by variable projection."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,8 +13,9 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.linear import Bounds, Solution, solve
 from compensator.lab.prediction import with_own_prediction
 from compensator.lab.recording import FloatArray
-from compensator.lab.regimes import BoolArray
+from compensator.lab.regimes import BoolArray, Regime
 from compensator.lab.shape_search import find_shapes, first_shapes
+from compensator.lab.weights import regime_weights
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
 SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
@@ -48,12 +49,14 @@ class Fit:
         training: rows used, shape (N,).
         terms: the fitted effects, in the model's order.
         columns: of all terms, shape (N, K).
+        weight: of each row in the fit, shape (N,).
     """
 
     dataset: Dataset
     training: BoolArray
     terms: tuple[Term, ...]
     columns: FloatArray
+    weight: FloatArray
 
     @property
     def coefficients(self) -> FloatArray:
@@ -74,6 +77,12 @@ class Fit:
     def shapes(self) -> dict[str, Shape]:
         """Shape of each effect by name."""
         return {term.effect.name: term.shape for term in self.terms}
+
+    @property
+    def training_equations(self) -> tuple[FloatArray, FloatArray]:
+        """Weighted columns (n, K) and effort (n,) of the training rows."""
+        weight = self.weight[self.training]
+        return weight[:, None] * self.columns[self.training], weight * self.dataset.effort[self.training]
 
     @property
     def predicted(self) -> FloatArray:
@@ -108,36 +117,62 @@ def fit_model(
         raise UnusableDataError("the model has no effects; add at least one, for instance 'coulomb'")
     rows = dataset.counted if training is None else training
     chosen = [effect_named(name) for name in effects]
-    plain = [effect for effect in chosen if not effect.uses_prediction]
-    kept = dict(shapes or {})
-    fit = fit_linear(dataset, plain or chosen, rows, find_shapes(dataset, plain or chosen, rows, kept))
-    if len(plain) == len(chosen):
+    if not (rows & (dataset.regime != Regime.SLIDING)).any() or dataset.rows != "sliding":
+        return _fit(dataset, chosen, rows, shapes or {}, np.ones(len(rows)))
+    # rows near reversals were asked for by an effect that lives there: they must not outvote the others
+    steady = [effect for effect in chosen if effect.rows == "sliding"] or chosen
+    sliding = rows & (dataset.regime == Regime.SLIDING)
+    first = _fit(dataset, steady, sliding, shapes or {}, np.ones(len(rows)))
+    kept = {**{name: first.shapes[name] for name in first.names}, **(shapes or {})}
+    return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows))
+
+
+def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -> Fit:
+    """Fit the named effects to the trials of some training rows: to the study's rows, wider where an effect needs it.
+
+    Arguments and errors as `fit_model`; `training` tells which trials.
+    """
+    trials = dataset.trial_index
+    rows = dataset.in_regimes(dataset.choice_for([effect_named(name) for name in effects]))
+    return fit_model(dataset, effects, rows & np.isin(trials, np.unique(trials[training])))
+
+
+def _fit(
+    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
+) -> Fit:
+    plain = [effect for effect in effects if not effect.uses_prediction]
+    shapes = find_shapes(dataset, plain or effects, rows, kept, weight)
+    fit = fit_linear(dataset, plain or effects, rows, shapes, weight)
+    if len(plain) == len(effects):
         return fit
-    fit = _settle(fit, chosen, {**first_shapes(dataset, chosen), **fit.shapes, **kept})
-    return _settle(fit, chosen, find_shapes(with_own_prediction(fit), chosen, rows, kept))
+    fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept})
+    return _settle(fit, effects, find_shapes(with_own_prediction(fit), effects, rows, kept, weight))
 
 
 def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> Fit:
     """Refit until the load that the model predicts is the load that its own terms are built from."""
     for _ in range(MOST_PASSES):
         before = fit.predicted
-        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes)
+        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes, fit.weight)
         change = fit.predicted - before
         if change @ change <= SETTLED_SHARE**2 * (before @ before):
             break
     return fit
 
 
-def fit_linear(dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape]) -> Fit:
-    """Fit the coefficients of effects of given shapes to the given rows."""
+def fit_linear(
+    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape], weight: FloatArray
+) -> Fit:
+    """Fit the coefficients of effects of given shapes to the given rows, weighted (N,)."""
     blocks = [dataset.columns(effect, shapes.get(effect.name, ())) for effect in effects]
     columns = np.concatenate(blocks, axis=1)
     if int(rows.sum()) < 2 * columns.shape[1]:
         raise UnusableDataError(
             f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
         )
-    solution = solve(columns[rows], dataset.effort[rows], bounds_of(effects))
-    return Fit(dataset, rows, _terms(effects, shapes, solution), columns)
+    inside = weight[rows]
+    solution = solve(inside[:, None] * columns[rows], inside * dataset.effort[rows], bounds_of(effects))
+    return Fit(dataset, rows, _terms(effects, shapes, solution), columns, weight)
 
 
 def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Solution) -> tuple[Term, ...]:
@@ -168,9 +203,11 @@ def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
     curve = Effect(name, name, "", "", _no_columns, parameters, "time", "", "")
     wide = np.column_stack([fit.columns, columns])
     effects = [*(term.effect for term in fit.terms), curve]
-    solution = solve(wide[fit.training], fit.dataset.effort[fit.training], bounds_of(effects))
+    inside = fit.weight[fit.training]
+    effort = inside * fit.dataset.effort[fit.training]
+    solution = solve(inside[:, None] * wide[fit.training], effort, bounds_of(effects))
     shapes = {**fit.shapes, name: ()}
-    return Fit(fit.dataset, fit.training, _terms(effects, shapes, solution), wide)
+    return replace(fit, terms=_terms(effects, shapes, solution), columns=wide)
 
 
 def _no_columns(motion: Motion, _: Shape) -> FloatArray:

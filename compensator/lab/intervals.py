@@ -72,8 +72,8 @@ def _note(kept: bool, bound: bool) -> str:
 def _half_widths(fit: Fit) -> FloatArray:
     """Half widths of the intervals of all coefficients, shape (K,); NaN where there are too few units."""
     kept = np.concatenate([term.kept for term in fit.terms])
-    rows = fit.training
-    columns, effort, unit = fit.columns[rows][:, kept], fit.dataset.effort[rows], independent_units(fit, rows)
+    columns, effort = fit.training_equations
+    columns, unit = columns[:, kept], independent_units(fit, fit.training)
     bounds = fit.bounds.of(kept)
     gram, moment = columns.T @ columns, columns.T @ effort
     without = []

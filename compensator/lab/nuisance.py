@@ -7,16 +7,22 @@ difference of steep sigmoids. An effect that means one of these (see `Effect.sta
 import numpy as np
 
 from compensator.lab.dataset import Dataset
+from compensator.lab.effects import backlash
 from compensator.lab.effects.effect import Motion
 from compensator.lab.recording import FloatArray
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
+KNOWN_PLAY = ("known_play_friction", "known_play_inertia")  # free play that the owner knows is not missing
 
 
 def nuisance_columns(dataset: Dataset) -> dict[str, FloatArray]:
     """Each nuisance column by name, shape (N,)."""
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
-    return dict(zip(NAMES, stack.T, strict=True))
+    named = dict(zip(NAMES, stack.T, strict=True))
+    if dataset.facts.backlash_rad:
+        columns = dataset.columns(backlash.EFFECT, (dataset.facts.backlash_rad,))
+        named |= dict(zip(KNOWN_PLAY, columns.T, strict=True))
+    return named
 
 
 def _columns(motion: Motion, rate_hz: float) -> FloatArray:

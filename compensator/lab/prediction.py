@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 
 
 def with_own_prediction(fit: "Fit") -> "Dataset":
-    """The fit's rows, with its own predicted load and rate of change of effort in every motion."""
+    """The fit's rows, with its own predicted load and effort in every motion."""
     per_torque = effort_per_torque(fit)
-    loads, rates = [], []
+    loads, totals = [], []
     for trial in fit.dataset.trials:
         load = np.zeros(len(trial.motion.time_s))
         total = np.zeros(len(trial.motion.time_s))
         for term in fit.terms:
-            if term.effect.name == "measurement_delay":
-                continue  # its column is the derivative of the rest
+            if term.effect.builds_on == "effort":
+                continue  # its column is made of the rest
             part = term.coefficients @ term.effect.columns(trial.motion, term.shape)
             total += part
             if term.effect.carried:
                 load += part
         loads.append(load + _load_inertia_effort(fit, trial.motion, per_torque))
-        rates.append(np.gradient(total, 1.0 / trial.signals.rate_hz))
-    return fit.dataset.with_prediction(loads, rates)
+        totals.append(total)
+    return fit.dataset.with_prediction(loads, totals)
 
 
 def effort_per_torque(fit: "Fit") -> float | None:

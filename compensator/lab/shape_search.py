@@ -25,7 +25,7 @@ def first_shapes(dataset: Dataset, effects: Sequence[Effect]) -> dict[str, Shape
 
 
 def find_shapes(
-    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape]
+    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
 ) -> dict[str, Shape]:
     """The shape of every effect that has one, each searched with the others held.
 
@@ -34,13 +34,14 @@ def find_shapes(
         effects: of the model, in order.
         rows: to fit to, shape (N,).
         kept: shapes that are not searched but taken as they are.
+        weight: of each row, shape (N,).
     """
     shapes = {**first_shapes(dataset, effects), **kept}
     for effect in effects:
         if effect.shape_names and effect.name not in kept:
             others = [dataset.columns(other, shapes.get(other.name, ())) for other in effects if other is not effect]
             fixed = np.concatenate(others, axis=1)[rows] if others else np.empty((int(rows.sum()), 0))
-            search = _Search(dataset, effect, rows, fixed)
+            search = _Search(dataset, effect, rows, fixed, weight[rows])
             best = search.scan()
             shapes[effect.name] = search.refine(best) if effect.smooth_shape else best
     return shapes
@@ -49,10 +50,12 @@ def find_shapes(
 class _Search:
     """Explained power of one effect's shapes, on top of fixed columns."""
 
-    def __init__(self, dataset: Dataset, effect: Effect, rows: BoolArray, fixed: FloatArray) -> None:
-        self._dataset, self._effect, self._rows = dataset, effect, rows
-        self._basis = orthonormal(fixed)
-        effort = dataset.effort[rows]
+    def __init__(
+        self, dataset: Dataset, effect: Effect, rows: BoolArray, fixed: FloatArray, weight: FloatArray
+    ) -> None:
+        self._dataset, self._effect, self._rows, self._weight = dataset, effect, rows, weight[:, None]
+        self._basis = orthonormal(self._weight * fixed)
+        effort = weight * dataset.effort[rows]
         self._rest = effort - self._basis @ (self._basis.T @ effort)
         self._grid = effect.shapes(dataset.trials[0].motion)
         parameters = effect.parameters
@@ -60,7 +63,7 @@ class _Search:
 
     def explained(self, columns: FloatArray) -> float:
         """Power that columns (N, k) explain of what the fixed ones leave; 0 where the sign is not physical."""
-        inside = columns[self._rows]
+        inside = self._weight * columns[self._rows]
         inside = inside - self._basis @ (self._basis.T @ inside)
         basis = orthonormal(inside)
         share = basis.T @ self._rest

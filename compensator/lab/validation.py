@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from compensator.lab.dataset import IntArray
+from compensator.lab.dataset import IntArray, RowChoice
 from compensator.lab.fit import Fit
 from compensator.lab.linear import solve_normal
 from compensator.lab.recording import FloatArray
@@ -66,19 +66,25 @@ def rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")
 
 
-def held_out(fit: Fit) -> HeldOut:
+def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
     """The held-out error of a fit: on the trials it was not trained on, or by leaving one out in turn.
 
     With fewer than four training trials and none held out, stretches of BLOCK_S are left out instead: an optimistic
     stand-in, since a trial's stretches share its conditions; `kind` says so.
+
+    Args:
+        fit: to be judged.
+        rows: that are judged; None takes the study's.
     """
-    outside = fit.dataset.counted & ~fit.training
+    judged = fit.dataset.in_regimes(rows or fit.dataset.rows)
+    trials = fit.dataset.trial_index
+    trained = np.unique(trials[fit.training])
+    outside = judged & ~np.isin(trials, trained)
     if outside.any():
         return _result(fit, "hold-out", outside, fit.residual[outside], independent_units(fit, outside))
-    trials = fit.dataset.trial_index
-    if len(np.unique(trials[fit.training])) >= FEWEST_TRIALS:
-        return _leave_out(fit, "leave-one-trial-out", trials)
-    return _leave_out(fit, "leave-one-block-out", fit.dataset.block_index)
+    if len(trained) >= FEWEST_TRIALS:
+        return _leave_out(fit, "leave-one-trial-out", trials, judged)
+    return _leave_out(fit, "leave-one-block-out", fit.dataset.block_index, judged)
 
 
 def independent_units(fit: Fit, rows: BoolArray) -> IntArray:
@@ -87,19 +93,21 @@ def independent_units(fit: Fit, rows: BoolArray) -> IntArray:
     return trials if len(np.unique(trials)) >= FEWEST_TRIALS else fit.dataset.block_index[rows]
 
 
-def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray) -> HeldOut:
-    rows = fit.training
+def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) -> HeldOut:
+    rows = fit.training & judged
     kept = np.concatenate([term.kept for term in fit.terms])
-    columns, effort, unit = fit.columns[rows][:, kept], fit.dataset.effort[rows], units[rows]
+    columns, effort = fit.training_equations
+    columns, unit = columns[:, kept], units[fit.training]
     bounds = fit.bounds.of(kept)
     gram, moment = columns.T @ columns, columns.T @ effort
-    residual = np.empty(len(effort))
+    residual = np.zeros(len(units))
     for label in np.unique(unit):
         own = unit == label
         inside = columns[own]
         rest = solve_normal(gram - inside.T @ inside, moment - inside.T @ effort[own], bounds)
-        residual[own] = effort[own] - inside @ rest
-    return _result(fit, kind, rows, residual, unit)
+        seen = rows & (units == label)
+        residual[seen] = fit.dataset.effort[seen] - fit.columns[seen][:, kept] @ rest
+    return _result(fit, kind, rows, residual[rows], units[rows])
 
 
 def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
 from compensator.lab.comparison import compare
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.diagnose import diagnose
 from compensator.lab.diagnosis import Diagnosis
 from compensator.lab.errors import UnusableDataError

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from compensator.lab.assembly import make_dataset
 from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import catalogue, default_effects, effect_named
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.fit import fit_model
 from compensator.lab.nuisance import NAMES, nuisance_columns
 from tests.lab.synthetic import FACTS, recordings

@@ -5,8 +5,9 @@ import sys
 import pytest
 
 from compensator.lab import catalogue as module
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import candidates, catalogue, default_effects, effect_named
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.diagnose import diagnose
 from compensator.lab.errors import NotApplicableError, UnknownEffectError
 from compensator.lab.facts import Facts

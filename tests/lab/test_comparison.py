@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
 from compensator.lab.comparison import compare, repeatability_floor
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.drivers import available
 from compensator.lab.fit import Fit, fit_model
 from compensator.lab.generic import driver_blocks

@@ -7,8 +7,9 @@ import pytest
 from scipy.stats import binom
 
 from compensator.lab import diagnose as diagnose_module
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.diagnose import diagnose
 from compensator.lab.diagnosis import Diagnosis
 from compensator.lab.errors import UnusableDataError

@@ -1,6 +1,7 @@
 """Every effect file: its columns against the equation that it states, and what it says about itself."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
     q, v, a = np.sin(3 * time_s), 3 * np.cos(3 * time_s), -9 * np.sin(3 * time_s)
     return Motion(
         facts=Facts(joint=joint),
-        conditions={"load_kg": LOAD_KG, "arm_m": ARM_M, **conditions},
+        conditions={"load_kg": LOAD_KG, "arm_m": ARM_M, "session_s": 30.0, **conditions},
         time_s=time_s,
         position=q,
         velocity=v,
@@ -29,13 +30,54 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
         jerk=-9 * v,
         direction=np.tanh(v / 0.01),
         load_effort=1.3 * np.sin(q) - 0.2,
+        predicted=0.7 * np.cos(q) - 0.3,
         effort_rate=4.0 * v,
         temperature_c=20.0 + 5.0 * time_s,
         supply_v=np.full(41, 12.0),
         position_span=2.0,
+        session_span_s=60.0,
         slow=0.06,
         fast=2.9,
     )
+
+
+def predicted(m: Motion) -> np.ndarray:
+    return 0.7 * np.cos(m.position) - 0.3
+
+
+def back_driven(m: Motion, load: np.ndarray) -> np.ndarray:
+    return np.where(load * m.velocity < 0.0, np.abs(load) * np.sign(m.velocity), 0.0)
+
+
+def slope(values: np.ndarray) -> np.ndarray:
+    return np.gradient(values, 0.05)
+
+
+def dahl(position: np.ndarray, distance: float) -> np.ndarray:
+    """Dahl's equation, integrated in small steps between the samples, less the sign of the motion."""
+    state, states, sign = 0.0, [0.0], [1.0]
+    for here, there in pairwise(position):
+        for _ in range(2000):
+            step, going = (there - here) / 2000, np.sign(there - here)
+            half = state + 0.5 * step / distance * (1.0 - state * going)
+            state += step / distance * (1.0 - half * going)
+        states.append(state)
+        sign.append(np.sign(there - here))
+    return np.array(states) - np.array(sign)
+
+
+def crossing(m: Motion) -> list[np.ndarray]:
+    """The far side of a gap of 0.3, pushed from either flank."""
+    free, sign, before = [], [], m.position[0]
+    edge = m.position[0]  # motor side of the far body's forward flank
+    for here in m.position:
+        going = 1.0 if not sign else np.sign(here - before) or sign[-1]
+        inside = edge - 0.3 < here < edge if sign else False
+        edge = max(edge, here) if going > 0 else min(edge, here + 0.3)
+        free.append(inside)
+        sign.append(going)
+        before = here
+    return [-np.array(sign) * free, -m.acceleration * free]
 
 
 # one row per parameter, from the equation in the effect's file; shape values in its order
@@ -61,6 +103,22 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "spring": ((), lambda m: [m.position]),
     "centre_of_mass_angle": ((), lambda m: [np.cos(m.position), WEIGHT_N_M * np.cos(m.position)]),
     "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
+    "back_driving_friction": ((), lambda m: [back_driven(m, 1.3 * np.sin(m.position) - 0.2)]),
+    "cogging": ((9.0,), lambda m: [np.cos(9 * m.position), np.sin(9 * m.position)]),
+    "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
+    "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
+    "dead_time": ((), lambda m: [np.tanh(predicted(m) / (0.02 * np.abs(predicted(m)).max()))]),
+    "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
+    "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
+    "frictional_lag": ((0.5,), lambda m: [m.acceleration * np.exp(-np.abs(m.velocity) / 0.5)]),
+    "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
+    "backlash": ((0.3,), crossing),
+    "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
+    "elasticity": ((), lambda m: [-slope(slope(1.3 * np.sin(m.position) - 0.2))]),
+    "encoder_eccentricity": (
+        (2.0,),
+        lambda m: [slope(slope(np.cos(2 * m.position))), slope(slope(np.sin(2 * m.position)))],
+    ),
 }
 
 
@@ -73,7 +131,7 @@ def test_columns_are_the_written_equation(name):
     shape, equation = EQUATIONS[name]
     found, wanted = EFFECTS[name].columns(motion(), shape), np.array(equation(motion()))
     assert found.shape == (len(EFFECTS[name].parameters), 41)
-    assert found == pytest.approx(wanted, abs=1e-9)
+    assert found == pytest.approx(wanted, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", EFFECTS)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.errors import UnknownEffectError, UnusableDataError
 from compensator.lab.fit import Fit, fit_linear, fit_model
 from compensator.lab.intervals import estimates

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.assembly import make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.fit import fit_model
 from compensator.lab.intervals import estimates
 from compensator.lab.weights import LIMITS, row_weights

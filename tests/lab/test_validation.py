@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
-from compensator.lab.dataset import Processing, make_dataset
+from compensator.lab.dataset import Processing
 from compensator.lab.fit import Fit, fit_model
 from compensator.lab.validation import HeldOut, held_out, independent_units, relative_error, rms
 from tests.lab.synthetic import FACTS, Joint, plans, recordings

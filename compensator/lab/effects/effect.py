@@ -2,13 +2,16 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
-from compensator.lab.facts import STANDARD_GRAVITY_M_S2, Facts
+from compensator.lab.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
 from compensator.lab.recording import Condition, FloatArray
 
 Shape = tuple[float, ...]
+EffectRows = Literal["sliding", "moving"]
+SESSION_START = "session_s"  # condition: time from the start of the session to that of the trial [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,9 +25,10 @@ class Motion:
         position, velocity, acceleration, jerk: rad or m, and per s, s^2, s^3; zero-phase filtered.
         direction: smooth sign of the velocity, -1 .. 1.
         load_effort: predicted effort without friction, in the effort's unit (never the measured one).
-        effort_rate: d/dt of the predicted effort.
+        predicted, effort_rate: predicted effort, all of it, and its rate of change.
         temperature_c, supply_v: NaN where not measured.
         position_span: range of position over all trials of the study.
+        session_span_s: from the first trial's start to the last one's end, as far as the conditions tell.
         slow: speed below which direction is uncertain.
         fast: 95 % quantile of speed over all trials.
     """
@@ -38,10 +42,12 @@ class Motion:
     jerk: FloatArray
     direction: FloatArray
     load_effort: FloatArray
+    predicted: FloatArray
     effort_rate: FloatArray
     temperature_c: FloatArray
     supply_v: FloatArray
     position_span: float
+    session_span_s: float
     slow: float
     fast: float
 
@@ -49,6 +55,11 @@ class Motion:
         """A numeric condition of the trial, or the default where it is not given."""
         value = self.conditions.get(name, default)
         return float(value) if isinstance(value, int | float) else default
+
+    @property
+    def session_s(self) -> FloatArray:
+        """Time since the start of the session [s], shape (n,); since the start of the trial where nothing tells."""
+        return self.time_s + self.condition(SESSION_START, 0.0)
 
     @property
     def load_kg(self) -> float:
@@ -118,7 +129,10 @@ class Effect:
         carried: part of the load that the gear transmits (see `prediction`).
         pipeline: of the measuring chain, not of the joint: reported as a finding of its own, so that a small skew
             between channels never hides physics.
-        uses_prediction: columns use `load_effort` or `effort_rate`: a model must be fitted first.
+        builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), or "effort" (`predicted`,
+            `effort_rate`), which is the sum of all effects that do not build on it themselves.
+        rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see.
+        efforts: quantities of effort that it can show in; empty for all.
         standing_in: pipeline nuisance columns that would absorb this effect (see `nuisance`).
         varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
     """
@@ -139,6 +153,13 @@ class Effect:
     confused_with: tuple[str, ...] = ()
     carried: bool = False
     pipeline: bool = False
-    uses_prediction: bool = False
+    builds_on: Literal["load", "effort"] | None = None
     standing_in: frozenset[str] = field(default_factory=frozenset)
     varies_with: str | None = None
+    rows: EffectRows = "sliding"
+    efforts: tuple[EffortQuantity, ...] = ()
+
+    @property
+    def uses_prediction(self) -> bool:
+        """Whether a model must be fitted before the columns can be computed."""
+        return self.builds_on is not None

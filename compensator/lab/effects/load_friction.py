@@ -25,5 +25,5 @@ EFFECT = Effect(
     excited_by="several loads, moved slowly up and down",
     source="Rhoban/bam, model M3; Saini et al. 2013, section 3.2.2",
     confused_with=("load_friction_quadratic", "position_periodic_friction", "weight_friction"),
-    uses_prediction=True,
+    builds_on="load",
 )

@@ -22,5 +22,5 @@ EFFECT = Effect(
     excited_by="at least three loads spread over a factor of six",
     source="Rhoban/bam, model M6",
     confused_with=("load_friction",),
-    uses_prediction=True,
+    builds_on="load",
 )

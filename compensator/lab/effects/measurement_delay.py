@@ -23,7 +23,7 @@ EFFECT = Effect(
     excited_by="fast reversals and frequencies above 3 Hz",
     source="first-order expansion in the delay",
     confused_with=("inertia",),
-    uses_prediction=True,
+    builds_on="effort",
     pipeline=True,
     standing_in=frozenset({"jerk", "sign_rate"}),
 )

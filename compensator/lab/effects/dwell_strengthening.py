@@ -1,0 +1,40 @@
+"""Static friction that rises with the time at rest."""
+
+import numpy as np
+
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recording import FloatArray
+from compensator.lab.reversals import REST_S, since_rest
+
+
+def shapes(motion: Motion) -> list[Shape]:
+    """Distances from a five-hundredth to a fifth of the travel."""
+    return [(float(share * motion.position_span),) for share in np.geomspace(2e-3, 0.2, 5)]
+
+
+def columns(motion: Motion, shape: Shape) -> FloatArray:
+    """Logarithm of the last rest, forgotten over a distance, for shape (x_d,)."""
+    dwell_s, travel = since_rest(motion.position, motion.velocity, motion.time_s, motion.slow)
+    return (np.log1p(dwell_s / REST_S) * np.exp(-travel / shape[0]) * motion.direction)[None]
+
+
+EFFECT = Effect(
+    name="dwell_strengthening",
+    title="Rising static friction",
+    physics=(
+        "The longer surfaces rest on each other, the harder they are to part: static friction grows with the "
+        "logarithm of the time at rest, and is gone after a short travel."
+    ),
+    equation=r"c\,\ln(1 + t_{rest}/t_0)\,e^{-x/x_d}\,\mathrm{sgn}(\dot q)",
+    columns=columns,
+    parameters=(Parameter("rise per factor e of the rest", "{effort}", 0.0),),
+    driver="rest",
+    excited_by="starts after rests of very different lengths: 0.1, 1 and 10 s",
+    source="Armstrong, Dupont, Canudas de Wit 1994; Rabinowicz 1958",
+    shapes=shapes,
+    smooth_shape=True,
+    shape_names=("distance that forgets the rest",),
+    confused_with=("stribeck", "pre_sliding"),
+    standing_in=frozenset({"slow_sign", "fast_sign"}),
+    rows="moving",
+)

@@ -1,0 +1,40 @@
+"""Pre-sliding displacement."""
+
+import numpy as np
+
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recording import FloatArray
+from compensator.lab.reversals import deflection, strokes_of
+
+
+def shapes(motion: Motion) -> list[Shape]:
+    """Distances from a thousandth to a tenth of the travel."""
+    return [(float(share * motion.position_span),) for share in np.geomspace(1e-3, 0.1, 7)]
+
+
+def columns(motion: Motion, shape: Shape) -> FloatArray:
+    """What friction lacks while the surfaces still give, for shape (x_s,)."""
+    strokes = strokes_of(motion.position)
+    return (deflection(strokes, shape[0]) - strokes.sign[strokes.index])[None]
+
+
+EFFECT = Effect(
+    name="pre_sliding",
+    title="Pre-sliding",
+    physics=(
+        "Before surfaces slide they give like springs: after a reversal friction comes up over a distance "
+        "instead of at once. Dahl's law, to be had from the position alone."
+    ),
+    equation=r"F_p\,(z - \mathrm{sgn}\,\dot q),\quad x_s\,dz = (1 - z\,\mathrm{sgn}\,\dot q)\,dq",
+    columns=columns,
+    parameters=(Parameter("friction that comes up over a distance", "{effort}", 0.0),),
+    driver="since_reversal",
+    excited_by="many reversals, with strokes shorter and longer than the distance",
+    source="Dahl 1968; Armstrong, Dupont, Canudas de Wit 1994",
+    shapes=shapes,
+    smooth_shape=True,
+    shape_names=("pre-sliding distance",),
+    confused_with=("backlash", "frictional_lag", "measurement_delay"),
+    standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
+    rows="moving",
+)
