@@ -61,17 +61,17 @@ def gather(fit: Fit, show_in: EffectRows = "sliding") -> Candidates:
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
     weights = row_weights(dataset, fit.residual, rows)
-    builder = _Builder(fit, rows, weights)
-    named, left_out = builder.named(show_in)
+    builder = _Builder(fit, show_in, rows, weights)
+    named, left_out = builder.named()
     splines = {f"{b.driver}{' against motion' if b.against_motion else ''}": b for b in driver_blocks(dataset)}
     generic = [Block(name, builder.weighted(b.columns), 0, 1) for name, b in splines.items()]
     return Candidates(fit, show_in, rows, weights, builder.bases, named, splines, generic, left_out)
 
 
 class _Builder:
-    def __init__(self, fit: Fit, rows: BoolArray, weights: FloatArray) -> None:
-        self._fit, self._rows, self._weights = fit, rows, weights
-        self._nuisance = nuisance_columns(fit.dataset)
+    def __init__(self, fit: Fit, show_in: EffectRows, rows: BoolArray, weights: FloatArray) -> None:
+        self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
+        self._nuisance = nuisance_columns(fit.dataset, show_in)
         self._model = _model_columns(fit)
         self._index: dict[frozenset[str], int] = {}
         self.bases: list[Base] = []
@@ -80,10 +80,14 @@ class _Builder:
     def weighted(self, columns: FloatArray) -> FloatArray:
         return columns[self._rows] * self._weights[:, None]
 
-    def named(self, show_in: EffectRows) -> tuple[list[Block], dict[str, str]]:
+    def named(self) -> tuple[list[Block], dict[str, str]]:
         blocks, left_out = [], {}
         for effect in catalogue.candidates(self._fit.names, self._fit.dataset.facts):
-            if effect.rows != show_in:
+            if effect.rows != self._show_in:
+                continue
+            hiding = [name for name in effect.hidden_by if name in self._fit.names]
+            if hiding:
+                left_out[effect.name] = _hidden(effect, hiding)
                 continue
             try:
                 blocks += self._blocks(effect)
@@ -108,6 +112,13 @@ class _Builder:
             effort = self._weights * self._fit.dataset.effort[self._rows]
             self.bases.append(Base.of(self.weighted(columns), effort))
         return self._index[nuisances]
+
+
+def _hidden(effect: Effect, hiding: list[str]) -> str:
+    return (
+        f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
+        f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
+    )
 
 
 def _model_columns(fit: Fit) -> FloatArray:

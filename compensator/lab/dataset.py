@@ -174,6 +174,11 @@ class Dataset:
             raise NotApplicableError(
                 f"{effect.name} does not show in {self.effort_definition.title}; it does in {', '.join(effect.efforts)}"
             )
+        for fact in effect.facts:
+            if getattr(self.facts, fact) is None:
+                raise NotApplicableError(
+                    f"{effect.name} needs {fact}, which the rig does not tell; put it into rig.toml"
+                )
         for channel in effect.channels:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")

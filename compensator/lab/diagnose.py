@@ -5,28 +5,20 @@ score, its null by sign flips of whole stretches), what is it called (likelihood
 shapes), does it help (held-out error, resampled by whole trials).
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from compensator.lab.candidates import Candidates, gather
+from compensator.lab.candidates import gather
 from compensator.lab.catalogue import candidates, effect_named
 from compensator.lab.data_checks import data_problems
-from compensator.lab.diagnosis import Candidate, Diagnosis, Verdict
-from compensator.lab.drivers import DRIVERS
+from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import EffectRows
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.evidence import Evidence, Screening, screen
-from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
-from compensator.lab.fit import Fit, fit_model, with_columns
-from compensator.lab.gain import held_out_gain
+from compensator.lab.evidence import screen
+from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
+from compensator.lab.fit import Fit, fit_model
 from compensator.lab.regimes import Regime
-from compensator.lab.validation import held_out
-from compensator.lab.wording import answer_in_words
 
 FEWEST_REVERSAL_ROWS = 40
-EXAMINED = 6  # candidates that are refitted and drawn
-FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
 
 
 def diagnose(fit: Fit) -> Diagnosis:
@@ -48,11 +40,11 @@ def diagnose(fit: Fit) -> Diagnosis:
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
     generic = screen(gathered.bases, gathered.generic, stretch)
-    steady = _answer(fit, gathered, screen(gathered.bases, physical, stretch), generic)
-    chain = _answer(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
+    steady = answer_of(fit, gathered, screen(gathered.bases, physical, stretch), generic)
+    chain = answer_of(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
     memory, not_judged = _memory(fit)
     families = [steady, *([memory] if memory else []), chain]
-    first = next((answer for answer in families if answer.verdict != "nothing"), steady)
+    first = _first_of(families)
     others = [answer for answer in families if answer is not first]
     ranked = [candidate for answer in (first, *others) for candidate in answer.candidates]
     notes = [answer.sentence for answer in others if answer.verdict == "missing"]
@@ -77,7 +69,7 @@ def best_named(fit: Fit, show_in: EffectRows) -> str | None:
     return screening.evidence[0].block.name if screening.evidence else None
 
 
-def _memory(fit: Fit) -> tuple["_Answer | None", dict[str, str]]:
+def _memory(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
     dataset = fit.dataset
     trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
@@ -90,61 +82,18 @@ def _memory(fit: Fit) -> tuple["_Answer | None", dict[str, str]]:
     wide = fit_model(dataset, fit.names, moving, fit.shapes)
     gathered = gather(wide, "moving")
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
-    return _answer(wide, gathered, screening, None), gathered.left_out
+    return answer_of(wide, gathered, screening, None), gathered.left_out
 
 
-@dataclass(frozen=True)
-class _Answer:
-    """What one family of effects has to say."""
-
-    verdict: Verdict
-    sentence: str
-    p_value: float
-    candidates: list[Candidate]
-    driver: str | None
-    notes: list[str]
-
-
-def _answer(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> _Answer:
-    best_of_each = _best_shapes(named)
-    if not best_of_each:
-        return _Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
-    examined = examine(fit, gathered, best_of_each[:EXAMINED])
-    best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
-    verdict, driver = _verdict(fit, gathered, named, generic, best, examined[0])
-    p_value = generic.p_value if generic is not None and verdict == "unknown-effect" else named.p_value
-    sentence = answer_in_words(verdict, p_value, examined, driver)
-    return _Answer(verdict, sentence, p_value, examined, driver, _notes(gathered, best, verdict))
-
-
-def _best_shapes(screening: Screening) -> list[Evidence]:
-    """The best shape of every effect, best effect first."""
-    found: dict[str, Evidence] = {}
-    for evidence in screening.evidence:
-        found.setdefault(evidence.block.name, evidence)
-    return list(found.values())
-
-
-def _verdict(
-    fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None, best: Evidence, candidate: Candidate
-) -> tuple[Verdict, str | None]:
-    curve = _curve(fit, gathered, generic)
-    followed = candidate.physical and curve is not None and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
-    if curve is not None and not followed:
-        return "unknown-effect", curve.block.name
-    formula_found = named.p_value <= SIGNIFICANT and is_confirmed(candidate)
-    return ("missing", None) if formula_found else ("nothing", None)
-
-
-def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
-    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
-    if generic is None or generic.p_value > SIGNIFICANT or not generic.evidence:
-        return None
-    best = generic.evidence[0]
-    if best.score <= 0.0 or best.p_value > SIGNIFICANT:
-        return None
-    with_curve = with_columns(fit, best.block.name, gathered.splines[best.block.name].columns)
-    return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
+def _first_of(families: list[Answer]) -> Answer:
+    """The first family that names something; a curve that no effect follows, unless a name of another explains it."""
+    steady = families[0]
+    if steady.verdict == "nothing":
+        return next((answer for answer in families if answer.verdict == "missing"), steady)
+    if steady.verdict == "missing":
+        return steady
+    enough = FORMULA_SHARE * steady.strength
+    return next((a for a in families[1:] if a.verdict == "missing" and a.strength >= enough), steady)
 
 
 def _classes(candidates: list[Candidate]) -> list[tuple[str, ...]]:
@@ -158,17 +107,3 @@ def _classes(candidates: list[Candidate]) -> list[tuple[str, ...]]:
         placed.update(members)
         classes.append(tuple(members))
     return classes
-
-
-def _notes(gathered: Candidates, best: Evidence, verdict: Verdict) -> list[str]:
-    """What remains once the best effect is in the model."""
-    if verdict != "missing":
-        return []
-    left = gathered.with_block(best.block)
-    rest = screen(left.bases, left.generic, gathered.fit.dataset.block_index[gathered.rows])
-    if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
-        name = rest.evidence[0].block.name
-        driver = DRIVERS[name.removesuffix(" against motion")]
-        how = " against the motion" if name.endswith("against motion") else ""
-        return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
-    return []

@@ -7,18 +7,24 @@ difference of steep sigmoids. An effect that means one of these (see `Effect.sta
 import numpy as np
 
 from compensator.lab.dataset import Dataset
-from compensator.lab.effects import backlash
-from compensator.lab.effects.effect import Motion
+from compensator.lab.effects import backlash, measurement_delay
+from compensator.lab.effects.effect import EffectRows, Motion
 from compensator.lab.recording import FloatArray
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
 KNOWN_PLAY = ("known_play_friction", "known_play_inertia")  # free play that the owner knows is not missing
 
 
-def nuisance_columns(dataset: Dataset) -> dict[str, FloatArray]:
-    """Each nuisance column by name, shape (N,)."""
+def nuisance_columns(dataset: Dataset, show_in: EffectRows = "sliding") -> dict[str, FloatArray]:
+    """Each nuisance column by name, shape (N,).
+
+    Near reversals a delay looks like memory: there its own column stands too, and that of the free play that is known.
+    """
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
     named = dict(zip(NAMES, stack.T, strict=True))
+    if show_in == "sliding":
+        return named
+    named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
     if dataset.facts.backlash_rad:
         columns = dataset.columns(backlash.EFFECT, (dataset.facts.backlash_rad,))
         named |= dict(zip(KNOWN_PLAY, columns.T, strict=True))

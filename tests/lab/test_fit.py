@@ -130,10 +130,10 @@ def test_training_rows_alone_are_fitted(noisy):
     dataset = noisy.dataset
     effects = [term.effect for term in noisy.terms]
     rows = dataset.counted & (dataset.trial_index < 6)
-    before = fit_linear(dataset, effects, rows, noisy.shapes)
+    before = fit_linear(dataset, effects, rows, noisy.shapes, noisy.weight)
     dataset.effort[~rows] += 100.0
     try:
-        after = fit_linear(dataset, effects, rows, noisy.shapes)
+        after = fit_linear(dataset, effects, rows, noisy.shapes, noisy.weight)
     finally:
         dataset.effort[~rows] -= 100.0
     assert after.coefficients == pytest.approx(before.coefficients, rel=1e-12)

@@ -21,10 +21,11 @@ EFFECT = Effect(
     ),
     equation=r"\mu_b\,|\hat\tau_{load}|\,\mathrm{sgn}(\dot q)\;[\hat\tau_{load}\,\dot q < 0]",
     columns=columns,
-    parameters=(Parameter("further share of the load lost while back-driven", "1", -1.0, 1.0),),
+    parameters=(Parameter("further share of the load lost while back-driven", "1", 0.0, 1.0),),
     driver="load",
     excited_by="several loads, raised and lowered slowly, with the weights and the torque constant known",
     source="Rhoban/bam, model M5; Wang, Kim 2015",
     confused_with=("gravity", "load_friction"),
     builds_on="load",
+    hidden_by=("gravity",),
 )

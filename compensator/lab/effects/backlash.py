@@ -9,7 +9,7 @@ from compensator.lab.reversals import in_free_play, strokes_of
 
 def shapes(motion: Motion) -> list[Shape]:
     """Gaps from a five-hundredth to a fifth of the travel."""
-    return [(float(share * motion.position_span),) for share in np.geomspace(2e-3, 0.2, 7)]
+    return [(float(share * motion.position_span),) for share in np.geomspace(2e-3, 0.2, 19)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:

@@ -129,9 +129,11 @@ class Effect:
         carried: part of the load that the gear transmits (see `prediction`).
         pipeline: of the measuring chain, not of the joint: reported as a finding of its own, so that a small skew
             between channels never hides physics.
-        builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), or "effort" (`predicted`,
-            `effort_rate`), which is the sum of all effects that do not build on it themselves.
+        builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), or "effort"
+            (`predicted`, `effort_rate`), which is the sum of all effects that do not build on it themselves.
         rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see.
+        facts: attributes of `Facts` that must be known.
+        hidden_by: effects in whose free scale it hides: while one of them is in the model, it cannot be judged.
         efforts: quantities of effort that it can show in; empty for all.
         standing_in: pipeline nuisance columns that would absorb this effect (see `nuisance`).
         varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
@@ -157,6 +159,8 @@ class Effect:
     standing_in: frozenset[str] = field(default_factory=frozenset)
     varies_with: str | None = None
     rows: EffectRows = "sliding"
+    facts: tuple[str, ...] = ()
+    hidden_by: tuple[str, ...] = ()
     efforts: tuple[EffortQuantity, ...] = ()
 
     @property

@@ -27,6 +27,5 @@ EFFECT = Effect(
     source="Spong 1987; Janot, Gautier, Brunot 2019",
     confused_with=("measurement_delay", "inertia"),
     builds_on="load",
-    standing_in=frozenset({"jerk", "sign_rate"}),
     rows="moving",
 )

@@ -7,9 +7,9 @@ from compensator.lab.recording import FloatArray
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """One turn of the joint or of the motor."""
+    """Once and twice a turn of the motor, which carries the encoder."""
     ratio = motion.facts.gear_ratio or 1.0
-    return [(1.0,), (2.0,)] if ratio == 1.0 else [(1.0,), (2.0,), (ratio,), (2.0 * ratio,)]
+    return [(ratio,), (2.0 * ratio,)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
@@ -38,5 +38,6 @@ EFFECT = Effect(
     shapes=shapes,
     shape_names=("encoder turns per joint turn",),
     confused_with=("cogging",),
+    facts=("gear_ratio",),
     pipeline=True,
 )

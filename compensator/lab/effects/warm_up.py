@@ -33,4 +33,5 @@ EFFECT = Effect(
     smooth_shape=True,
     shape_names=("warm-up time",),
     confused_with=("coulomb_temperature",),
+    varies_with="session_s",
 )

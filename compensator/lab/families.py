@@ -1,0 +1,105 @@
+"""What one family of effects has to say: its best effect, confirmed or not, or a curve that none of them follows."""
+
+from dataclasses import dataclass
+
+from compensator.lab.candidates import Candidates
+from compensator.lab.catalogue import catalogue
+from compensator.lab.diagnosis import Candidate, Verdict
+from compensator.lab.drivers import DRIVERS
+from compensator.lab.evidence import Evidence, Screening, screen
+from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
+from compensator.lab.fit import Fit, with_columns
+from compensator.lab.gain import held_out_gain
+from compensator.lab.validation import held_out
+from compensator.lab.wording import answer_in_words
+
+EXAMINED = 6  # candidates that are refitted and drawn
+TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
+ALIKE = 0.95  # correlation of what two effects explain
+FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one family of effects has to say.
+
+    Attributes:
+        strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
+        Others as in `Diagnosis`.
+    """
+
+    verdict: Verdict
+    sentence: str
+    p_value: float
+    candidates: list[Candidate]
+    driver: str | None
+    notes: list[str]
+    strength: float = 0.0
+
+
+def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
+    """Judge a family.
+
+    Args:
+        fit: the model, fitted to the rows where the family shows.
+        gathered: what it may be missing.
+        named: evidence for the family's effects.
+        generic: evidence for free curves; None where a formula need not be held against one.
+    """
+    best_of_each = _best_shapes(named)
+    if not best_of_each:
+        return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
+    examined = examine(fit, gathered, best_of_each[:EXAMINED])
+    best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
+    curve = _curve(fit, gathered, generic)
+    followed = curve is None or (examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality)
+    if curve is not None and generic is not None and not followed:
+        driver = curve.block.name
+        sentence = answer_in_words("unknown-effect", generic.p_value, examined, driver)
+        return Answer("unknown-effect", sentence, generic.p_value, examined, driver, [], curve.noncentrality)
+    found = named.p_value <= SIGNIFICANT and is_confirmed(examined[0])
+    verdict: Verdict = "missing" if found else "nothing"
+    sentence = answer_in_words(verdict, named.p_value, examined, None)
+    notes = _what_remains(gathered, best) if found else []
+    return Answer(verdict, sentence, named.p_value, examined, None, notes, best.noncentrality)
+
+
+def _best_shapes(screening: Screening) -> list[Evidence]:
+    """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
+    found: dict[str, Evidence] = {}
+    for evidence in screening.evidence:
+        found.setdefault(evidence.block.name, evidence)
+    ranked = list(found.values())
+    order = list(catalogue())
+    tied = [item for item in ranked if _ties(item, ranked[0])]
+    plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
+    return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
+
+
+def _ties(item: Evidence, best: Evidence) -> bool:
+    """Whether two effects explain the same, and about as well: then the rows cannot choose between them."""
+    alike = abs(float(item.direction @ best.direction)) >= ALIKE
+    return alike and item.score >= best.score - TIE
+
+
+def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
+    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
+    if generic is None or generic.p_value > SIGNIFICANT or not generic.evidence:
+        return None
+    best = generic.evidence[0]
+    if best.score <= 0.0 or best.p_value > SIGNIFICANT:
+        return None
+    with_curve = with_columns(fit, best.block.name, gathered.splines[best.block.name].columns)
+    return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
+
+
+def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
+    """What remains once the best effect is in the model."""
+    left = gathered.with_block(best.block)
+    rest = screen(left.bases, left.generic, gathered.fit.dataset.block_index[gathered.rows])
+    if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
+        name = rest.evidence[0].block.name
+        driver = DRIVERS[name.removesuffix(" against motion")]
+        how = " against the motion" if name.endswith("against motion") else ""
+        return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
+    return []
