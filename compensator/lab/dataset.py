@@ -70,7 +70,10 @@ class Dataset:
     @cached_property
     def effort(self) -> FloatArray:
         """Filtered effort, shape (N,)."""
-        return np.concatenate([self._filtered(trial, trial.signals.effort[None])[0] for trial in self.trials])
+        kept = ("the effort itself", ())  # the same whatever is predicted, so it outlives `with_prediction`
+        if kept not in self.cache:
+            self.cache[kept] = self.stack([trial.signals.effort[None] for trial in self.trials])[:, 0]
+        return self.cache[kept]
 
     @cached_property
     def trial_index(self) -> IntArray:

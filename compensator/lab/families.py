@@ -13,7 +13,8 @@ from compensator.lab.gain import held_out_gain
 from compensator.lab.validation import held_out
 from compensator.lab.wording import answer_in_words
 
-EXAMINED = 6  # candidates that are refitted and drawn
+EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
+FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
 FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
@@ -49,7 +50,8 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     best_of_each = _best_shapes(named)
     if not best_of_each:
         return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
-    examined = examine(fit, gathered, best_of_each[:EXAMINED])
+    shown = [item for item in best_of_each if item.score > 0.0][:EXAMINED]
+    examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else best_of_each[:FEWEST_SHOWN])
     best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
     curve = _curve(fit, gathered, generic)
     followed = curve is None or (examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality)

@@ -140,6 +140,7 @@ def test_a_delay_beside_a_missing_effect_is_a_note():
     assert any("Measurement delay is missing" in note for note in found.notes)
 
 
+@pytest.mark.timeout(400)  # forty diagnoses
 def test_a_complete_model_lacks_nothing():
     """A false alarm in at most 3 % of sets; the bound leaves room for luck only, not for a worse rate."""
     sets, alarms, bench = 40, [], Bench(rate_hz=100.0, duration_s=8.0)

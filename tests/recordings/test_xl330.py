@@ -1,5 +1,7 @@
 """A Dynamixel XL330 pendulum (Rhoban/bam): friction that grows with the load, from duty x supply alone."""
 
+import pytest
+
 LOAD_FRICTION = {"load_friction", "load_friction_quadratic"}
 
 
@@ -16,6 +18,7 @@ def test_load_dependent_friction_is_named_and_halves_the_error(command):
     assert command("study", "compare", study_id)["error"]["held_out"]["kind"] == "leave-one-trial-out"
 
 
+@pytest.mark.timeout(300)
 def test_the_search_goes_on_while_held_out_trials_gain_and_then_stops(command):
     study_id = command("study", "new", "xl330", "--experiment", command.import_set("xl330"))["study_id"]
     for _ in range(4):
