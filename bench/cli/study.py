@@ -1,4 +1,4 @@
-"""`friction-bench study ...`: compare, diagnose, add, drop, ladder."""
+"""`friction-bench study ...`: compare, diagnose, add, drop, search, ladder."""
 
 from enum import Enum
 from typing import Annotated, Any
@@ -85,6 +85,18 @@ def add(context: typer.Context, study: StudyId, effect: Effect, model: Model = N
 def drop(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
     """Drop an effect from a model and refit: the error before and after."""
     _show(context, as_json, tables.change, "drop_effect", study, effect, model_id=model)
+
+
+@app.command("search")
+def search(
+    context: typer.Context,
+    study: StudyId,
+    model: Model = None,
+    most: Annotated[int, typer.Option(min=1, max=10, help="Effects that are added at most.")] = 4,
+    as_json: Json = False,
+) -> None:
+    """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
+    _show(context, as_json, tables.search, "search", study, model_id=model, most=most)
 
 
 @app.command("ladder")

@@ -69,6 +69,13 @@ def diagnosis(found: Found) -> None:
         say(note)
 
 
+def search(found: Found) -> None:
+    """The steps of a search, and what is left."""
+    for step in found["steps"]:
+        say(step["sentence"])
+    say(found["sentence"])
+
+
 def change(found: Found) -> None:
     """What adding or dropping an effect did."""
     say(found["sentence"])

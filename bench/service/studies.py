@@ -11,7 +11,7 @@ from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
 from bench.service.problems import problems
 from bench.service.services import StoreOf
-from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Studies, Study, StudyName
+from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Studies, Study, StudyName
 from bench.store import Store
 from bench.store.errors import NotFoundError
 
@@ -60,6 +60,14 @@ class Change(BaseModel):
     effect: str = Field(min_length=1, max_length=100, description="name from GET /effects")
     model_id: int | None = Field(default=None, ge=1, description="the parent; null: the newest model of the study")
     action: Literal["add", "drop"] = "add"
+
+
+class SearchFrom(BaseModel):
+    """Where a search begins, and how far it goes."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"most": 3}]})
+    model_id: int | None = Field(default=None, ge=1, description="the first model; null: the newest model of the study")
+    most: int = Field(default=4, ge=1, le=10, description="effects that are added at most")
 
 
 async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
@@ -128,6 +136,18 @@ async def change(request: Request, store: StoreOf, study_id: StudyId, body: Chan
     """Refits and keeps the child model; answers with the error before and after."""
     name = "add_effect" if body.action == "add" else "drop_effect"
     return Changed.model_validate(await _lab(request, name, store, study_id, body.effect, model_id=body.model_id))
+
+
+@router.post(
+    "/{study_id}/search",
+    status_code=201,
+    summary="Add effects until nothing is missing",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def search(request: Request, store: StoreOf, study_id: StudyId, body: SearchFrom) -> Searched:
+    """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
+    return Searched.model_validate(await _lab(request, "search", store, study_id, **body.model_dump()))
 
 
 @router.delete(

@@ -221,6 +221,29 @@ class Changed(BaseModel):
     sentence: str
 
 
+class SearchStep(BaseModel):
+    """One change that a search made; errors are relative (0..1)."""
+
+    model_id: int
+    change: Literal["add", "swap", "drop"]
+    effect: str
+    instead_of: str | None
+    before: float | None
+    after: float | None
+    sentence: str
+
+
+class Searched(BaseModel):
+    """The way of a search, and what is still missing at its end."""
+
+    study_id: int
+    model_id: int
+    added: list[str]
+    steps: list[SearchStep]
+    verdict: str
+    sentence: str
+
+
 class Rung(BaseModel):
     """One model of the ladder; errors are relative (0..1)."""
 

@@ -9,6 +9,7 @@ from bench.study.create import create_study, describe, list_studies
 from bench.study.diagnose import diagnose
 from bench.study.effects import effects_catalogue
 from bench.study.ladder import ladder
+from bench.study.search import search
 
 __all__ = [
     "add_effect",
@@ -20,4 +21,5 @@ __all__ = [
     "effects_catalogue",
     "ladder",
     "list_studies",
+    "search",
 ]

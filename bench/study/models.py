@@ -19,8 +19,9 @@ def result_of(fit: Fit, outside: HeldOut) -> dict[str, Any]:
     """What is kept of a fit: relative errors (0..1), the shapes, and the coefficients in their units."""
     low, high = error_interval(outside)
     floor = repeatability_floor(fit)
+    rows = fit.training & fit.dataset.counted
     return {
-        "training": relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training]),
+        "training": relative_error(fit.residual[rows], fit.dataset.effort[rows]),
         "held_out": outside.relative,
         "held_out_low": low,
         "held_out_high": high,

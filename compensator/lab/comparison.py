@@ -73,7 +73,7 @@ def compare(fit: Fit) -> Comparison:
     regimes = [_error(fit, regime.name.lower(), dataset.regime == regime) for regime in Regime]
     return Comparison(
         fit=fit,
-        training=_error(fit, "training", fit.training),
+        training=_error(fit, "training", fit.training & dataset.counted),
         held_out=held_out(fit),
         floor=repeatability_floor(fit),
         trials=trials,

@@ -68,6 +68,19 @@ def test_diagnose_add_ladder_drop_and_remove(service, study):
     assert len(service.stranger.get(f"{path}/ladder").json()["rungs"]) == 2
 
 
+def test_a_search_adds_what_is_missing_and_keeps_its_models(service, experiment_id):
+    body = {"name": "searched", "experiment_ids": [experiment_id], "hold_out": ["amplitude_rad=0.9"]}
+    study_id = service.client.post("/studies", json=body).json()["study_id"]
+    assert service.stranger.post(f"/studies/{study_id}/search", json={}).status_code == 401
+    answer = service.client.post(f"/studies/{study_id}/search", json={"most": 2})
+    assert answer.status_code == 201, answer.text
+    found = answer.json()
+    assert len(found["added"]) <= 2
+    rungs = service.stranger.get(f"/studies/{study_id}/ladder").json()["rungs"]
+    assert [rung["model_id"] for rung in rungs[1:]] == [step["model_id"] for step in found["steps"]]
+    assert service.client.post(f"/studies/{study_id}/search", json={"most": 0}).status_code == 422
+
+
 def test_bad_requests_say_what_would_be_right(service, study, experiment_id):
     def detail(answer, status):
         assert answer.status_code == status, answer.text

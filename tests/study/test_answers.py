@@ -8,9 +8,19 @@ import pytest
 
 from bench.cli.output import print_json
 from bench.service.json_numbers import plain
-from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Study
+from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Study
 from bench.store.errors import NotFoundError
-from bench.study import add_effect, compare, create_study, describe, diagnose, drop_effect, effects_catalogue, ladder
+from bench.study import (
+    add_effect,
+    compare,
+    create_study,
+    describe,
+    diagnose,
+    drop_effect,
+    effects_catalogue,
+    ladder,
+    search,
+)
 from bench.study.errors import StudyError
 from tests.lab.synthetic import Joint, plans
 from tests.study.conftest import imported
@@ -233,3 +243,31 @@ def test_the_catalogue_as_json():
     ]
     assert found["gravity"]["parameters"][0]["low"] is None
     assert found["viscous_temperature"]["channels"] == ["temperature_c"]
+
+
+def test_a_search_keeps_every_model_on_its_way(store, experiment_id):
+    number = create_study(store, "searched", [experiment_id], hold_out=["repeat=2"], cutoff_hz=6.0)["study_id"]
+    found = search(store, number)
+    Searched.model_validate(plain(found))
+    assert found["added"] == ["viscous_asymmetry"]
+    assert found["verdict"] == "nothing"
+    base, better = ladder(store, number)["rungs"]
+    (step,) = found["steps"]
+    assert (step["change"], step["effect"]) == ("add", "viscous_asymmetry")
+    assert step["model_id"] == better["model_id"] == found["model_id"]
+    assert (step["before"], step["after"]) == pytest.approx((base["held_out"], better["held_out"]))
+    assert step["sentence"].startswith("Added viscous_asymmetry: held-out error ")
+
+
+def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the_study_looks(store):
+    from tests.lab.test_diagnose import WITH_MEMORY
+
+    joint = Joint(extra=WITH_MEMORY["pre_sliding"])
+    number = create_study(store, "memory", [imported(store, plans((0.0, 0.2)), joint)], cutoff_hz=6.0)["study_id"]
+    change = add_effect(store, number, "pre_sliding")
+    assert change["gain_low"] > 0.5  # near reversals
+    regimes = {one["name"]: one["relative"] for one in compare(store, number)["regimes"]}
+    before = {one["name"]: one["relative"] for one in compare(store, number, change["parent_id"])["regimes"]}
+    assert regimes["transient"] < 0.5 * before["transient"]
+    rungs = ladder(store, number)["rungs"]
+    assert rungs[1]["held_out"] < rungs[0]["held_out"] < change["before"]["held_out"]

@@ -1,0 +1,53 @@
+"""Several effects at once: search, and keep every model on the way as a rung of the ladder."""
+
+from typing import Any
+
+from bench.store import Store
+from bench.study.errors import lab_errors
+from bench.study.material import load, model_of
+from bench.study.models import result_of
+from compensator.lab.search import MOST_EFFECTS, Step
+from compensator.lab.search import search as search_from
+
+
+def search(store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS) -> dict[str, Any]:
+    """Add effects one after the other as long as a diagnosis names one; judge the earlier ones anew each time.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        model_id: the model to begin with; None takes the newest.
+        most: effects that are added at most.
+
+    Raises:
+        StudyError: no such model, or no effect can be judged on these trials.
+    """
+    material = load(store, study_id)
+    first = model_of(store, study_id, model_id)
+    with lab_errors():
+        found = search_from(material.fit_of(first), most)
+    parent, before = first.id, first.result["held_out"]
+    steps: list[dict[str, Any]] = []
+    for step in found.steps:
+        result = result_of(step.fit, step.held_out)
+        child = store.add_model(study_id, parent, list(step.fit.names), result)
+        told = {"change": step.change, "effect": step.effect, "instead_of": step.instead_of}
+        errors = {"before": before, "after": step.held_out.relative, "sentence": _sentence(step, before)}
+        steps.append({"model_id": child, **told, **errors})
+        parent, before = child, step.held_out.relative
+    return {
+        "study_id": study_id,
+        "model_id": parent,
+        "added": list(found.added),
+        "steps": steps,
+        "verdict": found.last.verdict,
+        "sentence": found.last.sentence,
+    }
+
+
+_DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}
+
+
+def _sentence(step: Step, before: float) -> str:
+    instead = f" instead of {step.instead_of}" if step.instead_of else ""
+    return f"{_DONE[step.change]} {step.effect}{instead}: held-out error {before:.2%} to {step.held_out.relative:.2%}."
