@@ -20,7 +20,7 @@ from bench.errors import ExperimentError, LimitError
 from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import effect_named
 from compensator.lab.errors import LabError, NotApplicableError
-from compensator.lab.fit import Fit, fit_model
+from compensator.lab.fit import Fit, fit_effects, widened
 from compensator.lab.recording import Recording
 from compensator.lab.validation import held_out, rms
 
@@ -137,13 +137,21 @@ def _late(configuration: BenchConfiguration, delay_s: float) -> BenchConfigurati
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:
     """How far each truth stands out of the model with all the others, and the error of the model with all of them."""
     known = [name for name in names if name and _can_be_seen(fit, name)]
-    whole = fit_model(fit.dataset, [*fit.names, *known], fit.training) if known else fit
+    whole = fit_effects(fit.dataset, [*fit.names, *known], fit.training) if known else fit
     standings = []
     for name in names:
         others = [other for other in known if other != name]
-        rest = gather(fit_model(fit.dataset, [*fit.names, *others], fit.training)) if others else base
-        standings.append(standing(rest, name) if name in known else None)
+        standings.append(standing(_judged(fit, base, others, name), name) if name in known else None)
     return tuple(standings), held_out(whole).relative
+
+
+def _judged(fit: Fit, base: Candidates, others: list[str], name: str) -> Candidates:
+    """What a model with the others may be missing, on the rows where the effect shows."""
+    show_in = effect_named(name).rows
+    if not others and show_in == base.show_in:
+        return base
+    rest = fit_effects(fit.dataset, [*fit.names, *others], fit.training)
+    return gather(widened(rest, "moving") if show_in == "moving" else rest, show_in)
 
 
 def _can_be_seen(fit: Fit, name: str) -> bool:

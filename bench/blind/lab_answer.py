@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 from bench.rig import Rig
 from bench.study.material import facts_of
+from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
-from compensator.lab.dataset import Dataset, Processing, make_dataset
+from compensator.lab.dataset import Dataset, Processing
 from compensator.lab.diagnose import diagnose
 from compensator.lab.diagnosis import Diagnosis
-from compensator.lab.fit import Fit, fit_model
+from compensator.lab.fit import Fit, fit_effects, fit_model
 from compensator.lab.recording import Recording
 from compensator.lab.validation import held_out
 
@@ -55,7 +56,7 @@ def ask_lab(fit: Fit, steps: int) -> LabAnswer:
         if found.verdict != "missing":
             break
         named.append(found.classes[0])
-        fit = fit_model(fit.dataset, [*fit.names, found.classes[0][0]], fit.training)
+        fit = fit_effects(fit.dataset, [*fit.names, found.classes[0][0]], fit.training)
         if step + 1 < steps:
             found = diagnose(fit)
     top = first.classes[0] if first.verdict == "missing" else ()

@@ -8,7 +8,7 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load, model_of
 from bench.study.models import result_of
 from compensator.lab.catalogue import effect_named
-from compensator.lab.fit import Fit, fit_model
+from compensator.lab.fit import widened
 from compensator.lab.gain import Gain, held_out_gain
 from compensator.lab.validation import held_out
 
@@ -47,7 +47,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
-    before = held_out(_refitted(material, parent, fit), rows)
+    before = held_out(widened(material.fit_of(parent), material.dataset.choice_for([*fit.effects, *changed])), rows)
     after = held_out(fit, rows)
     gain = held_out_gain(before, after)
     result = result_of(fit, held_out(fit))
@@ -63,15 +63,6 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
         "gain_high": gain.high,
         "sentence": _sentence(what, before.relative, after.relative, gain),
     }
-
-
-def _refitted(material: Material, parent: ModelRow, child: Fit) -> Fit:
-    """The parent, fitted to the very rows of its child: a wider choice of rows is no change of the model."""
-    fit = material.fit_of(parent)
-    if (fit.training == child.training).all():
-        return fit
-    with lab_errors():
-        return fit_model(material.dataset, parent.effects, fit.training | child.training, fit.shapes)
 
 
 def _sentence(what: str, before: float, after: float, gain: Gain) -> str:

@@ -8,14 +8,14 @@ shapes), does it help (held-out error, resampled by whole trials).
 import numpy as np
 
 from compensator.lab.candidates import gather
-from compensator.lab.catalogue import candidates, effect_named
+from compensator.lab.catalogue import candidates, catalogue, effect_named
 from compensator.lab.data_checks import data_problems
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import EffectRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.evidence import screen
 from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
-from compensator.lab.fit import Fit, fit_model
+from compensator.lab.fit import Fit, widened
 from compensator.lab.regimes import Regime
 
 FEWEST_REVERSAL_ROWS = 40
@@ -63,7 +63,8 @@ def diagnose(fit: Fit) -> Diagnosis:
 
 def best_named(fit: Fit, show_in: EffectRows) -> str | None:
     """The effect of one family that the rows speak for most, by score alone; None where none can be judged."""
-    gathered = gather(fit, show_in)
+    rows = fit.dataset.choice_for([effect for effect in catalogue().values() if effect.rows == show_in])
+    gathered = gather(widened(fit, rows), show_in)
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
     return screening.evidence[0].block.name if screening.evidence else None
@@ -73,13 +74,12 @@ def _memory(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
     dataset = fit.dataset
     trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
-    moving = trained & dataset.in_regimes("moving")
-    near_reversals = int((moving & (dataset.regime == Regime.TRANSIENT)).sum())
+    near_reversals = int((trained & (dataset.regime == Regime.TRANSIENT)).sum())
     wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
     if near_reversals < FEWEST_REVERSAL_ROWS:
         why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
         return None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
-    wide = fit_model(dataset, fit.names, moving, fit.shapes)
+    wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
     gathered = gather(wide, "moving")
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
     return answer_of(wide, gathered, screening, None), gathered.left_out

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from compensator.lab.catalogue import effect_named
-from compensator.lab.dataset import Dataset
+from compensator.lab.dataset import Dataset, RowChoice
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.linear import Bounds, Solution, solve
@@ -69,6 +69,11 @@ class Fit:
         return bounds_of([term.effect for term in self.terms])
 
     @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects themselves."""
+        return tuple(term.effect for term in self.terms)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the effects."""
         return tuple(term.effect.name for term in self.terms)
@@ -125,6 +130,15 @@ def fit_model(
     first = _fit(dataset, steady, sliding, shapes or {}, np.ones(len(rows)))
     kept = {**{name: first.shapes[name] for name in first.names}, **(shapes or {})}
     return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows))
+
+
+def widened(fit: Fit, rows: RowChoice) -> Fit:
+    """The same model on another choice of rows of the same trials, its shapes kept."""
+    trials = fit.dataset.trial_index
+    chosen = fit.dataset.in_regimes(rows) & np.isin(trials, np.unique(trials[fit.training]))
+    if (chosen == fit.training).all():
+        return fit
+    return fit_model(fit.dataset, fit.names, chosen, fit.shapes)
 
 
 def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -> Fit:
