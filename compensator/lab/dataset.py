@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.effort import Effort
 from compensator.lab.errors import NotApplicableError
@@ -163,7 +164,7 @@ class Dataset:
                     trial.motion,
                     load_effort=load,
                     predicted=total,
-                    effort_rate=np.gradient(total, 1.0 / trial.signals.rate_hz),
+                    effort_rate=rate_of_change(total, trial.signals.rate_hz),
                 ),
             )
             for trial, load, total in zip(self.trials, load_effort, predicted, strict=True)

@@ -15,6 +15,7 @@ from compensator.lab.validation import HeldOut, held_out
 SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
+LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
 LEAST_FALL = 1e-4  # of the effort: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
@@ -40,7 +41,8 @@ def is_confirmed(candidate: Candidate) -> bool:
     """
     no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
     falls = candidate.before - candidate.after >= LEAST_FALL
-    helps = candidate.gain.low > 0.0 and candidate.gain.value >= LEAST_GAIN and falls
+    least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
+    helps = candidate.gain.low > 0.0 and candidate.gain.value >= least and falls
     return candidate.score > 0.0 and no_luck and helps
 
 

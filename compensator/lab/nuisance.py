@@ -7,6 +7,7 @@ difference of steep sigmoids. An effect that means one of these (see `Effect.sta
 import numpy as np
 
 from compensator.lab.dataset import Dataset
+from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effects import backlash, measurement_delay
 from compensator.lab.effects.effect import EffectRows, Motion
 from compensator.lab.recording import FloatArray
@@ -39,6 +40,6 @@ def _columns(motion: Motion, rate_hz: float) -> FloatArray:
             motion.jerk,
             sigmoids[0] - sigmoids[1],
             sigmoids[1] - sigmoids[2],
-            np.gradient(sigmoids[1], 1.0 / rate_hz),
+            rate_of_change(sigmoids[1], rate_hz),
         ]
     )

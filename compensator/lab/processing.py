@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.signal import butter, sosfilt, sosfilt_zi
 
+from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effort import Effort
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.facts import Facts
@@ -130,8 +131,8 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         )
     raw_position = recording.channels[position_name]
     position = low_pass(_resample(time, raw_time, raw_position), DIFFERENTIATION_FACTOR * cutoff_hz, rate)
-    velocity = np.gradient(position, period)
-    acceleration = np.gradient(velocity, period)
+    velocity = rate_of_change(position, rate)
+    acceleration = rate_of_change(velocity, rate)
     raw_effort = effort.of(recording)
     return Signals(
         recording=recording,
@@ -140,7 +141,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         position=position,
         velocity=velocity,
         acceleration=acceleration,
-        jerk=np.gradient(acceleration, period),
+        jerk=rate_of_change(acceleration, rate),
         effort=_resample(time, raw_time, raw_effort),
         temperature_c=_optional(recording, "temperature_c", time),
         supply_v=_optional(recording, "supply_v", time),

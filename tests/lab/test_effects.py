@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.catalogue import catalogue
+from compensator.lab.differentiation import rate_of_change
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.effects.effect import Motion
 from compensator.lab.facts import Facts
@@ -50,7 +51,7 @@ def back_driven(m: Motion, load: np.ndarray) -> np.ndarray:
 
 
 def slope(values: np.ndarray) -> np.ndarray:
-    return np.gradient(values, 0.05)
+    return rate_of_change(values, 20.0)
 
 
 def dahl(position: np.ndarray, distance: float) -> np.ndarray:

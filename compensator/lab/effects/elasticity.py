@@ -1,7 +1,6 @@
 """Joint elasticity."""
 
-import numpy as np
-
+from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recording import FloatArray
 
@@ -9,7 +8,7 @@ from compensator.lab.recording import FloatArray
 def columns(motion: Motion, _: Shape) -> FloatArray:
     """Second rate of change of the transmitted load, against it; the first order in the compliance."""
     rate = 1.0 / (motion.time_s[1] - motion.time_s[0])
-    return -np.gradient(np.gradient(motion.load_effort, 1.0 / rate), 1.0 / rate)[None]
+    return -rate_of_change(rate_of_change(motion.load_effort, rate), rate)[None]
 
 
 EFFECT = Effect(

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recording import FloatArray
 
@@ -14,9 +15,9 @@ def shapes(motion: Motion) -> list[Shape]:
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """Second rates of change of the cosine and sine of the encoder's turn, for shape (n,)."""
-    step_s = motion.time_s[1] - motion.time_s[0]
+    rate = 1.0 / (motion.time_s[1] - motion.time_s[0])
     phase = shape[0] * motion.position
-    return np.array([np.gradient(np.gradient(part, step_s), step_s) for part in (np.cos(phase), np.sin(phase))])
+    return np.array([rate_of_change(rate_of_change(part, rate), rate) for part in (np.cos(phase), np.sin(phase))])
 
 
 EFFECT = Effect(
