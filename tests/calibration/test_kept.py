@@ -65,7 +65,7 @@ def test_an_imported_recording_set_gives_the_same_curves_from_its_samples(store,
     for here, there in pairs:
         # 2 % of scatter along the path, of which windows of a fifth of a second average little out at low speed
         expected_a = there.curve().sliding_a(speed)
-        assert here.curve().sliding_a(speed) == pytest.approx(expected_a, rel=0.04)
+        assert here.curve().sliding_a(speed) == pytest.approx(expected_a, rel=0.06)
 
 
 def test_unlike_experiments_are_not_mixed(store, configuration):
