@@ -63,7 +63,8 @@ def test_an_imported_recording_set_gives_the_same_curves_from_its_samples(store,
     speed = np.linspace(2.0, 60.0, 30)
     pairs = zip(calibration.friction_of(found).curves, calibration.friction_of(row).curves, strict=True)
     for here, there in pairs:
-        # 2 % of scatter along the path, of which windows of a fifth of a second average little out at low speed
+        # 2 % of scatter along the path, of which windows of a fifth of a second average little out at low speed:
+        # three standard deviations
         expected_a = there.curve().sliding_a(speed)
         assert here.curve().sliding_a(speed) == pytest.approx(expected_a, rel=0.06)
 
