@@ -27,8 +27,8 @@ class Motor(Section):
     back_emf_v_s_rad: Positive | None = None
     rotor_inertia_kg_m2: Positive | None = None
     constants_at_c: float | None = None  # temperature at which resistance and back-EMF constant hold
-    copper_per_k: NotNegative = 0.00393  # the resistance's growth with the temperature that the drive measures
-    magnet_per_k: NotNegative = 0.0  # the back-EMF constant's fall with it
+    copper_per_k: NotNegative | None = None  # growth of the resistance with the temperature that the drive measures
+    magnet_per_k: NotNegative | None = None  # fall of the back-EMF constant with it
 
 
 class Gear(Section):

@@ -10,6 +10,8 @@ from compensator import motor
 from compensator.motor import MotorConstants
 from drivers.contract import Description, Mode, Sample
 
+COPPER_PER_K = 0.00393  # growth of a copper winding's resistance; for a rig that does not tell
+
 
 class ServoSettings(Section):
     """Gains of the position servo; its output is motor current."""
@@ -86,7 +88,9 @@ class CurrentServo:
         self._ratio = rig.gear.ratio
         self._nominal_supply_v = rig.supply.voltage_v
         self._reference_c = rig.motor.constants_at_c
-        self._copper_per_k, self._magnet_per_k = rig.motor.copper_per_k, rig.motor.magnet_per_k
+        told = rig.motor.copper_per_k
+        self._copper_per_k = COPPER_PER_K if told is None else told
+        self._magnet_per_k = rig.motor.magnet_per_k or 0.0
 
     def _warm_motor(self, sample: Sample) -> MotorConstants:
         if self._reference_c is None or isnan(sample.temperature_c):

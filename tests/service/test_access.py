@@ -22,6 +22,7 @@ CHANGES = [
     ("DELETE", "/calibrations/in-use"),
     ("POST", "/studies"),
     ("POST", "/studies/1/models"),
+    ("POST", "/studies/1/search"),
     ("DELETE", "/studies/1/models/1"),
 ]
 
