@@ -37,7 +37,7 @@ FLAGS_32_BIT = (
     Flag(0x0001_0000, "M1 over-current warning", 1, is_fault=False),
     Flag(0x0002_0000, "M2 over-current warning", 2, is_fault=False),
     Flag(0x0004_0000, "main voltage high warning", is_fault=False),
-    Flag(0x0008_0000, "main voltage low warning", is_fault=False),
+    Flag(0x0008_0000, "main voltage low warning"),  # command 2: below its minimum the motors are not driven
     Flag(0x0010_0000, "temperature warning", is_fault=False),
     Flag(0x0020_0000, "temperature 2 warning", is_fault=False),
 )
@@ -53,7 +53,7 @@ FLAGS_16_BIT = (
     Flag(0x0100, "M1 driver fault", 1),
     Flag(0x0200, "M2 driver fault", 2),
     Flag(0x0400, "main voltage high warning", is_fault=False),
-    Flag(0x0800, "main voltage low warning", is_fault=False),
+    Flag(0x0800, "main voltage low warning"),
     Flag(0x1000, "temperature warning", is_fault=False),
     Flag(0x2000, "temperature 2 warning", is_fault=False),
 )

@@ -26,6 +26,7 @@ from drivers.errors import DriveConnectionError, DriveError
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured, run
 
 PUSH_A = 0.25
+GENTLE_PUSH_A = 0.11  # just above static friction
 HALF_SWING_S = 0.2
 MARGIN_S = 0.4  # of the device: its tick, its thread on a busy machine
 LAST_WORDS_S = 2.0 * ANSWER_TIMEOUT_S  # the host asks twice before it gives up; the watchdog counts from then on
@@ -37,23 +38,23 @@ WRONG = {
 }
 
 
-def to_and_fro():
+def to_and_fro(push_a=PUSH_A):
     """Push the joint to and fro until something ends it; gives up after a while."""
     yield Action(OFF)
     began_s = time.monotonic()
     while time.monotonic() - began_s < 20.0:
         direction = 1.0 if int((time.monotonic() - began_s) / HALF_SWING_S) % 2 == 0 else -1.0
-        yield Action(Command(Mode.CURRENT, direction * PUSH_A), target_rad=0.0)
+        yield Action(Command(Mode.CURRENT, direction * push_a), target_rad=0.0)
     return {}
 
 
 class Swinging:
     """The joint of a bench in motion, in a thread; `outcome` is there when it has ended."""
 
-    def __init__(self, bench, drive):
+    def __init__(self, bench, drive, push_a=PUSH_A):
         self.outcome: Outcome | None = None
         self.ended_s = 0.0
-        self._bench, self._drive = bench, drive
+        self._bench, self._drive, self._push_a = bench, drive, push_a
         bench.device.side.hang_load(0.0, False)  # puts the arm back to angle 0
         self._stop = StopRequest()
         self._thread = threading.Thread(target=self._run)
@@ -61,7 +62,7 @@ class Swinging:
         bench.device.wait_for_power(True, timeout_s=15.0)
 
     def _run(self):
-        self.outcome, _ = run(self._bench, self._drive, to_and_fro(), self._stop)
+        self.outcome, _ = run(self._bench, self._drive, to_and_fro(self._push_a), self._stop)
         self.ended_s = time.monotonic()
 
     def join(self, timeout_s=15.0):
@@ -115,11 +116,14 @@ def test_the_cable_comes_out_in_mid_motion(wired, name):
 
 
 def test_one_corrupted_packet_does_not_end_the_run(wired):
+    if wired.name == "modbus-tcp":
+        pytest.skip("TCP delivers what was sent or nothing, and its frames have no check of their own")
     with wired.opened() as drive:
-        swinging = Swinging(wired, drive)
+        # the demand stands while an answer is waited for: a hard push would carry the joint to its limits meanwhile
+        swinging = Swinging(wired, drive, GENTLE_PUSH_A)
         for _ in range(3):
             wired.device.side.ask("link", name="corrupt", packets=1)
-            time.sleep(0.3)
+            time.sleep(LAST_WORDS_S)  # two in one question are more than one corrupted packet
         running = swinging.outcome is None
         swinging.stop()
         assert running, swinging.outcome
