@@ -13,6 +13,7 @@ UNITS: dict[str, str] = {  # the longest ending wins
     "_a_s_rad": "A s/rad",
     "_a_rad_s": "A/(rad s)",
     "_a_rad": "A/rad",
+    "_a_s": "A/s",
     "_n_m_a": "N m/A",
     "_v_s_rad": "V s/rad",
     "_kg_m2": "kg m2",
