@@ -17,8 +17,8 @@ from bench.service.json_numbers import column
 from bench.service.services import RunnerOf
 from bench.service.status import Status, status_of
 
-PERIOD_S = 0.1
-STATUS_EVERY = 5  # periods; in between, only what is new is sent
+PERIOD_S = 0.05
+STATUS_EVERY = 10  # periods; in between, only what is new is sent
 MOST_ROWS = 2000
 router = APIRouter(prefix="/live", tags=["live"], dependencies=[Depends(allow_read)])
 AfterRow = Annotated[int, Query(ge=-1, description="only rows after this one; -1: all that are kept")]
@@ -55,7 +55,7 @@ def rows_of(found: LiveRows) -> Rows:
     responses={
         200: {
             "description": "`event: status` carries a Status (see GET /live/now), twice a second and at each change; "
-            "`event: rows` carries Rows, ten times a second while rows come; its `id` is `last_row`.",
+            "`event: rows` carries Rows, twenty times a second while rows come; its `id` is `last_row`.",
             "content": {"text/event-stream": {"example": 'event: status\ndata: {"state": "idle"}\n\n'}},
         }
     },

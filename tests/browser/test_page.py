@@ -22,10 +22,10 @@ def test_the_technician_starts_watches_and_stops(service, open_page):
     page.get_by_label("repeats").fill("3")
     page.get_by_role("button", name="Start", exact=True).click()
     page.locator(".badge.running").wait_for()
-    page.locator(".plot.live .scatterlayer .trace").first.wait_for()
-    assert page.locator(".plot.live .scatterlayer .trace").count() >= 3
+    page.get_by_label("Live").locator(".legend-entry").get_by_text("current from duty").wait_for()
+    assert page.get_by_label("Live").locator(".legend-entry").count() >= 3
     page.keyboard.press("Escape")
-    page.get_by_text("Stop accepted").wait_for()
+    page.get_by_text("Stop accepted and confirmed: the drive is powered off").wait_for()
     page.locator(".badge.idle").wait_for()
     page.get_by_text("stopped: trial 'step-001': STOP on the page").wait_for()
 

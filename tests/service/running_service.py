@@ -44,9 +44,9 @@ class RunningService:
 
 
 @contextmanager
-def running_service(folder: Path, reads_open: bool = True) -> Iterator[RunningService]:
+def running_service(folder: Path, reads_open: bool = True, port: int = 0) -> Iterator[RunningService]:
     configuration = default_configuration()
-    with Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store, listen(Address("127.0.0.1", 0)) as listener:
+    with Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store, listen(Address("127.0.0.1", port)) as listener:
         runner = Runner(configuration, store)
         app = create_app(store, runner, Access(TOKEN, reads_open, LOOPBACK_NAMES))
         server = BenchServer(app, runner)

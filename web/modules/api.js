@@ -21,13 +21,25 @@ function headers(extra = {}) {
   return token.get() ? { Authorization: `Bearer ${token.get()}`, ...extra } : extra;
 }
 
+// a browser opens few connections to one service: where they are all taken, STOP would wait for a free one
+const waiting = new Set();
+
+export function freeTheWay() {
+  for (const one of waiting) one.abort(new Problem(0, { detail: "given up to let STOP through; ask again" }));
+}
+
 async function request(path, options = {}) {
+  const way = new AbortController();
+  const signals = [way.signal, options.signal].filter(Boolean);
+  if (path !== "/stop") waiting.add(way);
   let response;
   try {
-    response = await fetch(BASE + path, options);
+    response = await fetch(BASE + path, { ...options, signal: AbortSignal.any(signals) });
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (error.name === "AbortError" || error.name === "TimeoutError" || error instanceof Problem) throw error;
     throw new Problem(0, { detail: "the service does not answer; is 'friction-bench serve' still running?" });
+  } finally {
+    waiting.delete(way);
   }
   if (!response.ok) {
     const body = await response.json().catch(() => ({}));
@@ -37,14 +49,18 @@ async function request(path, options = {}) {
   return response;
 }
 
-export async function get(path, query = {}) {
+export async function get(path, query = {}, timeout_ms = 0) {
   const pairs = Object.entries(query).filter(([, value]) => value !== "" && value !== null && value !== undefined);
   const search = pairs.length ? `?${new URLSearchParams(pairs)}` : "";
-  return (await request(path + search, { headers: headers() })).json();
+  return (await request(path + search, { headers: headers(), signal: timeLimit(timeout_ms) })).json();
+}
+
+function timeLimit(timeout_ms) {
+  return timeout_ms ? AbortSignal.timeout(timeout_ms) : undefined;
 }
 
 export async function post(path, body = {}, timeout_ms = 0) {
-  const signal = timeout_ms ? AbortSignal.timeout(timeout_ms) : undefined;
+  const signal = timeLimit(timeout_ms);
   const options = { method: "POST", headers: headers({ "Content-Type": "application/json" }), body: JSON.stringify(body), signal };
   return (await request(path, options)).json();
 }

@@ -7,6 +7,8 @@ import { nameOf, number } from "./format.js";
 import { livePlot } from "./liveplot.js";
 import { attempt } from "./problem.js";
 
+const UNITS = { degC: "°C" };
+
 export function benchView(place, { live }) {
   const start = h("div");
   const drive = h("div");
@@ -36,5 +38,5 @@ function description(bench) {
     ? [["drive", [drive.vendor, drive.product].filter(Boolean).join(" ") || drive.device], ["firmware", drive.firmware || "not told"],
       ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s`]]
     : [["drive", "opens at the first start"]];
-  return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, `${number(limit.value)} ${limit.unit}`]), ["software", bench.software_version]]);
+  return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, `${number(limit.value)} ${UNITS[limit.unit] ?? limit.unit}`]), ["software", bench.software_version]]);
 }

@@ -3,9 +3,9 @@
 import { h } from "./dom.js";
 
 const SPACE = "http://www.w3.org/1998/Math/MathML";
-const LETTERS = { alpha: "α", beta: "β", gamma: "γ", delta: "δ", mu: "μ", omega: "ω", phi: "φ", sigma: "σ", tau: "τ", theta: "θ", Delta: "Δ" };
-const ACCENTS = { dot: "˙", ddot: "¨", hat: "^", bar: "¯" };
-const FUNCTIONS = new Set(["sin", "cos", "tan", "exp", "tanh", "ln", "sgn"]);
+const LETTERS = { alpha: "α", kappa: "κ", lambda: "λ", rho: "ρ", eta: "η", zeta: "ζ", pi: "π", beta: "β", gamma: "γ", delta: "δ", mu: "μ", omega: "ω", phi: "φ", sigma: "σ", tau: "τ", theta: "θ", Delta: "Δ" };
+const ACCENTS = { tilde: "~", dot: "˙", ddot: "¨", hat: "^", bar: "¯" };
+const FUNCTIONS = new Set(["log", "max", "min", "sin", "cos", "tan", "exp", "tanh", "ln", "sgn"]);
 const TOKEN = /\\[A-Za-z]+|\\.|[A-Za-z]|\d+(?:\.\d+)?|\S/g;
 
 // shows the source itself where it holds something that is not known here
@@ -64,6 +64,7 @@ function item(tokens) {
 
 function command(name, tokens) {
   if (/^[,;: !]$/.test(name)) return space();
+  if (name === "quad") return space("1em");
   if (name in LETTERS) return element("mi", LETTERS[name]);
   if (FUNCTIONS.has(name)) return element("mrow", element("mi", name), space());
   if (name in ACCENTS) return accented(ACCENTS[name], item(tokens));
@@ -73,9 +74,9 @@ function command(name, tokens) {
   throw new Error(`unknown \\${name}`);
 }
 
-function space() {
+function space(width = "0.17em") {
   const made = element("mspace");
-  made.setAttribute("width", "0.17em");
+  made.setAttribute("width", width);
   return made;
 }
 

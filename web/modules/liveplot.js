@@ -1,82 +1,110 @@
-// Live: position and target, speed, current and load current, over the rows that arrive.
+// Live: what the joint does, twenty times a second, over the rows that arrive; frozen, zoomed, channel by channel.
 
+import { Chart } from "./chart.js";
 import { h, replace } from "./dom.js";
 import { number } from "./format.js";
-import { colour, draw, forget } from "./plot.js";
-import { problemBox } from "./problem.js";
+import { LatestTrials } from "./latesttrials.js";
+import { loadBands } from "./loadbands.js";
+import { markLegend, marksOf } from "./marks.js";
 
-const REDRAW_MS = 200;
-const MOST_POINTS = 3000;
-const LINES = [
-  ["position_rad", "position [rad]", "blue", "y"], ["target_rad", "target [rad]", "orange", "y"],
-  ["velocity_rad_s", "speed [rad/s]", "green", "y2"],
-  ["current_a", "current [A]", "red", "y3"], ["current_estimate_a", "current from duty [A]", "purple", "y3"],
-  ["current_load_a", "load current [A]", "sky", "y3"],
+const REDRAW_MS = 50;
+const SECONDS = [["0", "all of the trial"], ["5", "last 5 s"], ["20", "last 20 s"]];
+const CHANNELS = [
+  { name: "target_rad", text: "target", unit: "rad", colour: "orange", dash: [5, 4] },
+  { name: "position_rad", text: "position", unit: "rad", colour: "blue" },
+  { name: "velocity_rad_s", text: "speed", unit: "rad/s", colour: "green" },
+  { name: "current_a", text: "current", unit: "A", colour: "red" },
+  { name: "current_estimate_a", text: "current from duty", unit: "A", colour: "purple" },
+  { name: "current_load_a", text: "load current", unit: "A", colour: "sky", width: 3 },
+  { name: "duty", text: "duty", unit: "duty", colour: "blue" },
+  { name: "supply_v", text: "supply", unit: "V", colour: "orange", off: true },
+  { name: "temperature_c", text: "temperature", unit: "°C", colour: "red", off: true },
 ];
 
 export function livePlot(place, live) {
   const progress = h("progress", { max: "1", value: "0", "aria-label": "Progress of the experiment" });
   const outcome = h("p", { class: "soft", role: "status" });
-  const values = h("p", { class: "soft number" });
-  const nothing = h("p", { class: "soft" }, "No rows yet: they appear here while an experiment runs.");
-  const plot = h("div", { class: "plot live", hidden: true, role: "img", "aria-label": "Position, speed and current over the last rows" });
+  const readings = h("dl", { class: "readings" });
+  const note = h("p", { class: "soft" });
+  const loads = h("div");
+  const boxes = CHANNELS.map((one) => h("input", { type: "checkbox", checked: !one.off, value: one.name }));
   const freeze = h("input", { type: "checkbox", id: "freeze" });
-  replace(place, progress, outcome, h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), values), nothing, plot);
+  const seconds = h("select", { "aria-label": "Shown time" }, SECONDS.map(([value, text]) => h("option", { value }, text)));
+  const picture = h("div");
+  replace(place, progress, outcome, readings, h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), seconds,
+    h("details", {}, h("summary", {}, "Channels"), h("div", { class: "row centre" },
+      CHANNELS.map((one, index) => h("label", { class: "inline" }, boxes[index], `${one.text} [${one.unit}]`))))), picture, note, loads);
+  const chart = new Chart(picture, { label: "Position, speed, current and duty of the trial that runs", height: 520 });
+  const latest = new LatestTrials(live);
 
   let changed = true;
+  let frozen = null;
+  let shownLength = 0;
   const mark = () => { changed = true; };
+  const show = () => {
+    const chosen = CHANNELS.filter((one, index) => boxes[index].checked);
+    const content = frozen ? contentOf(frozen.rows, chosen, frozen.marks, Number(seconds.value)) : contentOf(live.rows, chosen, marksOf(latest.events), Number(seconds.value));
+    if (!frozen && live.rows.length < shownLength) chart.showAll(); // another trial has begun
+    shownLength = live.rows.length;
+    chart.show(content);
+    note.textContent = content.lines.length ? markLegend(content.marks) || "\u00a0" : "No rows yet: they appear here while an experiment runs.";
+  };
   const status = () => {
     const run = live.status?.run;
     progress.value = run?.progress ?? 0;
-    outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment on the left.";
-    values.textContent = reading(live.status?.reading);
+    outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment.";
+    replace(readings, readingsOf(live.status?.reading));
   };
   const timer = setInterval(() => {
+    place.classList.toggle("stale", live.stale);
     if (!changed || freeze.checked || document.hidden) return;
     changed = false;
-    plot.hidden = !live.rows.length;
-    nothing.hidden = !plot.hidden;
-    if (plot.hidden) return;
-    draw(plot, traces(live), axes()).catch((error) => replace(nothing, problemBox(error)));
+    show();
   }, REDRAW_MS);
+  const trials = () => {
+    changed = true;
+    loadBands(loads, latest.trials);
+  };
+  freeze.addEventListener("change", () => {
+    frozen = freeze.checked ? { rows: live.rows.copy(), marks: marksOf(latest.events) } : null;
+    show();
+  });
+  for (const box of [...boxes, seconds]) box.addEventListener("change", show);
   live.addEventListener("rows", mark);
   live.addEventListener("status", status);
+  latest.addEventListener("change", trials);
   status();
   return () => {
     clearInterval(timer);
+    latest.close();
+    chart.close();
     live.removeEventListener("rows", mark);
     live.removeEventListener("status", status);
-    forget(plot);
   };
 }
 
-function traces(live) {
-  const step = Math.max(1, Math.ceil(live.rows.length / MOST_POINTS));
-  const thin = (values) => values.filter((_, index) => index % step === 0);
-  const time = thin(live.column("time_s") ?? []);
-  return LINES.flatMap(([channel, name, colourName, yaxis]) => {
-    const values = live.column(channel);
-    if (!values || values.every((value) => value === null)) return [];
-    return [{ x: time, y: thin(values), name, yaxis, mode: "lines", line: { color: colour(colourName), width: 1.5, dash: channel === "target_rad" ? "dash" : "solid" } }];
-  });
-}
-
-function axes() {
+// rows of the ring -> what the chart draws; channels that are not measured have no line, units without lines no row
+function contentOf(rows, chosen, marks, seconds) {
+  const all = rows.column("time_s") ?? new Float64Array();
+  const measured = chosen.filter((one) => rows.column(one.name)?.some(Number.isFinite));
+  const units = [...new Set(measured.map((one) => one.unit))];
+  const last = all.at(-1) ?? 0;
+  const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: rows.column(one.name), colour: one.colour, dash: one.dash, width: one.width }));
   return {
-    height: 520, xaxis: { title: { text: "time in the trial [s]" }, anchor: "y3" },
-    yaxis: { domain: [0.70, 1], title: { text: "rad" } }, yaxis2: { domain: [0.36, 0.64], title: { text: "rad/s" } },
-    yaxis3: { domain: [0, 0.30], title: { text: "A" } },
+    rows: units.length ? units.map((title) => ({ title })) : [{ title: "" }], lines,
+    marks: marks.filter((one) => one.letter && one.x <= last), xTitle: "time in the trial [s]",
+    limits: seconds && all.length ? [Math.max(all[0], last - seconds), last] : undefined,
   };
 }
 
 function sentence(run) {
-  if (run.outcome === "running") return `Running ${run.kind}: trial ${run.trial_index + 1} of ${run.trial_count}.`;
+  if (run.outcome === "running") return `Running ${run.kind}: trial ${run.trial_index + 1} of ${run.trial_count}, ${number(Math.round(100 * run.progress))} %.`;
   return `Experiment ${run.experiment_id} (${run.kind}): ${run.outcome}${run.reason ? `: ${run.reason}` : ""}`;
 }
 
-function reading(values) {
-  if (!values) return "";
-  const unit = { position_rad: "rad", velocity_rad_s: "rad/s", current_a: "A", duty: "duty", supply_v: "V", temperature_c: "°C" };
-  return Object.entries(unit).filter(([name]) => values[name] !== null && values[name] !== undefined)
-    .map(([name, text]) => `${number(values[name], 3)} ${text}`).join("   ");
+function readingsOf(values) {
+  const shown = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
+    ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
+  const known = shown.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
+  return known.map(([text, name, unit]) => h("div", {}, h("dt", {}, text), h("dd", {}, `${values[name].toFixed(3).replace("-", "−")} ${unit}`)));
 }

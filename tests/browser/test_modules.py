@@ -1,0 +1,97 @@
+"""The modules of the page that compute, called in the browser itself."""
+
+import math
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture
+def call(open_page):
+    page = open_page()
+
+    def called(module: str, expression: str):
+        """What an expression makes of a module, there called `m`."""
+        return page.evaluate(f"import('/static/modules/{module}.js').then((m) => {expression})")
+
+    return called
+
+
+def test_a_ring_keeps_the_newest_rows_and_never_grows(call):
+    kept = call(
+        "ring",
+        "{ const ring = new m.Ring(['t', 'v'], 10);"
+        " for (let n = 0; n < 1000; n++) ring.append([[n, n % 7 ? n : null]]);"
+        " return [ring.length, [...ring.column('t')], [...ring.column('v')], ring.column('v').buffer.byteLength, ring.column('w') === undefined]; }",
+    )
+    assert kept[0] == 10
+    assert kept[1] == list(range(990, 1000))
+    assert [math.isnan(value) for value in kept[2]] == [n % 7 == 0 for n in range(990, 1000)]
+    assert kept[3] == 2 * 10 * 8
+    assert kept[4] is True
+
+
+def test_a_copy_of_a_ring_stays_as_it_was(call):
+    assert call(
+        "ring",
+        "{ const ring = new m.Ring(['t'], 3); ring.append([[1], [2]]); const copy = ring.copy();"
+        " ring.append([[3], [4], [5], [6], [7]]); return [...copy.column('t')]; }",
+    ) == [1, 2]  # fmt: skip
+
+
+def test_thinning_keeps_extremes_gaps_and_order(call):
+    found = call(
+        "thin",
+        "{ const n = 100000; const x = Float64Array.from({length: n}, (_, i) => i); const y = x.map((v) => Math.sin(v / 1000));"
+        " y[777] = 50; y[70001] = -50; y[5000] = NaN; const found = m.thinned(x, y, [0, n], 500);"
+        " return [found.length, found.includes(777), found.includes(70001), found.includes(m.GAP), found.filter((i) => i >= 0).every((v, i, all) => !i || v > all[i - 1])]; }",
+    )
+    assert found[0] <= 4 * 501
+    assert found[1:] == [True, True, True, True]
+
+
+def test_few_points_are_all_drawn_and_the_line_leaves_the_picture(call):
+    assert call("thin", "m.thinned([0, 1, 2, 3, 4], [0, 1, NaN, 3, 4], [1.5, 3.5], 100)") == [1, -1, 3, 4]
+    assert call("thin", "m.firstFrom([1, 2, 2, 5], 2)") == 1
+    assert call("thin", "m.firstFrom([1, 2, 2, 5], 6)") == 4
+
+
+def test_ticks_are_round_and_inside(call):
+    assert call("ticks", "m.ticks(-0.31, 1.02, 5)") == [0.0, 0.5, 1.0]
+    assert call("ticks", "m.ticks(0, 0.007, 5)") == [0, 0.002, 0.004, 0.006]
+    assert call("ticks", "m.widened(-0.31, 1.02, 5)") == [-0.5, 1.5]
+    low, high = call("ticks", "m.widened(2, 2, 5)")
+    assert low < 2 < high
+    assert call("ticks", "m.label(-0.5, 0.1)") == "−0.5"
+    assert call("ticks", "m.label(1500000, 500000)") == "1.5e+6"
+
+
+def test_a_view_stays_within_what_there_is(call):
+    assert call("view", "m.moved([0, 2], 1, [0, 3])") == [1, 3]
+    assert call("view", "m.moved([1, 3], -2, [0, 3])") == [0, 2]
+    assert call("view", "m.zoomed([0, 4], 0.5, 1, [0, 4])") == [0.5, 2.5]
+    assert call("view", "m.zoomed([1, 3], 10, 2, [0, 4])") == [0, 4]
+    assert call("view", "m.whole([{x: [1, 5]}, {x: [0, 2]}, {x: []}])") == [0, 5]
+
+
+def test_events_become_marks(call):
+    events = [
+        {"time_s": 1.0, "name": "search", "detail": "stand before a ramp"},
+        {"time_s": 1.1, "name": "search", "detail": "ramp"},
+        {"time_s": 1.5, "name": "search", "detail": "stand before a ramp"},
+        {"time_s": 1.6, "name": "search", "detail": "ramp"},
+        {"time_s": 1.9, "name": "search", "detail": "settle after the search"},
+        {"time_s": 2.1, "name": "search", "detail": "done"},
+        {"time_s": 3.0, "name": "end", "detail": "tripped; velocity is 9 rad/s"},
+    ]
+    found = call("marks", f"m.marksOf({events}).map((mark) => [mark.x, mark.kind])")
+    assert found == [[1.5, "breakaway"], [1.9, "breakaway"], [1.9, "settle"], [2.1, "estimate"], [3.0, "trip"]]
+    assert call("marks", "m.marksOf([{time_s: 1, name: 'end', detail: 'completed'}])") == []
+
+
+def test_every_equation_of_the_catalogue_is_set(open_page, service):
+    page = open_page()
+    equations = [one["equation"] for one in service.client.get("/effects").json()["items"]]
+    shown = "(all) => import('/static/modules/equation.js').then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
+    assert page.evaluate(shown, equations) == []
