@@ -23,7 +23,8 @@ def test_a_ring_keeps_the_newest_rows_and_never_grows(call):
         "ring",
         "{ const ring = new m.Ring(['t', 'v'], 10);"
         " for (let n = 0; n < 1000; n++) ring.append([[n, n % 7 ? n : null]]);"
-        " return [ring.length, [...ring.column('t')], [...ring.column('v')], ring.column('v').buffer.byteLength, ring.column('w') === undefined]; }",
+        " const bytes = ring.column('v').buffer.byteLength, none = ring.column('w') === undefined;"
+        " return [ring.length, [...ring.column('t')], [...ring.column('v')], bytes, none]; }",
     )
     assert kept[0] == 10
     assert kept[1] == list(range(990, 1000))
@@ -43,9 +44,11 @@ def test_a_copy_of_a_ring_stays_as_it_was(call):
 def test_thinning_keeps_extremes_gaps_and_order(call):
     found = call(
         "thin",
-        "{ const n = 100000; const x = Float64Array.from({length: n}, (_, i) => i); const y = x.map((v) => Math.sin(v / 1000));"
+        "{ const n = 100000; const x = Float64Array.from({length: n}, (_, i) => i);"
+        " const y = x.map((v) => Math.sin(v / 1000));"
         " y[777] = 50; y[70001] = -50; y[5000] = NaN; const found = m.thinned(x, y, [0, n], 500);"
-        " return [found.length, found.includes(777), found.includes(70001), found.includes(m.GAP), found.filter((i) => i >= 0).every((v, i, all) => !i || v > all[i - 1])]; }",
+        " const rising = found.filter((i) => i >= 0).every((v, i, all) => !i || v > all[i - 1]);"
+        " return [found.length, found.includes(777), found.includes(70001), found.includes(m.GAP), rising]; }",
     )
     assert found[0] <= 4 * 501
     assert found[1:] == [True, True, True, True]
@@ -93,5 +96,8 @@ def test_events_become_marks(call):
 def test_every_equation_of_the_catalogue_is_set(open_page, service):
     page = open_page()
     equations = [one["equation"] for one in service.client.get("/effects").json()["items"]]
-    shown = "(all) => import('/static/modules/equation.js').then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
+    shown = (
+        "(all) => import('/static/modules/equation.js')"
+        ".then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
+    )
     assert page.evaluate(shown, equations) == []
