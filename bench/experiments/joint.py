@@ -63,30 +63,43 @@ class Joint:
         """The last one."""
         return self._last()
 
-    def follow(self, set_points: Iterable[SetPoint]) -> Part[list[Reading]]:
-        """Track one set point per cycle; the readings, one for each."""
+    @property
+    def command_a(self) -> float:
+        """The current that was asked for last; what flows, where the drive closes the position loop [A]."""
+        return self._command_a
+
+    def follow(self, set_points: Iterable[SetPoint], event: tuple[str, str] | None = None) -> Part[list[Reading]]:
+        """Track one set point per cycle; the readings, one for each. The event is that of the first."""
         readings = []
         for target_rad, velocity_rad_s in set_points:
-            readings.append((yield from self._servo_cycle(target_rad, velocity_rad_s)))
+            readings.append((yield from self._servo_cycle(target_rad, velocity_rad_s, event=event)))
+            event = None
         return readings
 
     def step(self, target_rad: float, velocity_rad_s: float, load_current_a: float) -> Part[Reading]:
         """One cycle towards a set point; the load current is recorded."""
         return (yield from self._servo_cycle(target_rad, velocity_rad_s, load_current_a))
 
-    def move(self, target_rad: float, speed_rad_s: float | None = None) -> Part[None]:
-        """Go to an angle; with the speed of the configuration where none is given."""
+    def move(
+        self, target_rad: float, speed_rad_s: float | None = None, acceleration_rad_s2: float | None = None
+    ) -> Part[None]:
+        """Go to an angle; with speed and acceleration of the configuration where none are given."""
         speed_rad_s = self._motion.speed_rad_s if speed_rad_s is None else speed_rad_s
+        acceleration = self._motion.acceleration_rad_s2 if acceleration_rad_s2 is None else acceleration_rad_s2
         start_rad = self._last().sample.position_rad
-        profile = Trapezoid(start_rad, target_rad, speed_rad_s, self._motion.acceleration_rad_s2)
+        profile = Trapezoid(start_rad, target_rad, speed_rad_s, acceleration)
         cycles = ceil(profile.duration_s / self._period_s)
         yield from self.follow(profile.at((cycle + 1) * self._period_s) for cycle in range(cycles))
 
-    def push(self, command: Command) -> Part[Reading]:
+    def push(self, command: Command, event: tuple[str, str] | None = None) -> Part[Reading]:
         """One cycle of a command of one's own; no position is asked for."""
         self._command_a = command.value if command.mode is Mode.CURRENT else self._command_a
-        self._reading = yield Action(command)
+        self._reading = yield Action(command, event=event)
         return self._reading
+
+    def grip(self, dead_band_rad: float) -> None:
+        """Let the servo of the bench work down to another error; `settle` keeps to that of the configuration."""
+        self._servo.settings = self._servo.settings.model_copy(update={"dead_band_rad": dead_band_rad})
 
     def brake(self, acceleration_rad_s2: float) -> Part[None]:
         """From any speed to rest, after `push`; the servo takes over from the current that flows."""

@@ -1,6 +1,6 @@
 """A move from one set point to another with limited speed and acceleration."""
 
-from math import copysign, sqrt
+from math import ceil, copysign, sqrt
 from typing import NamedTuple
 
 
@@ -42,6 +42,14 @@ class Trapezoid:
         else:
             way_rad, speed = self._peak * (time_s - 0.5 * self._ramp_s), self._peak
         return SetPoint(self._start_rad + self._sign * way_rad, self._sign * speed)
+
+
+def run_up(start_rad: float, speed_rad_s: float, acceleration_rad_s2: float, period_s: float) -> list[SetPoint]:
+    """From rest to a speed, either way: one set point per control period."""
+    cycles = ceil(abs(speed_rad_s) / acceleration_rad_s2 / period_s)
+    acceleration = copysign(acceleration_rad_s2, speed_rad_s)
+    times_s = [cycle * period_s for cycle in range(1, cycles + 1)]
+    return [SetPoint(start_rad + 0.5 * acceleration * t_s**2, acceleration * t_s) for t_s in times_s]
 
 
 class Halt:

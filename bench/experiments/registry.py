@@ -6,9 +6,12 @@ from pydantic import ValidationError
 
 from bench.errors import ParameterError, UnknownKindError
 from bench.experiments import (
+    breakaway_ramps,
+    coast_down,
     commissioning,
     excitation,
     load_sweep,
+    reversals,
     sinusoid,
     speed_sweep,
     steady_speeds,
@@ -26,6 +29,9 @@ KINDS: dict[str, ExperimentKind] = {
         steady_speeds.KIND,
         sinusoid.KIND,
         excitation.KIND,
+        breakaway_ramps.KIND,
+        reversals.KIND,
+        coast_down.KIND,
         commissioning.KIND,
     )
 }

@@ -11,7 +11,7 @@ import numpy as np
 from bench.configuration import BenchConfiguration
 from bench.errors import LimitError, quantity_message
 from bench.experiments.joint import Joint, Part
-from bench.experiments.profile import SetPoint, Trapezoid
+from bench.experiments.profile import SetPoint, run_up
 from bench.experiments.resolution import resolution_rad
 from bench.experiments.saturation import LEAST_READINGS, Stroke, motion_of
 from bench.loop import Reading
@@ -128,7 +128,7 @@ class Strokes:
         acceleration = self._settings.acceleration_rad_s2
         yield from self._go(self._near_rad)
         yield from self._joint.settle(self._near_rad)
-        yield from self._joint.follow(self._ramp(run_up_rad_s))
+        yield from self._joint.follow(run_up(self._near_rad, self._sign * run_up_rad_s, acceleration, self._period_s))
         if self._held is Held.SPEED:
             readings = yield from self._joint.follow(self._cruise(run_up_rad_s))
         else:
@@ -138,16 +138,7 @@ class Strokes:
 
     def _go(self, target_rad: float) -> Part[None]:
         """With the acceleration of the strokes: what the motor can give a heavy arm, near the end of its travel."""
-        position_rad = self._joint.reading.sample.position_rad
-        way = Trapezoid(position_rad, target_rad, self._move_rad_s, self._settings.acceleration_rad_s2)
-        cycles = ceil(way.duration_s / self._period_s)
-        yield from self._joint.follow([way.at(cycle * self._period_s) for cycle in range(1, cycles + 1)])
-
-    def _ramp(self, run_up_rad_s: float) -> list[SetPoint]:
-        acceleration = self._sign * self._settings.acceleration_rad_s2
-        cycles = ceil(run_up_rad_s / abs(acceleration) / self._period_s)
-        times_s = [cycle * self._period_s for cycle in range(1, cycles + 1)]
-        return [SetPoint(self._near_rad + 0.5 * acceleration * t_s**2, acceleration * t_s) for t_s in times_s]
+        yield from self._joint.move(target_rad, self._move_rad_s, self._settings.acceleration_rad_s2)
 
     def _cruise(self, speed_rad_s: float) -> Iterator[SetPoint]:
         """Set points at a steady speed, while the time and the travel last."""
