@@ -27,8 +27,11 @@ paper: $(STAMP)  ## every figure and table of the paper, ours beside it: one HTM
 serve: $(STAMP)  ## the service and the page on the simulated bench
 	$(BIN)/friction-bench serve
 
-test: $(STAMP)   ## the tests
-	$(BIN)/pytest
+test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, one after the other
+	@failed=0; \
+	$(BIN)/pytest --numprocesses auto --dist loadfile -m 'not wall_clock' || failed=1; \
+	$(BIN)/pytest -m wall_clock || failed=1; \
+	exit $$failed
 
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)

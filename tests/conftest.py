@@ -1,7 +1,10 @@
-"""What holds for all tests: one thread for linear algebra, and Ctrl-C that is heard."""
+"""What holds for all tests: one thread for linear algebra, Ctrl-C that is heard, which tests the wall clock times."""
 
 import os
 import signal
+from pathlib import Path
+
+import pytest
 
 # the matrices are small, and waiting threads cost more than they save; read when numpy is imported
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -9,3 +12,16 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # a shell that starts the tests in the background lets them, and every process of theirs, ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+HERE = Path(__file__).parent
+# devices, services and browsers in processes of their own: they run one after the other, nothing beside them
+WALL_CLOCK = ("browser", "devices", "drivers", "service", "stopping", "bench/test_clock.py", "cli/test_serve.py")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what the wall clock times. A machine that stops a process for a second fails such a test, though nothing is
+    wrong: it is run once more, and the summary says so."""
+    for item in items:
+        if item.path.relative_to(HERE).as_posix().startswith(WALL_CLOCK):
+            item.add_marker(pytest.mark.wall_clock)
+            item.add_marker(pytest.mark.flaky(reruns=1))

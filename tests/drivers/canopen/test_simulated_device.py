@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from threading import Timer
 
 import pytest
 
@@ -235,8 +236,11 @@ def test_corrupted_frames_end_in_power_off_or_do_no_harm(slcan):
 def test_lost_frames_are_counted_and_only_cost_their_cycle(slcan):
     device, drive = slcan
     _moving(drive)
-    device.side.ask("link", name="drop", packets=2, direction="from-device")
-    samples = exchange_for(drive, 0.5, Command(Mode.CURRENT, 0.0))
+    # asked for while cycles run: in a pause the device sends heartbeats alone, and those would be what is lost
+    asking = Timer(0.1, device.side.ask, ("link",), {"name": "drop", "packets": 4, "direction": "from-device"})
+    asking.start()
+    samples = exchange_for(drive, 1.0, Command(Mode.CURRENT, 0.0))
+    asking.join()
     assert drive.counts.missed >= 1
     assert max(sample.age_s for sample in samples) > 0.01
     assert samples[-1].number >= drive.counts.sent - 1
