@@ -11,6 +11,7 @@ from bench.service import (
     bench_state,
     calibrations,
     effects,
+    error_map,
     experiments,
     live,
     page,
@@ -86,7 +87,7 @@ def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
     problems.install(app)
     api = APIRouter(prefix=PREFIX)
-    for module in (bench_state, experiments, live, trials, recording_sets, calibrations, studies, effects):
+    for module in (bench_state, experiments, live, trials, recording_sets, calibrations, studies, error_map, effects):
         api.include_router(module.router)
     app.include_router(api)
     page.install(app)

@@ -8,6 +8,7 @@ from bench.study.compare import compare
 from bench.study.create import create_study, describe, list_studies
 from bench.study.diagnose import diagnose
 from bench.study.effects import effects_catalogue
+from bench.study.error_map import error_map, moments
 from bench.study.ladder import ladder
 from bench.study.search import search
 
@@ -19,7 +20,9 @@ __all__ = [
     "diagnose",
     "drop_effect",
     "effects_catalogue",
+    "error_map",
     "ladder",
     "list_studies",
+    "moments",
     "search",
 ]

@@ -54,7 +54,10 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     page.get_by_label("Name").fill("arm")
     page.get_by_role("button", name="Create study").click()
     page.get_by_text("4 training trials, 2 held out").wait_for()
-    page.locator("[aria-label='Measured and predicted effort over time, residual beneath'] .trace").first.wait_for()
+    page.get_by_label("Measured against predicted").get_by_text("residual", exact=True).wait_for()
+    page.locator("table.heat button.cell").last.click()
+    page.get_by_label("Moments").get_by_role("button", name="Show swing").first.click()
+    assert "Measured and predicted" in page.evaluate("document.activeElement.getAttribute('aria-label')")
     page.get_by_role("button", name="Diagnose").click()
     first = page.locator("article").first
     first.locator(".plot .trace").first.wait_for()
@@ -70,6 +73,14 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     assert after[1] < 0.95 * before[0]
     page.locator(".plot.ladder .trace").first.wait_for()
 
+    page.get_by_label("Model", exact=True).get_by_text("residual before").wait_for()
+    page.get_by_role("button", name="Undo this change").click()
+    page.locator("[aria-label='Ladder'] tbody tr").nth(1).wait_for(state="detached")
+    assert held_out_errors(page) == before
+
+    page.get_by_role("button", name="Search by itself").click()
+    page.get_by_label("Steps of the search").get_by_text("Added viscous_asymmetry").wait_for()
+    assert held_out_errors(page)[1] == after[1]
     page.get_by_role("button", name="Drop").last.click()
     page.locator("[aria-label='Ladder'] tbody tr").nth(2).wait_for()
     assert held_out_errors(page)[2] == pytest.approx(before[0], abs=0.02)

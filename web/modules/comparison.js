@@ -1,47 +1,56 @@
-// Measured against predicted: over time with the residual beneath, against each driver, per trial and regime.
+// Measured against predicted: over time with the residual beneath, over speed and load, against each driver, per trial and regime.
 
+import { get } from "./api.js";
 import { facts, h, panel, replace, table } from "./dom.js";
+import { errorMap } from "./errormap.js";
 import { conditions, interval, nameOf, number, percent } from "./format.js";
+import { momentList } from "./moments.js";
 import { band, colour, draw } from "./plot.js";
+import { attempt } from "./problem.js";
+import { SeriesPlot } from "./seriesplot.js";
 
-const MOST_POINTS = 4000;
 const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
 
-export async function comparison(place, compared) {
-  const series = h("div", { class: "plot", role: "img", "aria-label": "Measured and predicted effort over time, residual beneath" });
-  const choice = h("select", { id: "series" }, compared.series.map((one, index) => h("option", { value: String(index) }, one.name)));
-  const drivers = h("div", { class: "cards" });
+// returns what has to be closed when the place is left
+export async function comparison(place, compared, path) {
+  const [series, spots, moments, drivers] = ["div", "div", "div", "div"].map((tag) => h(tag));
+  drivers.className = "cards";
   replace(place,
-    panel("Measured against predicted", errors(compared), h("label", { for: "series" }, "Trial", choice), series),
-    panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing."), drivers),
-    panel("Where it fits, and its parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), parameterTable(compared))),
+    panel("Measured against predicted", errors(compared), series),
+    panel("Where the model is wrong", spots, moments),
+    panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers),
+    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), parameterTable(compared))),
     compared.notes.length ? panel("Notes", compared.notes.map((note) => h("p", {}, note))) : null);
-  const show = () => seriesPlot(series, compared.series[Number(choice.value)], compared.effort);
-  choice.addEventListener("change", show);
-  if (compared.series.length) await show();
+  const plot = new SeriesPlot(series, compared);
+  const ask = (where, words) => attempt(moments, async () => {
+    const query = new URLSearchParams([...where.map((one) => ["where", one]), ["model_id", compared.model_id]]);
+    momentList(moments, words, await get(`${path}/moments?${query}`), (one) => plot.showMoment(one));
+    moments.scrollIntoView({ block: "nearest" });
+  }, { busy: "Looking …" });
+  attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask), { busy: "Looking …" });
   for (const driver of compared.residual_against) {
-    const plot = h("div", { class: "plot", role: "img", "aria-label": `Residual against ${nameOf(driver.driver)}` });
-    drivers.append(plot);
-    await driverPlot(plot, driver, compared.effort);
+    const picture = h("div", { class: "plot", role: "img", "aria-label": `Residual against ${nameOf(driver.driver)}` });
+    drivers.append(picture);
+    await driverPlot(picture, driver, compared.effort);
+    picture.on?.("plotly_click", ({ points }) => ask(...spotOf(driver, points[0])));
   }
+  return plot;
+}
+
+// the bin around a point: half-way to its neighbours, on the side of its direction
+export function spotOf(driver, point) {
+  const group = driver.groups[Math.floor(point.curveNumber / 2)];
+  const at = point.pointIndex;
+  const low = at > 0 ? (group.x[at - 1] + group.x[at]) / 2 : group.x[at] - 1e9;
+  const high = at < group.x.length - 1 ? (group.x[at] + group.x[at + 1]) / 2 : group.x[at] + 1e9;
+  const side = { forward: ["direction=0..1"], backward: ["direction=-1..0"] }[group.direction] ?? [];
+  return [[`${driver.driver}=${low}..${high}`, ...side], `${nameOf(driver.driver)} near ${number(group.x[at], 3)} ${driver.unit}, ${group.direction}`];
 }
 
 function errors({ error, effort }) {
   const text = (one) => (one ? `${percent(one.relative)} (${number(one.rms, 3)} ${effort.unit} rms)` : "unknown: needs repeated trials");
   const kinds = { "hold-out": "held-out trials", "leave-one-trial-out": "each trial left out in turn", "leave-one-block-out": "stretches left out in turn" };
   return facts([["training error", text(error.training)], [kinds[error.held_out?.kind] ?? "held-out", text(error.held_out)], ["floor from repeats", text(error.floor)]]);
-}
-
-function seriesPlot(plot, one, effort) {
-  const step = Math.max(1, Math.ceil(one.time_s.length / MOST_POINTS));
-  const thin = (values) => values.filter((_, index) => index % step === 0);
-  const time = thin(one.time_s);
-  const line = (values, name, colourName, extra) => ({ x: time, y: thin(values), name, mode: "lines", line: { color: colour(colourName), width: 1.5, ...extra } });
-  return draw(plot, [
-    line(one.measured, "measured", "blue"), line(one.predicted, "predicted", "orange", { dash: "dash", width: 2 }),
-    { ...line(one.residual, "residual", "red"), yaxis: "y2" },
-  ], { height: 440, uirevision: one.trial_id, xaxis: { title: { text: "time [s]" }, anchor: "y2" },
-    yaxis: { domain: [0.42, 1], title: { text: `effort [${effort.unit}]` } }, yaxis2: { domain: [0, 0.34], title: { text: `residual [${effort.unit}]` } } });
 }
 
 function driverPlot(plot, driver, effort) {

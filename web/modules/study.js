@@ -1,25 +1,36 @@
 // One open study: ladder, comparison, diagnosis; adding and dropping effects moves from model to model.
 
 import { get, post, remove } from "./api.js";
+import { beforeAfter } from "./beforeafter.js";
 import { comparison } from "./comparison.js";
 import { diagnosis } from "./diagnosis.js";
 import { h, panel, replace } from "./dom.js";
 import { ladderPlot } from "./ladder.js";
 import { attempt } from "./problem.js";
+import { searchButton } from "./searching.js";
 
 export function studyView(place, id) {
   const parts = Object.fromEntries(["head", "model", "change", "ladder", "compared", "diagnosed"].map((name) => [name, h("div")]));
   replace(place, parts.head, panel("Model", parts.model, parts.change), panel("Ladder: the error from model to model", parts.ladder),
     panel("What is missing?", parts.diagnosed), parts.compared);
-  new Study(id, parts).open();
-  return () => {};
+  const study = new Study(id, parts);
+  study.open();
+  return () => study.close();
 }
 
 class Study {
+  #plots = [];
+
   constructor(id, parts) {
     this.path = `/studies/${encodeURIComponent(id)}`;
     this.parts = parts;
     this.model = null;
+    this.compared = null;
+  }
+
+  close() {
+    for (const plot of this.#plots) plot.close();
+    this.#plots = [];
   }
 
   async open() {
@@ -46,18 +57,27 @@ class Study {
   async showComparison() {
     const model_id = this.model;
     const compared = await attempt(this.parts.compared, () => get(`${this.path}/compare`, { model_id }), { busy: "Fitting …" });
-    if (compared && model_id === this.model) await comparison(this.parts.compared, compared);
+    if (!compared || model_id !== this.model) return;
+    this.compared = compared;
+    this.#plots.push(await comparison(this.parts.compared, compared, this.path));
   }
 
   askDiagnosis() {
-    const answer = h("div");
+    const [answer, search] = [h("div"), h("div", { class: "row centre" })];
     const button = h("button", { class: "primary", type: "button" }, "Diagnose");
     button.addEventListener("click", async () => {
       const busy = "Testing every effect of the catalogue …";
       const found = await attempt(answer, () => get(`${this.path}/diagnose`, { model_id: this.model }), { button, busy });
       if (found) await diagnosis(answer, found, (effect, place) => this.add(effect, place));
     });
-    replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), button, answer);
+    replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button, search), answer);
+    searchButton(search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
+  }
+
+  async searched(model_id, tell) {
+    await this.select(model_id);
+    tell(this.parts.change);
+    this.parts.change.scrollIntoView({ block: "center" });
   }
 
   add(effect, place) {
@@ -71,9 +91,21 @@ class Study {
   }
 
   async changed(result) {
+    const before = this.compared?.model_id === result.parent_id ? this.compared : await get(`${this.path}/compare`, { model_id: result.parent_id });
     replace(this.parts.change, h("div", { class: "good", role: "status" }, result.sentence));
-    this.parts.change.scrollIntoView({ behavior: "smooth", block: "center" });
+    this.parts.change.scrollIntoView({ block: "start" });
     await this.select(result.model_id);
+    if (this.compared?.model_id !== result.model_id) return;
+    this.#plots.push(beforeAfter(this.parts.change, result, { before, after: this.compared, undo: () => this.undo(result.parent_id) }));
+  }
+
+  // back to the model before; the one that is left was made by the last change, and nothing was made from it
+  undo(parent_id) {
+    return attempt(this.parts.change, async () => {
+      await remove(`${this.path}/models/${this.model}`);
+      replace(this.parts.change);
+      await this.select(parent_id);
+    });
   }
 
   chips(rung) {
@@ -86,11 +118,7 @@ class Study {
     const options = ladder.rungs.map((rung) => h("option", { value: String(rung.model_id), selected: rung.model_id === this.model }, rungName(rung)));
     const choice = h("select", { id: "model", onchange: (event) => this.select(Number(event.target.value)) }, options);
     const removable = ladder.rungs.length > 1 && !ladder.rungs.some((rung) => rung.parent_id === this.model) && ladder.rungs[0].model_id !== this.model;
-    const take = () => attempt(this.parts.change, async () => {
-      await remove(`${this.path}/models/${this.model}`);
-      replace(this.parts.change);
-      await this.select(ladder.rungs.find((rung) => rung.model_id === this.model)?.parent_id ?? ladder.rungs[0].model_id);
-    });
+    const take = () => this.undo(ladder.rungs.find((rung) => rung.model_id === this.model)?.parent_id ?? ladder.rungs[0].model_id);
     return h("div", { class: "row" }, h("label", { for: "model" }, "Shown model", choice),
       removable && h("button", { type: "button", onclick: take }, "Remove this model"));
   }
