@@ -151,7 +151,8 @@ def test_a_corrupted_packet_of_a_line_without_a_check_at_most_trips_a_limit(wire
 def test_a_line_that_corrupts_everything_ends_in_power_off(wired):
     with wired.opened() as drive:
         outcome, on_s = broken(wired, drive, "link", name="corrupt")
-        assert outcome.outcome == "failed"
+        # where no packet has a check, a flipped bit may read as a value beyond a limit first
+        assert outcome.outcome in (("failed",) if wired.name in CHECKED else ("failed", "tripped"))
         assert on_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
         opens_again(wired, drive)
 
