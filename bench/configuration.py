@@ -79,6 +79,7 @@ class RetentionSettings(Section):
     completed_days: float | None = quantity(None, "days", "Completed experiments and imports", gt=0)
     incomplete_days: float | None = quantity(None, "days", "Stopped, tripped, failed, interrupted, refused ones", gt=0)
     simulated_days: float | None = quantity(None, "days", "Those of a simulated drive, however they ended", gt=0)
+    audit_days: float | None = quantity(None, "days", "Entries of the audit log", gt=0)
 
 
 class StoreSettings(Section):

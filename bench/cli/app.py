@@ -7,6 +7,7 @@ import typer
 from typer.core import TyperGroup
 
 from bench.cli import (
+    audit,
     blind,
     calibrate,
     challenge,
@@ -23,6 +24,7 @@ from bench.cli import (
     service,
     simulate_device,
     study,
+    token,
     trials,
 )
 from bench.cli import store as store_commands  # `store` is an option of every command
@@ -48,6 +50,8 @@ _ORDER = (
     "calibrate",
     "study",
     "store",
+    "token",
+    "audit",
     "effects",
     "simulate-device",
     "challenge",
@@ -118,6 +122,8 @@ app.command("import")(recordings.import_)
 app.add_typer(calibrate.app, name="calibrate")
 app.add_typer(study.app, name="study")
 app.add_typer(store_commands.app, name="store")
+app.add_typer(token.app, name="token")
+app.command("audit")(audit.audit)
 app.command("effects")(effects.effects)
 app.command("demo")(demo.demo)
 app.command("figures")(figures.figures)

@@ -1,6 +1,7 @@
 """`friction-bench status` and `stop`: a service that is running, by its address."""
 
 from typing import TYPE_CHECKING, Annotated, Any
+from urllib.parse import urlsplit
 
 import typer
 
@@ -37,9 +38,7 @@ def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) 
 def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
     import httpx  # here: its import takes longer than most commands
 
-    from bench.service.tokens import find_token, token_file
-
-    token = find_token(token_file(session.store_url()))
+    token = token_for(session, url)
     headers = {} if token is None else {"Authorization": f"Bearer {token}"}
     try:
         answer = httpx.request(method, f"{url}/api/v1{path}", json=body, headers=headers, timeout=TIMEOUT_S)
@@ -48,6 +47,23 @@ def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str
     if answer.is_error:
         raise ServiceError(f"{url} answered {answer.status_code}: {_detail(answer)}")
     return answer.json()
+
+
+def token_for(session: BenchSession, url: str) -> str | None:
+    """The token for a service: one that was chosen, else that of the same user's service on this machine."""
+    from bench.service.access import is_loopback
+    from bench.service.tokens import chosen_token, read_token, session_file, token_file
+
+    chosen = chosen_token(token_file(session.store_url()))
+    if chosen is not None:
+        return chosen[1]
+    try:
+        parts = urlsplit(url)
+        host, port = parts.hostname or "", parts.port or (443 if parts.scheme == "https" else 80)
+    except ValueError as error:
+        raise ServiceError(f"'{url}' is no address of a service ({error}); wanted is {DEFAULT_URL}") from error
+    # only this machine may be sent it: what answers elsewhere is not the service that made the file
+    return read_token(session_file(session.store_url(), port)) if is_loopback(host) else None
 
 
 def _detail(answer: "httpx.Response") -> str:

@@ -85,16 +85,22 @@ def prune(
     with session.open_store() as store:
         found = store.retention.expired(Policy(**settings.model_dump()))
         chosen = [one.experiment_id for one in found if used_too or not one.used_by]
+        audit_entries = 0 if settings.audit_days is None else store.access.audit.count_older(settings.audit_days)
         if delete:
             store.retention.remove(chosen)
+            if settings.audit_days is not None:
+                store.access.audit.remove_older(settings.audit_days)
     if as_json:
-        print_json({"deleted": delete, "experiment_ids": chosen, "expired": [asdict(one) for one in found]})
+        expired = [asdict(one) for one in found]
+        print_json({"deleted": delete, "experiment_ids": chosen, "expired": expired, "audit_entries": audit_entries})
         return
     if not any(settings.model_dump().values()):
         say("[store.retention] of bench.toml sets no limit: everything is kept")
         return
     _show(found)
     verb = "removed" if delete else "to remove with --delete"
+    if settings.audit_days is not None:
+        say(f"{audit_entries} entries of the audit log {verb}")
     size = sum(one.size_bytes for one in found if one.experiment_id in chosen)
     say(f"{len(chosen)} of {len(found)} {verb}, {_mb(size)} of samples; a file shrinks by: friction-bench store vacuum")
 

@@ -1,18 +1,23 @@
 """The application: routes, errors, guard, page."""
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
+import anyio.to_thread
 from fastapi import APIRouter, FastAPI
 
+from bench.lease import Lease
 from bench.runner import Runner
 from bench.service import (
+    audit,
     bench_state,
     calibrations,
     effects,
     error_map,
     experiments,
+    leases,
     live,
     page,
     problems,
@@ -21,7 +26,9 @@ from bench.service import (
     trials,
 )
 from bench.service.access import Access
+from bench.service.audit_trail import AuditTrail, AuditWriter
 from bench.service.guard import Guard
+from bench.service.token_register import REFRESH_S
 from bench.store import Store
 
 PREFIX = "/api/v1"
@@ -30,9 +37,11 @@ Test bench for one geared servo joint: run experiments, watch and stop them, rea
 effect that a model is missing.
 
 * **Units** are SI and stand in every name: `load_kg`, `speed_rad_s`, `current_a`. Not measured is `null`, never 0.
-* **Reading** is open on loopback. **Changing** anything (POST, DELETE) needs the token that `friction-bench serve`
-  printed, as `Authorization: Bearer <token>`. Nothing that is read with GET ever moves the joint.
-* **Stop**: `POST /api/v1/stop`, always, by any holder of the token.
+* **Reading** is open on loopback. **Changing** anything (POST, PUT, DELETE) needs a token, as `Authorization: Bearer
+  <token>`: the one that `friction-bench serve` printed at its first start, or one of `friction-bench token new`.
+  A viewer reads and stops, an operator changes, an admin may all. Nothing that is read with GET ever moves the joint.
+* **Stop**: `POST /api/v1/stop`, always, with any token.
+* **Lease**: `POST /api/v1/lease` keeps the bench for one token; a start without one keeps it for the run.
 * **Errors** are problem+json: `detail` is a sentence with value, limit and unit; `errors` the same, field by field.
 
 A run, watched and read:
@@ -59,19 +68,39 @@ A missing effect, found and added:
 """
 
 
+_ROOMS = (
+    bench_state,
+    leases,
+    experiments,
+    live,
+    trials,
+    recording_sets,
+    calibrations,
+    studies,
+    error_map,
+    effects,
+    audit,
+)
+
+
 def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
     """The service.
 
     Args:
         store: where trials and studies are kept; stays the caller's to close.
         runner: runs the experiments; closed (joint stopped, power off) when the application ends.
-        access: token, hosts, and whether reading is open.
+        access: tokens, hosts, and whether reading is open.
     """
+    trail = AuditWriter(store.access.audit.add)
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        trail.start()
+        looking = asyncio.create_task(_look_again(access))
         yield
+        looking.cancel()
         runner.close()
+        trail.close()
 
     app = FastAPI(
         title="friction-bench",
@@ -85,11 +114,26 @@ def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
     )
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
+    app.state.lease = Lease(lambda: _running(runner))
     problems.install(app)
     api = APIRouter(prefix=PREFIX)
-    for module in (bench_state, experiments, live, trials, recording_sets, calibrations, studies, error_map, effects):
+    for module in _ROOMS:
         api.include_router(module.router)
     app.include_router(api)
     page.install(app)
+    app.add_middleware(AuditTrail, add=trail.add)
     app.add_middleware(Guard, hosts=access.hosts)
     return app
+
+
+def _running(runner: Runner) -> int | None:
+    """The experiment that runs, 0 while it has no number yet; None where none does."""
+    found = runner.status()
+    return (found.experiment_id or 0) if found.outcome == "running" else None
+
+
+async def _look_again(access: Access) -> None:
+    """Keep the tokens as the store has them: one may have been revoked from outside."""
+    while True:
+        await anyio.to_thread.run_sync(access.look_again, abandon_on_cancel=True)
+        await asyncio.sleep(REFRESH_S)

@@ -14,8 +14,10 @@ from starlette.requests import ClientDisconnect
 
 from bench.drive_factory import is_simulated
 from bench.limits import Limits
-from bench.service.access import allow_read, require_token
+from bench.service.access import Viewer, allow_read, require_viewer
+from bench.service.audit_trail import note
 from bench.service.json_numbers import plain
+from bench.service.leases import LeaseOf, lease_now, require_lease
 from bench.service.problems import problems
 from bench.service.services import RunnerOf
 from bench.service.status import Status, status_of
@@ -83,18 +85,26 @@ class Continue(BaseModel):
 
 
 class Accepted(BaseModel):
-    """It is accepted: the token, or the answer."""
+    """The answer is accepted."""
 
     accepted: bool = True
 
 
+class Token(BaseModel):
+    """Whose token it is, and what it is good for."""
+
+    accepted: bool = True
+    name: str = Field(examples=["ada"])
+    role: str = Field(examples=["operator"], description="viewer, operator or admin")
+
+
 @router.get("/bench", summary="Drive, limits and state", dependencies=[Depends(allow_read)])
-def bench(runner: RunnerOf) -> Bench:
+def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
     """Reading this never moves anything."""
     found = runner.status()
     configuration = runner.configuration
     return Bench(
-        **status_of(found, is_simulated(configuration)),
+        **status_of(found, is_simulated(configuration), lease_now(lease.current())),
         name=configuration.name,
         software_version=version("friction-bench"),
         drive=None if found.description is None else _drive(found.description),
@@ -107,17 +117,20 @@ def bench(runner: RunnerOf) -> Bench:
 @router.post(
     "/stop",
     summary="Stop the joint and power it off",
-    dependencies=[Depends(require_token)],
+    dependencies=[Depends(require_viewer)],
     responses=problems(401, 403),
     openapi_extra={"requestBody": {"content": {"application/json": {"schema": Stop.model_json_schema()}}}},
 )
 async def stop(runner: RunnerOf, request: Request) -> Stopped:
-    """Any holder of a token, always. The control loop honours it within one cycle; the record says who and why.
+    """With any token, always, whoever has the bench. The control loop honours it within one cycle; it is on record.
 
     The body may be left out. One that cannot be read stops the joint all the same.
     """
-    was_running = runner.status().outcome == "running"
-    runner.stop(await _reason(request))
+    found = runner.status()
+    was_running = found.outcome == "running"
+    reason = await _reason(request)
+    runner.stop(reason)
+    note(request, f"stopped experiment {found.experiment_id}: {reason}" if was_running else "nothing was running")
     detail = (
         "Stop accepted: the joint is being powered off." if was_running else "Nothing was running; the joint is off."
     )
@@ -140,19 +153,20 @@ async def _reason(request: Request) -> str:
 @router.post(
     "/continue",
     summary="The person at the bench has done what was asked: the joint will move",
-    dependencies=[Depends(require_token)],
+    dependencies=[Depends(require_lease)],
     responses=problems(401, 403, 409, 422),
 )
-async def go_on(runner: RunnerOf, body: Continue) -> Accepted:
+async def go_on(runner: RunnerOf, request: Request, body: Continue) -> Accepted:
     """409 where that prompt is not the one that is open now: an answer that comes late moves nothing."""
     runner.answer(body.prompt)
+    note(request, f"answered prompt {body.prompt} of experiment {runner.status().experiment_id}")
     return Accepted()
 
 
-@router.get("/token", summary="Check a token", dependencies=[Depends(require_token)], responses=problems(401))
-async def token() -> Accepted:
+@router.get("/token", summary="Check a token", responses=problems(401))
+async def token(caller: Viewer) -> Token:
     """Changes nothing; for programs that want to know before they need it."""
-    return Accepted()
+    return Token(name=caller.name, role=caller.role)
 
 
 def _drive(found: Description) -> DriveDescription:

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench import calibration
 from bench.service.access import allow_read, require_token
+from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
 from bench.service.problems import problems
@@ -129,6 +130,7 @@ async def create(
     """From experiments that were run or imported; nothing moves. Takes a second or so."""
     made = await in_worker(request, calibration.calibrate, store, body.experiment_ids, body.stribeck, body.note)
     response.headers["Location"] = f"{request.url.path}/{made}"
+    note(request, f"made calibration {made} from experiments {', '.join(map(str, body.experiment_ids))}")
     return represent(store.calibrations.get(made), _used_id(store, runner))
 
 

@@ -13,8 +13,10 @@ from starlette.background import BackgroundTask
 from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
 from bench.recording_set import export_experiment, export_parquet
-from bench.service.access import allow_read, require_token
+from bench.service.access import Operator, allow_read
+from bench.service.audit_trail import note
 from bench.service.json_numbers import plain
+from bench.service.leases import LeaseOf
 from bench.service.problems import FieldProblem, InvalidFieldsError, field_problems, problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.service.trials import PARQUET, PARQUET_ANSWER
@@ -112,18 +114,21 @@ def kinds() -> Kinds:
     "/experiments",
     status_code=201,
     summary="Start an experiment: the joint moves",
-    dependencies=[Depends(require_token)],
     responses=problems(401, 403, 404, 409, 422, 502),
 )
-def start(runner: RunnerOf, request: Request, response: Response, body: NewExperiment) -> Started:
+def start(
+    runner: RunnerOf, lease: LeaseOf, caller: Operator, request: Request, response: Response, body: NewExperiment
+) -> Started:
     """Refused before any motion (422, with value, limit and unit) where it would leave the limits.
 
-    409 while another one runs. Watch it with GET /live, end it with POST /stop.
+    409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
     try:
-        experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+        with lease.starting(caller.name):
+            experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
     except ParameterError as error:
         raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
+    note(request, f"started experiment {experiment_id} ({body.kind})")
     response.headers["Location"] = f"{request.url.path}/{experiment_id}"
     return Started(experiment_id=experiment_id, kind=body.kind)
 

@@ -10,10 +10,12 @@ from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 
 from bench.drive_factory import is_simulated
+from bench.lease import Lease
 from bench.live import LiveRows
 from bench.runner import Runner
 from bench.service.access import allow_read
 from bench.service.json_numbers import column
+from bench.service.leases import LeaseOf, lease_now
 from bench.service.services import RunnerOf
 from bench.service.status import Status, status_of
 
@@ -63,6 +65,7 @@ def rows_of(found: LiveRows) -> Rows:
 async def live(
     request: Request,
     runner: RunnerOf,
+    lease: LeaseOf,
     after_row: AfterRow = -1,
     limit: MostRows = MOST_ROWS,
     last_event_id: LastEvent = None,
@@ -71,13 +74,13 @@ async def live(
     if last_event_id is not None and last_event_id.isdigit():
         after_row = int(last_event_id)
     return StreamingResponse(
-        _events(request, runner, after_row, limit),
+        _events(request, runner, lease, after_row, limit),
         media_type="text/event-stream",
         headers={"Cache-Control": "no-store"},
     )
 
 
-async def _events(request: Request, runner: Runner, after_row: int, limit: int) -> AsyncIterator[str]:
+async def _events(request: Request, runner: Runner, lease: Lease, after_row: int, limit: int) -> AsyncIterator[str]:
     simulated = is_simulated(runner.configuration)
     shown = ""
     period = 0
@@ -86,8 +89,9 @@ async def _events(request: Request, runner: Runner, after_row: int, limit: int) 
         if len(found.rows) or (found.restarted and found.last_row != after_row):
             after_row = found.last_row
             yield _event("rows", rows_of(found).model_dump_json(), after_row)
-        status = status_of(runner.status(), simulated)
-        key = json.dumps([status["state"], status["prompt"], status["run"] and {**status["run"], "progress": 0}])
+        status = status_of(runner.status(), simulated, lease_now(lease.current()))
+        run, holder = status["run"], status["lease"]
+        key = json.dumps([status["state"], status["prompt"], run and run | {"progress": 0}, holder and holder["token"]])
         if key != shown or period % STATUS_EVERY == 0:
             shown = key
             yield _event("status", json.dumps(status))
@@ -101,8 +105,8 @@ def _event(name: str, data: str, number: int | None = None) -> str:
 
 
 @router.get("/now", summary="Status and new rows, once")
-def now(runner: RunnerOf, after_row: AfterRow = -1, limit: MostRows = MOST_ROWS) -> LiveNow:
+def now(runner: RunnerOf, lease: LeaseOf, after_row: AfterRow = -1, limit: MostRows = MOST_ROWS) -> LiveNow:
     """For programs that poll. Send `last_row` back as `after_row`."""
     simulated = is_simulated(runner.configuration)
-    status = Status.model_validate(status_of(runner.status(), simulated))
+    status = Status.model_validate(status_of(runner.status(), simulated, lease_now(lease.current())))
     return LiveNow(status=status, rows=rows_of(runner.live(after_row, limit)))

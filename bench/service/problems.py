@@ -1,6 +1,7 @@
 """Errors as problem+json (RFC 9457): what went wrong, where, what is allowed, and what to do next."""
 
 import json
+import math
 from collections.abc import Sequence
 from http import HTTPStatus
 from typing import Any
@@ -13,6 +14,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse
 
 from bench.errors import BenchError
+from bench.lease import LeaseHeldError
 from bench.quantities import unit_of
 from compensator.errors import CompensatorError
 from drivers.errors import DriveError
@@ -67,12 +69,13 @@ class Problem(BaseModel):
 
 MEANINGS = {
     401: "the token is missing or wrong",
-    403: "the request comes from another web page",
+    403: "the role of the token does not allow it, or the request comes from another web page",
     404: "there is no such thing",
-    409: "it does not fit the present state (an experiment is running)",
+    409: "it does not fit the present state (an experiment is running, somebody else has the bench)",
     413: "the upload is too large",
     415: "the body is not of the wanted type",
     422: "a value is missing, of the wrong type or outside its range; nothing has moved",
+    429: "too many wrong tokens came from this address; `Retry-After` says when the next is looked at",
     502: "the drive does not answer or reports a fault",
 }
 
@@ -145,6 +148,11 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(CompensatorError)
     async def ours(_request: Request, error: Exception) -> JSONResponse:
         return problem_response(status_of(error), str(error), kind=type(error).__name__)
+
+    @app.exception_handler(LeaseHeldError)
+    async def held(_request: Request, error: LeaseHeldError) -> JSONResponse:
+        left = {} if error.remaining_s is None else {"Retry-After": str(math.ceil(error.remaining_s))}
+        return problem_response(409, str(error), kind="LeaseHeldError", headers=left)
 
     @app.exception_handler(InvalidFieldsError)
     async def invalid_fields(_request: Request, error: InvalidFieldsError) -> JSONResponse:

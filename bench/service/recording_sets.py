@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 
 from bench.recording_set import import_recording_set, read_recording_set
 from bench.service.access import require_token
+from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.problems import problems
 from bench.service.services import StoreOf
@@ -61,7 +62,9 @@ async def import_set(
     with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
         path = Path(folder) / f"{_shortened(name)}.zip"  # errors name the set as its sender does
         await _receive(request.stream(), path)
-        return await in_worker(request, _import, store, path, name)
+        made = await in_worker(request, _import, store, path, name)
+    note(request, f"imported experiment {made.experiment_id} ({name})")
+    return made
 
 
 def _shortened(name: str) -> str:

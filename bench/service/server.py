@@ -10,14 +10,16 @@ import uvicorn
 from fastapi import FastAPI
 
 from bench.configuration import BenchConfiguration
-from bench.drive_factory import is_simulated
 from bench.errors import ConfigurationError
 from bench.runner import Runner
 from bench.service.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
-from bench.service.app import PREFIX, create_app
-from bench.service.tokens import find_or_make_token, find_token, token_file
+from bench.service.app import create_app
+from bench.service.first_token import first_token, has_valid_token
+from bench.service.tls import Certificate
+from bench.service.token_register import TokenRegister
+from bench.service.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
+from bench.service.welcome import Place, welcome
 from bench.store import Store
-from bench.store.backend import shown
 
 LINGER_S = 2  # how long open connections are waited for at the end
 
@@ -42,12 +44,20 @@ class BenchServer(uvicorn.Server):
     Args:
         app: made by `create_app`.
         runner: what has to stop.
+        tls: certificate and key; None: plain HTTP.
     """
 
-    def __init__(self, app: FastAPI, runner: Runner) -> None:
+    def __init__(self, app: FastAPI, runner: Runner, tls: Certificate | None = None) -> None:
         super().__init__(
             uvicorn.Config(
-                app, log_level="warning", access_log=False, timeout_graceful_shutdown=LINGER_S, lifespan="on"
+                app,
+                log_level="warning",
+                access_log=False,
+                timeout_graceful_shutdown=LINGER_S,
+                lifespan="on",
+                proxy_headers=False,  # whoever connects says nothing of who it is
+                ssl_certfile=tls.chain if tls else None,
+                ssl_keyfile=tls.key if tls else None,
             )
         )
         self._app = app
@@ -65,30 +75,46 @@ class BenchServer(uvicorn.Server):
         self._app.state.ending = True
 
 
-def serve_bench(configuration: BenchConfiguration, address: Address, say: Callable[[str], None]) -> None:
+def serve_bench(
+    configuration: BenchConfiguration,
+    address: Address,
+    say: Callable[[str], None],
+    tls: Certificate | None = None,
+) -> None:
     """Serve until a signal comes.
 
     Args:
         configuration: of the bench and its store.
         address: where to listen.
         say: shows a line to whoever started it.
+        tls: certificate and key; without them the service speaks plain HTTP.
 
     Raises:
         ConfigurationError: an address that may not or cannot be listened on, or a token that cannot be used.
     """
-    path = token_file(configuration.store.url)
-    check_bind(address.host, token_configured=find_token(path) is not None)
-    with listen(address) as listener, Store.open(configuration.store.url) as store:
-        token = find_or_make_token(path)
-        runner = Runner(configuration, store)
-        access = Access(token, is_loopback(address.host), LOOPBACK_NAMES | {address.host, *address.names})
-        server = BenchServer(create_app(store, runner, access), runner)
-        port = listener.getsockname()[1]
-        for line in _welcome(configuration, address.host, port, token):
-            say(line)
-        if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # `nohup` has it ignored, and means it
-            signal.signal(signal.SIGHUP, server.handle_exit)  # uvicorn would let it kill the process
-        server.run(sockets=[listener])
+    url = configuration.store.url
+    chosen = chosen_token(token_file(url))
+    with Store.open(url) as store:
+        check_bind(address.host, token_configured=chosen is not None or has_valid_token(store))
+        with listen(address) as listener:
+            port = listener.getsockname()[1]
+            tokens = first_token(store, chosen)
+            with session_token(session_file(url, port)) as session:
+                fixed = {SAME_USER: session} | dict([tokens.chosen] if tokens.chosen else [])
+                register = TokenRegister(fixed, store.access.tokens.find)
+                register.refresh()
+                names = LOOPBACK_NAMES | {address.host, *address.names}
+                runner = Runner(configuration, store)
+                app = create_app(store, runner, Access(register, is_loopback(address.host), names))
+                for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
+                    say(line)
+                _serve(BenchServer(app, runner, tls), listener)
+
+
+def _serve(server: BenchServer, listener: socket.socket) -> None:
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # `nohup` has it ignored, and means it
+        signal.signal(signal.SIGHUP, server.handle_exit)  # uvicorn would let it kill the process
+    server.run(sockets=[listener])
 
 
 def listen(address: Address) -> socket.socket:
@@ -108,16 +134,3 @@ def listen(address: Address) -> socket.socket:
 
 def _family(host: str) -> socket.AddressFamily:
     return socket.AF_INET6 if ":" in host else socket.AF_INET
-
-
-def _welcome(configuration: BenchConfiguration, host: str, port: int, token: str) -> list[str]:
-    address = f"[{host}]" if ":" in host else host
-    drive = "SIMULATED drive, no hardware moves" if is_simulated(configuration) else "REAL drive, the joint moves"
-    return [
-        f"bench  {configuration.name}: {drive}",
-        f"store  {shown(configuration.store.url)}",
-        f"page   http://{address}:{port}/",
-        f"REST   http://{address}:{port}{PREFIX}/openapi.json",
-        f"token  {token}   (the page asks for it; keep it to yourself)",
-        "Ctrl-C stops the joint and ends the service.",
-    ]

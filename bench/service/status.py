@@ -7,6 +7,7 @@ from pydantic import BaseModel, Field
 from bench.loop import Reading
 from bench.runner import RunnerStatus
 from bench.service.json_numbers import plain
+from bench.service.leases import LeaseNow
 
 
 class Run(BaseModel):
@@ -49,9 +50,10 @@ class Status(BaseModel):
     run: Run | None = Field(description="null before the first experiment")
     reading: ReadingNow | None
     prompt: PromptNow | None = Field(description="null where nobody is waited for")
+    lease: LeaseNow | None = Field(description="who has the bench; null where nobody has")
 
 
-def status_of(found: RunnerStatus, simulated: bool) -> dict[str, Any]:
+def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> dict[str, Any]:
     """The fields of `Status`."""
     running = found.outcome == "running"
     run = None
@@ -61,7 +63,8 @@ def status_of(found: RunnerStatus, simulated: bool) -> dict[str, Any]:
     reading = None if found.reading is None else _reading(found.reading)
     prompt = None if found.prompt is None else {"number": found.prompt.number, "sentence": found.prompt.sentence}
     state = "running" if running else "idle"
-    return {"state": state, "simulated": simulated, "run": run, "reading": reading, "prompt": prompt}
+    holder = None if lease is None else lease.model_dump()
+    return {"state": state, "simulated": simulated, "run": run, "reading": reading, "prompt": prompt, "lease": holder}
 
 
 def _reading(reading: Reading) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.service.access import allow_read, require_token
+from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
 from bench.service.problems import problems
@@ -91,6 +92,7 @@ async def create(request: Request, response: Response, store: StoreOf, body: New
     """Fixes the trials and fits the base model."""
     found = await _lab(request, "create_study", store, **body.model_dump())
     response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
+    note(request, f"made study {found['study_id']} ({body.name})")
     return Study.model_validate(found)
 
 
@@ -135,7 +137,9 @@ async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
 async def change(request: Request, store: StoreOf, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
     name = "add_effect" if body.action == "add" else "drop_effect"
-    return Changed.model_validate(await _lab(request, name, store, study_id, body.effect, model_id=body.model_id))
+    found = await _lab(request, name, store, study_id, body.effect, model_id=body.model_id)
+    note(request, f"made model {found['model_id']}: {body.action} {body.effect}")
+    return Changed.model_validate(found)
 
 
 @router.post(
@@ -147,7 +151,9 @@ async def change(request: Request, store: StoreOf, study_id: StudyId, body: Chan
 )
 async def search(request: Request, store: StoreOf, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    return Searched.model_validate(await _lab(request, "search", store, study_id, **body.model_dump()))
+    found = await _lab(request, "search", store, study_id, **body.model_dump())
+    note(request, f"made {len(found['steps'])} models, the last of them {found['model_id']}")
+    return Searched.model_validate(found)
 
 
 @router.delete(

@@ -1,19 +1,53 @@
-"""The bearer token that every state-changing call needs: made once, kept in a file only its owner can read."""
+"""Tokens: how they are made and hashed, and those that a user has outside the store.
 
+The store keeps digests alone. SHA-256 without salt or stretching is right for them: a token that is made here is
+256 bits from the system's random source, so that neither a dictionary nor a table of digests can hold it, and a
+request that carries one has to be answered in microseconds.
+"""
+
+import hashlib
 import os
 import re
 import secrets
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from bench.errors import ConfigurationError
 
 TOKEN_VARIABLE = "FRICTION_BENCH_TOKEN"  # noqa: S105  the name of a variable, not a token
+ENVIRONMENT, TOKEN_FILE, SAME_USER = "environment", "token-file", "this-user"
+RESERVED_NAMES = frozenset({ENVIRONMENT, TOKEN_FILE, SAME_USER, "command-line"})
+NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._@-]{0,63}")
 _PERMITTED = re.compile(r"[A-Za-z0-9._~+/=-]{16,256}")
 
 
+def make_token() -> str:
+    """A new token: 256 random bits, as 43 characters."""
+    return secrets.token_urlsafe(32)
+
+
+def digest_of(token: str) -> str:
+    """What is kept of a token: its SHA-256, hexadecimal."""
+    return hashlib.sha256(token.encode(errors="surrogateescape")).hexdigest()
+
+
+def check_name(name: str) -> None:
+    """Refuse a name that a token of the store may not have.
+
+    Raises:
+        ConfigurationError: what is wanted.
+    """
+    if name in RESERVED_NAMES or not NAME_PATTERN.fullmatch(name):
+        raise ConfigurationError(
+            f"the token's name is '{name}'; wanted are 1 to 64 letters, digits, spaces or ._@-, and none of "
+            + ", ".join(sorted(RESERVED_NAMES))
+        )
+
+
 def token_file(store_url: str) -> Path:
-    """The token's file: next to an SQLite store, else in the working directory.
+    """The file of a token that its owner put there: next to an SQLite store, else in the working directory.
 
     Args:
         store_url: SQLAlchemy URL of the store, "sqlite:///friction-bench.sqlite".
@@ -24,15 +58,31 @@ def token_file(store_url: str) -> Path:
     return Path("friction-bench.token")
 
 
-def find_token(path: Path) -> str | None:
-    """The configured token: the environment variable first, then the file; None where there is neither.
+def session_file(store_url: str, port: int) -> Path:
+    """The file with which commands of the same user reach the service on `port`, while it runs."""
+    beside = token_file(store_url)
+    return beside.with_name(f"{beside.stem}.port-{port}.token")
+
+
+def chosen_token(path: Path) -> tuple[str, str] | None:
+    """A token that somebody chose: from the environment, else from the file `path`. With the name that it goes by.
 
     Raises:
         ConfigurationError: the file can be read by others, or what it holds cannot be a token.
     """
     value = os.environ.get(TOKEN_VARIABLE)
     if value is not None:
-        return _checked(value.strip(), f"environment variable {TOKEN_VARIABLE}")
+        return ENVIRONMENT, _checked(value.strip(), f"environment variable {TOKEN_VARIABLE}")
+    found = read_token(path)
+    return None if found is None else (TOKEN_FILE, found)
+
+
+def read_token(path: Path) -> str | None:
+    """The token in a file; None where there is no file.
+
+    Raises:
+        ConfigurationError: as `chosen_token`.
+    """
     if not path.exists():
         return None
     mode = stat.S_IMODE(path.stat().st_mode)
@@ -44,23 +94,32 @@ def find_token(path: Path) -> str | None:
     return _checked(path.read_text(encoding="utf-8").strip(), str(path))
 
 
-def find_or_make_token(path: Path) -> str:
-    """The configured token, or a new one written to `path` with mode 0600."""
-    token = find_token(path)
-    if token is not None:
-        return token
-    token = secrets.token_urlsafe(24)
-    # O_EXCL: never follow a link that somebody else has put there in the meantime
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-        file.write(token + "\n")
-    return token
+@contextmanager
+def session_token(path: Path) -> Iterator[str]:
+    """A token of this process alone, in a file that only its owner can read; file and token end with the block.
+
+    Raises:
+        ConfigurationError: the file cannot be written.
+    """
+    token = make_token()
+    try:
+        path.unlink(missing_ok=True)  # of a service that was killed
+        # O_EXCL: never follow a link that somebody else has put there in the meantime
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be written ({error.strerror}); make its folder writable") from error
+    try:
+        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
+            file.write(token + "\n")
+        yield token
+    finally:
+        path.unlink(missing_ok=True)
 
 
 def _checked(token: str, where: str) -> str:
     if not _PERMITTED.fullmatch(token):
         raise ConfigurationError(
             f"{where}: the token has {len(token)} characters; wanted are 16 to 256 letters, digits or ._~+/=- "
-            "(make one with: python -c 'import secrets; print(secrets.token_urlsafe(24))')"
+            "(make one with: python -c 'import secrets; print(secrets.token_urlsafe(32))')"
         )
     return token

@@ -22,11 +22,13 @@ class Policy:
         completed_days: those that completed, imports too.
         incomplete_days: those that were stopped, tripped, failed, interrupted or refused.
         simulated_days: those of a simulated drive, however they ended.
+        audit_days: entries of the audit log.
     """
 
     completed_days: float | None = None
     incomplete_days: float | None = None
     simulated_days: float | None = None
+    audit_days: float | None = None
 
     def keeps_days(self, outcome: str, source: str) -> float | None:
         """How long an experiment is kept [days]."""

@@ -198,3 +198,49 @@ CALIBRATION = Table(
     Column("created_utc", UtcDateTime, nullable=False),
     Column("chosen_utc", UtcDateTime, nullable=True),  # when it was last named as the one to use
 )
+
+# digests only: who reads the store, or a backup of it, learns no token
+ACCESS_TOKEN = Table(
+    "access_token",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("name", PlainText, nullable=False),
+    Column("role", PlainText, nullable=False),
+    Column("digest", PlainText, nullable=False),  # SHA-256 of the token, hexadecimal
+    Column("created_utc", UtcDateTime, nullable=False),
+    Column("expires_utc", UtcDateTime, nullable=True),
+    Column("revoked_utc", UtcDateTime, nullable=True),
+    UniqueConstraint("name"),  # for ever: the audit log names tokens by it
+    UniqueConstraint("digest"),
+)
+
+AUDIT = Table(
+    "audit",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("at_utc", UtcDateTime, nullable=False),
+    Column("token", PlainText, nullable=False),  # its name; empty where none was accepted
+    Column("role", PlainText, nullable=False),
+    Column("client", PlainText, nullable=False),  # address
+    Column("method", PlainText, nullable=False),
+    Column("path", PlainText, nullable=False),
+    Column("status", Integer, nullable=False),
+    Column("detail", PlainText, nullable=False),  # what was changed
+    Index(None, "at_utc"),
+    Index(None, "token"),
+)
+
+# answers to starts that carried an Idempotency-Key
+START_KEY = Table(
+    "start_key",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("key", PlainText, nullable=False),
+    Column("token", PlainText, nullable=False),  # name of the token that sent it
+    Column("body_digest", PlainText, nullable=False),
+    Column("status", Integer, nullable=True),  # empty while the start is under way
+    Column("answer", JSON, nullable=True),
+    Column("created_utc", UtcDateTime, nullable=False),
+    UniqueConstraint("token", "key"),
+    Index(None, "created_utc"),
+)

@@ -6,6 +6,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from bench.store import experiments, samples, trials
+from bench.store.access_records import AccessRecords
 from bench.store.calibrations import Calibrations
 from bench.store.conditions import Wanted
 from bench.store.custody import UNWRITTEN, Custody
@@ -37,6 +38,7 @@ class Store(StudyStore):
     def __init__(self, database: Database) -> None:
         self._database = database
         self.calibrations = Calibrations(database)
+        self.access = AccessRecords(database)
         self._custody = Custody(database)
 
     @classmethod

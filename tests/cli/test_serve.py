@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
+from bench.service import server
 from bench.store import Store
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
@@ -63,10 +64,12 @@ def test_status_and_stop_from_another_process(served, command, tmp_path):
     assert json.loads(command("status", "--url", url, "--json").stdout)["state"] == "idle"
     _start(url, token)
     assert "running" in command("status", "--url", url).stdout
-    stopped = command("stop", "--url", url)  # finds the token file of the store in the working directory
+    stopped = command("stop", "--url", url)  # with the file of the running service in the working directory
     assert stopped.exit_code == 0, stopped.output
     assert "Stop accepted" in stopped.stdout
-    (tmp_path / "friction-bench.token").unlink()
+    [file] = tmp_path.glob("*.token")
+    assert token not in file.read_text()
+    file.unlink()
     refused = command("stop", "--url", url)
     assert refused.exit_code == 5
     assert "needs a token" in refused.stderr
@@ -86,6 +89,31 @@ def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
         [experiment] = store.experiments()
     assert experiment.outcome == "stopped"
     assert "the service was ended" in experiment.reason
+
+
+def test_a_token_file_of_an_earlier_version_goes_on_working(command, tmp_path, monkeypatch):
+    file = tmp_path / "friction-bench.token"
+    file.write_text("a-token-of-long-ago\n")
+    file.chmod(0o600)
+    monkeypatch.setattr(server, "_serve", lambda *_: None)
+    shown = command("serve", "--port", str(_free_port())).stdout
+    assert "that of friction-bench.token" in shown
+    assert "long-ago" not in shown
+
+
+def test_the_token_is_shown_once(command, monkeypatch):
+    monkeypatch.setattr(server, "_serve", lambda *_: None)
+    shown = [command("serve", "--port", str(_free_port())).stdout for _ in range(2)]
+    assert "it is shown this once" in shown[0]
+    assert "was shown at the first start" in shown[1]
+
+
+def test_beyond_loopback_with_a_token_of_the_store(command, monkeypatch):
+    monkeypatch.setattr(server, "_serve", lambda *_: None)
+    assert command("token", "new", "boss", "--role", "admin").exit_code == 0
+    shown = command("serve", "--host", "0.0.0.0", "--port", str(_free_port()))
+    assert shown.exit_code == 0, shown.output
+    assert "in the clear" in shown.stdout
 
 
 def test_what_serve_refuses(command):

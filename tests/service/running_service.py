@@ -1,5 +1,6 @@
 """A service as its users have it: uvicorn on a real port, a store in a file, the simulated bench."""
 
+import ssl
 import threading
 import time
 from collections.abc import Iterator
@@ -15,6 +16,9 @@ from bench.runner import Runner
 from bench.service.access import LOOPBACK_NAMES, Access
 from bench.service.app import create_app
 from bench.service.server import Address, BenchServer, listen
+from bench.service.tls import Certificate
+from bench.service.token_register import TokenRegister
+from bench.service.tokens import ENVIRONMENT, digest_of, make_token
 from bench.store import Store
 
 TOKEN = "test-token-0123456789"
@@ -29,6 +33,13 @@ class RunningService:
     runner: Runner
     client: httpx.Client  # sends the token
     stranger: httpx.Client  # does not
+    access: Access
+
+    def with_token(self, name: str, role: str, **expires: Any) -> httpx.Client:
+        """A client with a new token; its caller closes it."""
+        token = make_token()
+        self.store.access.tokens.add(name, role, digest_of(token), **expires)
+        return httpx.Client(base_url=f"{self.url}/api/v1", headers={"Authorization": f"Bearer {token}"}, timeout=30)
 
     def start(self, kind: str, pace: str = "fast", **parameters: Any) -> int:
         body = {"kind": kind, "parameters": parameters, "pace": pace}
@@ -44,24 +55,32 @@ class RunningService:
 
 
 @contextmanager
-def running_service(folder: Path, reads_open: bool = True, port: int = 0) -> Iterator[RunningService]:
+def running_service(
+    folder: Path,
+    reads_open: bool = True,
+    port: int = 0,
+    tls: Certificate | None = None,
+    trust: ssl.SSLContext | bool = True,
+) -> Iterator[RunningService]:
     configuration = default_configuration()
     with Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store, listen(Address("127.0.0.1", port)) as listener:
         runner = Runner(configuration, store)
-        app = create_app(store, runner, Access(TOKEN, reads_open, LOOPBACK_NAMES))
-        server = BenchServer(app, runner)
+        register = TokenRegister({ENVIRONMENT: TOKEN}, store.access.tokens.find)
+        access = Access(register, reads_open, LOOPBACK_NAMES)
+        app = create_app(store, runner, access)
+        server = BenchServer(app, runner, tls)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
-        url = f"http://127.0.0.1:{listener.getsockname()[1]}"
+        url = f"{'https' if tls else 'http'}://127.0.0.1:{listener.getsockname()[1]}"
         headers = {"Authorization": f"Bearer {TOKEN}"}
         try:
             _wait_until_started(server)
             base = f"{url}/api/v1"
             with (
-                httpx.Client(base_url=base, headers=headers, timeout=30) as client,
-                httpx.Client(base_url=base) as stranger,
+                httpx.Client(base_url=base, headers=headers, timeout=30, verify=trust) as client,
+                httpx.Client(base_url=base, verify=trust) as stranger,
             ):
-                yield RunningService(url, store, runner, client, stranger)
+                yield RunningService(url, store, runner, client, stranger, access)
         finally:
             server.end_streams()
             server.should_exit = True

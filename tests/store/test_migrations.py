@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alembic.config import Config
+from alembic.script import ScriptDirectory
 from sqlalchemy import MetaData, create_engine, insert, select
 from sqlalchemy.pool import StaticPool
 
 from bench.store import Event, Store
 from bench.store.database import Database
-from bench.store.migration import HEAD, _upgrade
+from bench.store.migration import HEAD, MIGRATIONS, _upgrade
 from tests.store.freeze import PROVENANCE, RELEASED, rows
 
 FILES = sorted(RELEASED.glob("*.sql"))
@@ -52,7 +54,12 @@ def copy_rows(text: str, database: Database) -> None:
 
 
 def test_every_schema_before_this_one_is_tested() -> None:
-    assert [file.stem for file in FILES] == [f"{number:04}" for number in range(1, int(HEAD))]
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    config.set_main_option("path_separator", "os")
+    scripts = ScriptDirectory.from_config(config)
+    assert scripts.get_heads() == [HEAD]
+    assert {file.stem for file in FILES} == {script.revision for script in scripts.walk_revisions()} - {HEAD}
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
