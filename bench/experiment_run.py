@@ -6,12 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bench import session
 from bench.drive_factory import Equipment
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.live import LiveBuffer
 from bench.loop import RECORDED, ControlLoop, Outcome, OutcomeName, Reading
 from bench.recorder import Sink
+from bench.session import Session
 from bench.stop_request import StopRequest
 from bench.store import Store
 from bench.store.space import SpaceNeed
@@ -39,6 +41,7 @@ class Prepared:
     equipment: Equipment
     loop: ControlLoop
     space: SpaceNeed
+    session: Session
 
 
 @dataclass(slots=True)
@@ -122,7 +125,7 @@ class ExperimentRun:
                 if not self._hang_load(plan, prepared.equipment.technician):
                     return "stopped", self._stop.reason
                 store.require_space(prepared.space, trials=1)
-                outcome = self._run_trial(plan, prepared.loop, store, live)
+                outcome = self._run_trial(plan, prepared, store, live)
             except Exception as error:
                 return "failed", f"trial '{plan.name}': {str(error) or type(error).__name__}"
             if outcome.outcome != "completed":
@@ -139,11 +142,13 @@ class ExperimentRun:
                     raise
         return not self.is_stopped()
 
-    def _run_trial(self, plan: TrialPlan, loop: ControlLoop, store: Store, live: LiveBuffer) -> Outcome:
-        writer = store.begin_trial(self._id(), plan.name, self.request.kind, plan.conditions, RECORDED)
+    def _run_trial(self, plan: TrialPlan, prepared: Prepared, store: Store, live: LiveBuffer) -> Outcome:
+        conditions = {**plan.conditions, session.CONDITION: prepared.session.seconds()}
+        writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, RECORDED)
         live.begin_trial()
-        outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
-        self._finished.append(FinishedTrial(plan.name, plan.conditions, outcome.outcome, outcome.results))
+        outcome = prepared.loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
+        prepared.session.passed(prepared.loop.last_reading.time_s if prepared.loop.last_reading else 0.0)
+        self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
         writer.finish(outcome.outcome, outcome.reason, results)
         return outcome

@@ -11,6 +11,7 @@ from bench.configuration import BenchConfiguration
 from bench.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiment_run import ExperimentRun, Prepared, Request
+from bench.experiments.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
 from bench.limits import Guard, Limits
 from bench.live import LiveBuffer, LiveRows
@@ -18,6 +19,7 @@ from bench.loop import RECORDED, ControlLoop, OutcomeName, Reading
 from bench.prompt import Prompt, PromptDesk
 from bench.provenance import provenance
 from bench.servo import check_modes, current_servo
+from bench.session import session_of
 from bench.store import Store
 from bench.store.space import SpaceNeed
 from bench.timing import check_timing
@@ -196,16 +198,18 @@ class Runner:
         duration_s = kind.duration_s(parameters, configuration)
         space = SpaceNeed.of(duration_s / len(plans), configuration.control.period_s, configuration.store.reserve_mb)
         self._store.require_space(space, len(plans))
+        session = session_of(configuration, self._store)
         equipment = make_equipment(configuration, lambda sentence: self._desk.ask(sentence, run.is_stopped))
         self._description = None
         try:
             loop = self._open(equipment.drive, clock)
+            refuse_modes(kind.name, kind.modes(parameters), equipment.drive.describe())
             if kind.name != commissioned.KIND and not is_simulated(configuration):
                 commissioned.require_commissioned(self._store, provenance(configuration, self._description))
         except BaseException:
             equipment.drive.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, equipment, loop, space)
+        return Prepared(kind, parameters, plans, duration_s, equipment, loop, space, session)
 
     def _open(self, drive: Drive, clock: Clock) -> ControlLoop:
         """Open a drive, and refuse it where it does not fit the configuration."""

@@ -2,11 +2,13 @@
 
 import inspect
 from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from bench.cli.output import Json
+from bench.errors import ConfigurationError
 from bench.experiments.kind import ExperimentKind
 
 _BOUNDS = (("minimum", ">="), ("exclusiveMinimum", ">"), ("maximum", "<="), ("exclusiveMaximum", "<"))
@@ -49,15 +51,37 @@ def parameter_command(kind: ExperimentKind, run: Callable[..., None], **common: 
 
 
 def given(kind: ExperimentKind, options: dict[str, str | None]) -> dict[str, Any]:
-    """What was typed, as the values that the parameters' model reads; lists are separated by commas."""
+    """What was typed, as the values that the parameters' model reads.
+
+    Lists are separated by commas. A parameter that holds a file is given as its path; the file's name goes along.
+
+    Raises:
+        ConfigurationError: a file that cannot be read.
+    """
     properties = kind.parameters.model_json_schema().get("properties", {})
-    return {name: _value(text, properties[name]) for name, text in options.items() if text is not None}
+    values: dict[str, Any] = {}
+    for name, text in options.items():
+        if text is None:
+            continue
+        if "file" in properties[name]:
+            values.setdefault(properties[name]["file"], Path(text).name)
+        values[name] = _value(text, properties[name])
+    return values
 
 
 def _value(text: str, schema: dict[str, Any]) -> Any:
     if schema.get("type") == "array":
         return [part.strip() for part in text.split(",") if part.strip()]
-    return text
+    return _read(Path(text)) if "file" in schema else text
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path}: is not UTF-8; save it as CSV UTF-8") from error
 
 
 def _option(name: str, schema: dict[str, Any], required: bool) -> Any:
@@ -69,7 +93,8 @@ def _option(name: str, schema: dict[str, Any], required: bool) -> Any:
     hint += " Required." if required else f" Default: {_shown(schema.get('default'))}."
     metavar = {"array": "A,B,...", "integer": "INTEGER", "number": "NUMBER", "boolean": "true|false"}
     flag = "--" + name.replace("_", "-")
-    return Annotated[str | None, typer.Option(flag, metavar=metavar.get(schema.get("type", ""), "TEXT"), help=hint)]
+    shown = "FILE" if "file" in schema else metavar.get(schema.get("type", ""), "TEXT")
+    return Annotated[str | None, typer.Option(flag, metavar=shown, help=hint)]
 
 
 def _bounded(schema: dict[str, Any]) -> dict[str, Any]:

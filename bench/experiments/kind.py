@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict
 from bench.configuration import BenchConfiguration
 from bench.loop import OutcomeName, Procedure
 from compensator.lab.recording import Condition
+from drivers.contract import Mode
 
 
 class Parameters(BaseModel):
@@ -45,6 +46,11 @@ class FinishedTrial:
     results: dict[str, Any]
 
 
+def any_drive(_parameters: Any) -> frozenset[Mode]:
+    """No mode of its own is needed."""
+    return frozenset()
+
+
 @dataclass(frozen=True, slots=True)
 class ExperimentKind:
     """One kind of experiment.
@@ -58,6 +64,7 @@ class ExperimentKind:
         refuse: raises `LimitError` or `ConfigurationError` before motion when the bench must not or cannot do it.
         duration_s: estimate of the time it takes in real time [s].
         summarise: results of the whole from those of its trials; JSON-able, units in the names.
+        modes: that the drive has to close itself; position and current are done without.
     """
 
     name: str
@@ -68,3 +75,4 @@ class ExperimentKind:
     refuse: Callable[[Any, BenchConfiguration], None]
     duration_s: Callable[[Any, BenchConfiguration], float]
     summarise: Callable[[Any, list[FinishedTrial]], dict[str, Any]]
+    modes: Callable[[Any], frozenset[Mode]] = any_drive

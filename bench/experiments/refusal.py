@@ -6,6 +6,7 @@ from math import pi, radians
 from bench.configuration import BenchConfiguration
 from bench.errors import LimitError, quantity_message
 from bench.experiments.profile import Trapezoid
+from drivers.contract import Description, Mode
 
 LONGEST_MOVE_S = 600.0
 
@@ -60,3 +61,25 @@ def refuse_currents(configuration: BenchConfiguration) -> None:
         if asked_a > limit_a:
             step = "Correct the bench configuration"
             raise LimitError(quantity_message(name, asked_a, f"at most limits.current_a, {limit_a:g}", "A", step))
+
+
+def refuse_duty(name: str, duty: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for a duty that drives more current than the limit through a joint that stands."""
+    limit_a, rig = configuration.limits.current_a, configuration.rig
+    if rig.supply.voltage_v is None or rig.motor.resistance_ohm is None:
+        return
+    limit = limit_a * rig.motor.resistance_ohm / rig.supply.voltage_v
+    if duty > limit:
+        allowed = f"at most {limit:.4g}, which is limits.current_a, {limit_a:g} A, while the joint stands"
+        raise LimitError(quantity_message(name, duty, allowed, ""))
+
+
+def refuse_modes(kind: str, wanted: frozenset[Mode], drive: Description) -> None:
+    """Raise `LimitError` where a drive lacks a mode that an experiment needs of the drive itself."""
+    missing = sorted(mode.value for mode in wanted - drive.modes)
+    if missing:
+        there = ", ".join(sorted(mode.value for mode in drive.modes))
+        raise LimitError(
+            f"{kind} needs the mode {' and '.join(missing)} of the drive, and drive '{drive.device}' has {there}; "
+            "ask for a current or a position, which every drive can do"
+        )

@@ -7,15 +7,19 @@ from pydantic import ValidationError
 from bench.errors import ParameterError, UnknownKindError
 from bench.experiments import (
     breakaway_ramps,
+    chirp,
     coast_down,
     commissioning,
     excitation,
+    hold_and_soak,
     load_sweep,
+    multisine,
     reversals,
     sinusoid,
     speed_sweep,
     steady_speeds,
     steps,
+    waveform,
 )
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.validation import problems
@@ -31,7 +35,11 @@ KINDS: dict[str, ExperimentKind] = {
         excitation.KIND,
         breakaway_ramps.KIND,
         reversals.KIND,
+        chirp.KIND,
+        multisine.KIND,
         coast_down.KIND,
+        hold_and_soak.KIND,
+        waveform.KIND,
         commissioning.KIND,
     )
 }

@@ -11,12 +11,13 @@ from bench.errors import LimitError, quantity_message
 from bench.experiments.conditions import conditions
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.load_sweep import PAPER_LOADS_KG, Load
-from bench.experiments.refusal import refuse_currents, refuse_load, refuse_speed
+from bench.experiments.refusal import refuse_currents, refuse_duty, refuse_load, refuse_speed
 from bench.experiments.saturation import Ending, next_run_up, remaining_rad_s
 from bench.experiments.steady_speed import steady_speed_results
 from bench.experiments.stroke import MARGIN_RAD, OVERSPEED, Held, Strokes, StrokeSettings, Window, refuse_travel
 from bench.loop import Procedure
 from bench.quantities import quantity
+from drivers.contract import Mode
 
 Level = Annotated[float, Field(gt=0)]
 Share = Annotated[float, Field(gt=0, le=1)]
@@ -166,19 +167,14 @@ def _refuse(parameters: SpeedSweepParameters, configuration: BenchConfiguration)
 
 
 def _refuse_levels(parameters: SpeedSweepParameters, configuration: BenchConfiguration) -> None:
-    limit_a, rig = configuration.limits.current_a, configuration.rig
+    limit_a = configuration.limits.current_a
     for current_a in parameters.currents_a:
         if current_a > limit_a:
             raise LimitError(
                 quantity_message("a current of currents_a", current_a, f"at most limits.current_a, {limit_a:g}", "A")
             )
-    if rig.supply.voltage_v is None or rig.motor.resistance_ohm is None:
-        return
-    limit = limit_a * rig.motor.resistance_ohm / rig.supply.voltage_v
     for duty in parameters.duties:
-        if duty > limit:
-            allowed = f"at most {limit:.4g}, which is limits.current_a, {limit_a:g} A, while the joint stands"
-            raise LimitError(quantity_message("a duty of duties", duty, allowed, ""))
+        refuse_duty("a duty of duties", duty, configuration)
 
 
 def _duration_s(parameters: SpeedSweepParameters, _configuration: BenchConfiguration) -> float:
@@ -202,4 +198,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=lambda parameters: frozenset({Mode.DUTY}) if parameters.duties else frozenset(),
 )

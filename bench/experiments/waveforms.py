@@ -65,7 +65,7 @@ def sampled(name: str, duration_s: float, period_s: float, amplitude_rad: float,
         Position [rad] and speed [rad/s], shape (cycles, 2); within the amplitude and the peak speed.
     """
     time_s: FloatArray = np.arange(1, round(duration_s / period_s) + 1, dtype=np.float64) * period_s
-    position_rad = WAVEFORMS[name](time_s, amplitude_rad, speed_rad_s) * _fade(time_s, duration_s)
+    position_rad = WAVEFORMS[name](time_s, amplitude_rad, speed_rad_s) * fade(time_s, duration_s)
     velocity_rad_s = np.gradient(position_rad, period_s)
     # the fade and the sum of waves may exceed either bound: scale down, never up
     excess = max(
@@ -74,7 +74,7 @@ def sampled(name: str, duration_s: float, period_s: float, amplitude_rad: float,
     return np.column_stack([position_rad, velocity_rad_s]) / excess
 
 
-def _fade(time_s: FloatArray, duration_s: float) -> FloatArray:
-    """From 0 to 1 in the first half second, and back in the last."""
+def fade(time_s: FloatArray, duration_s: float) -> FloatArray:
+    """Envelope: from 0 to 1 in the first half second, and back in the last."""
     nearest_s = np.minimum(time_s, duration_s - time_s)
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.clip(nearest_s / FADE_S, 0.0, 1.0)))

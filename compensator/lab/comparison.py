@@ -8,6 +8,7 @@ import numpy as np
 
 from compensator.lab.dataset import Dataset, IntArray
 from compensator.lab.drivers import available
+from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.fit import Fit
 from compensator.lab.picture import BinnedMean, binned_mean
 from compensator.lab.recording import Condition
@@ -85,8 +86,8 @@ def compare(fit: Fit) -> Comparison:
 def repeatability_floor(fit: Fit) -> ErrorOf | None:
     """Scatter of the residual between trials that repeat each other: no model of the motion can explain it.
 
-    Repeats share kind and every condition but `repeat`, and run the same target; at equal times half the power of
-    the difference of their residuals is what one trial alone scatters.
+    Repeats share kind and every condition but `repeat` and their time, and run the same target; at equal times half
+    the power of the difference of their residuals is what one trial alone scatters.
     """
     dataset = fit.dataset
     differences, efforts = [], []
@@ -115,7 +116,7 @@ def _repeats(dataset: Dataset) -> list[tuple[int, int]]:
         if "repeat" not in recording.conditions:
             continue
         conditions: Sequence[tuple[str, Condition]] = sorted(
-            (key, value) for key, value in recording.conditions.items() if key not in ("repeat", "rows")
+            (key, value) for key, value in recording.conditions.items() if key not in ("repeat", "rows", SESSION_START)
         )
         groups.setdefault((recording.kind, *conditions), []).append(index)
     return [pair for members in groups.values() for pair in combinations(members, 2)]

@@ -16,6 +16,7 @@ from bench.rig import Arm, Gear, Motor, Rig
 from tests.bench.bench_run import Ran
 
 CONFIGURATION = default_configuration()
+NEEDED = {"waveform": {"csv": "t_s,position_rad\n0,0\n1,0\n"}}  # what has no default
 
 
 def _method(name):
@@ -218,7 +219,7 @@ def test_a_servo_that_may_ask_for_more_than_the_limit_is_refused(name):
     kind = find_kind(name)
     limits = CONFIGURATION.limits.model_copy(update={"current_a": 1.0})
     with pytest.raises(LimitError, match=r"servo.current_a is 1.6 A; allowed is at most limits.current_a, 1 A"):
-        kind.refuse(parse_parameters(kind, {}), CONFIGURATION.model_copy(update={"limits": limits}))
+        kind.refuse(parse_parameters(kind, NEEDED.get(name, {})), CONFIGURATION.model_copy(update={"limits": limits}))
 
 
 MALFORMED = [

@@ -129,3 +129,19 @@ def test_a_run_whose_record_cannot_be_closed_says_why_all_the_same(command, monk
     result = command("run", "steps", "--repeats", "1")
     assert result.exit_code == 1
     assert "experiment 1: failed: the record could not be closed: the disk is full" in result.output
+
+
+def test_a_waveform_is_a_file_on_the_command_line(command, tmp_path):
+    file = tmp_path / "swing.csv"
+    file.write_text("t_s,current_a\n0,0\n0.5,0.15\n1,0\n", encoding="utf-8")
+    ran = command("run", "waveform", "--csv", file, "--json")
+    assert ran.exit_code == 0, ran.output
+    assert json.loads(ran.stdout)["parameters"]["source"] == "swing.csv"
+    file.write_text("t_s,current_a\n0,0\n0.5,much\n", encoding="utf-8")
+    wrong = command("run", "waveform", "--csv", file)
+    assert wrong.exit_code == 3
+    assert "swing.csv, line 3, column current_a: found 'much'" in " ".join(wrong.output.split())
+    missing = command("run", "waveform", "--csv", tmp_path / "none.csv")
+    assert missing.exit_code == 3
+    assert "cannot be read" in missing.output
+    assert "FILE" in command("run", "waveform", "--help").output

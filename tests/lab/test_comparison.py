@@ -127,3 +127,14 @@ def test_a_constant_driver_is_one_bin():
     bins = binned_mean(np.ones(50), np.arange(50.0), np.arange(50))
     assert bins.mean == pytest.approx([24.5])
     assert len(binned_mean(np.ones(3), np.arange(3.0), np.arange(3)).x) == 0
+
+
+def test_repeats_at_other_times_of_the_session_are_repeats():
+    made = recordings(
+        trials=plans(loads_kg=(0.0, 0.2), repeats=2, temperatures_c=(25.0,)), bench=Bench(noise_memory=0.0), seed=6
+    )
+    plain = repeatability_floor(fit_model(make_dataset(made, FACTS, Processing(8.0)), DEFAULT))
+    for number, recording in enumerate(made):
+        recording.conditions["session_s"] = 20.0 * number
+    timed = repeatability_floor(fit_model(make_dataset(made, FACTS, Processing(8.0)), DEFAULT))
+    assert timed.rms == plain.rms

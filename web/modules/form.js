@@ -62,6 +62,7 @@ function resolve(property, schema) {
 function control(kind, id) {
   if (kind.enum) return h("select", { id }, kind.enum.map((value) => h("option", { value, selected: value === kind.default }, String(value))));
   if (kind.type === "boolean") return h("input", { id, type: "checkbox", checked: kind.default === true });
+  if (kind.file) return h("textarea", { id, rows: 6, spellcheck: false, placeholder: "t_s,position_rad\n0,0\n..." });
   const value = kind.default === null || kind.default === undefined ? "" : [kind.default].flat().map((one) => number(one, 12)).join(", ");
   return h("input", { id, type: "text", inputMode: numeric(kind) ? "decimal" : "text", value, autocomplete: "off", placeholder: kind.optional ? "not set" : "" });
 }
