@@ -4,6 +4,7 @@ import queue
 import threading
 import time
 from contextlib import suppress
+from struct import Struct
 from typing import Protocol
 
 import numpy as np
@@ -12,17 +13,54 @@ from numpy.typing import NDArray
 from bench.errors import RecordingError
 
 Row = tuple[float, ...]
+Rows = NDArray[np.float64]
 Event = tuple[float, str, str]
 
 
 class Sink(Protocol):
     """Where rows and events go. Called from one thread, in order; every call returns when its data are committed."""
 
-    def append(self, rows: NDArray[np.float64]) -> None:
+    def append(self, rows: Rows) -> None:
         """Commit rows of shape (n, number of channels)."""
 
     def event(self, time_s: float, name: str, detail: str) -> None:
         """Commit one event."""
+
+
+class RowBuffer:
+    """Rows of one length, packed as they come: half the work of an array made of tuples later.
+
+    Args:
+        rows: how many to make room for at a time.
+    """
+
+    def __init__(self, rows: int) -> None:
+        self._more = rows
+        self._room = self._filled = 0
+        self._row = Struct("")
+        self._memory = bytearray()
+
+    def append(self, row: Row) -> int:
+        """Take one row; return how many there are."""
+        if self._filled == self._room:
+            self._make_room(len(row))
+        self._row.pack_into(self._memory, self._filled * self._row.size, *row)
+        self._filled += 1
+        return self._filled
+
+    def rows(self) -> Rows:
+        """A copy of all rows, shape (n, values in a row)."""
+        width = self._row.size // 8
+        return np.frombuffer(self._memory, count=self._filled * width).reshape(self._filled, width).copy()
+
+    def clear(self) -> None:
+        """Forget the rows."""
+        self._filled = 0
+
+    def _make_room(self, width: int) -> None:
+        self._row = Struct(f"={width}d")
+        self._room += self._more
+        self._memory.extend(bytes(self._more * self._row.size))
 
 
 class Recorder:
@@ -43,10 +81,10 @@ class Recorder:
         self.error: BaseException | None = None
         self._sink = sink
         self._patience_s = patience_s
-        self._rows: list[Row] = []
+        self._rows = RowBuffer(self.BLOCK_ROWS)
         self._handed_s = time.monotonic()
         self._ending = False
-        self._queue: queue.Queue[list[Row] | Event | None] = queue.Queue(self.BACKLOG)
+        self._queue: queue.Queue[Rows | Event | None] = queue.Queue(self.BACKLOG)
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
 
@@ -56,9 +94,7 @@ class Recorder:
         Raises:
             RecordingError: the sink failed or cannot keep up.
         """
-        rows = self._rows
-        rows.append(row)
-        if len(rows) >= self.BLOCK_ROWS or time.monotonic() - self._handed_s > self.BLOCK_S:
+        if self._rows.append(row) >= self.BLOCK_ROWS or time.monotonic() - self._handed_s > self.BLOCK_S:
             self._hand_over()
 
     def event(self, time_s: float, name: str, detail: str) -> None:
@@ -89,11 +125,12 @@ class Recorder:
     def _hand_over(self) -> None:
         self._check()
         self._handed_s = time.monotonic()
-        if self._rows:
-            self._put(self._rows)
-            self._rows = []
+        rows = self._rows.rows()
+        if len(rows):
+            self._put(rows)
+            self._rows.clear()
 
-    def _put(self, item: list[Row] | Event) -> None:
+    def _put(self, item: Rows | Event) -> None:
         try:
             if self._patience_s > 0.0:
                 self._queue.put(item, timeout=self._patience_s)
@@ -119,6 +156,6 @@ class Recorder:
                 if isinstance(item, tuple):
                     self._sink.event(*item)
                 else:
-                    self._sink.append(np.array(item, dtype=np.float64))
+                    self._sink.append(item)
             except BaseException as error:  # whatever it is, the loop has to hear of it
                 self.error = error

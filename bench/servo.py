@@ -57,10 +57,10 @@ class PositionServo:
             + settings.proportional_a_rad * error_rad
             + settings.derivative_a_s_rad * (target_velocity_rad_s - velocity_rad_s)
         )
-        clipped_a = min(max(wanted_a, -limit_a), limit_a)
+        clipped_a = _within(wanted_a, limit_a)
         # anti-windup: while the output is clipped, the integral may only come back
         if clipped_a == wanted_a or (wanted_a - clipped_a) * error_rad < 0.0:
-            self._integral_a = min(max(integral_a, -limit_a), limit_a)
+            self._integral_a = _within(integral_a, limit_a)
         return clipped_a
 
 
@@ -100,8 +100,9 @@ class CurrentServo:
         )
 
     def _supply_v(self, sample: Sample) -> float:
-        if not isnan(sample.supply_v):
-            return sample.supply_v
+        measured_v = sample.supply_v
+        if measured_v == measured_v:  # not NaN
+            return measured_v
         if self._nominal_supply_v is None:
             raise ConfigurationError("the drive does not measure its supply: add supply.voltage_v [V] to the rig")
         return self._nominal_supply_v
@@ -117,8 +118,14 @@ class CurrentServo:
         supply_v = self._supply_v(sample)
         if supply_v <= 0.0:
             return 0.0  # no duty gives any current; what is wrong with the supply is the drive's to say
-        wanted = motor.duty(self._warm_motor(sample), current_a, velocity_rad_s * self._ratio, supply_v)
-        return min(max(wanted, -1.0), 1.0)
+        return _within(motor.duty(self._warm_motor(sample), current_a, velocity_rad_s * self._ratio, supply_v), 1.0)
+
+
+def _within(value: float, limit: float) -> float:
+    """A value clipped to -limit .. limit."""
+    if value > limit:
+        return limit
+    return -limit if value < -limit else value
 
 
 def current_servo(rig: Rig) -> CurrentServo | None:

@@ -11,7 +11,7 @@ back-EMF share: d_friction = (R I_friction + Ke w) / Vs. With that, (5) and (7) 
 Every function takes floats or arrays of one shape. `speed_rad_s` is that of the motor shaft.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -59,8 +59,7 @@ def at_temperature(
         ModelParameterError: so far from the reference that the law leaves no resistance.
     """
     warmer_k = measured_c - reference_c
-    return replace(
-        motor,
+    return MotorConstants(
         resistance_ohm=motor.resistance_ohm * (1.0 + copper_per_k * warmer_k),
         back_emf_v_s_rad=motor.back_emf_v_s_rad * (1.0 - magnet_per_k * warmer_k),
     )

@@ -19,7 +19,7 @@ command, or None while the position servo has the joint.
 from dataclasses import dataclass
 from enum import Enum
 from math import isnan, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from compensator.breakaway_fit import Breakaway
 from compensator.errors import ModelParameterError
@@ -94,23 +94,13 @@ class RestSearchSettings:
             raise ModelParameterError("period_s, ceiling_a and margin_a must be above 0, margin_share 0 or more")
 
 
-class RestSearchState(NamedTuple):
-    """Everything the search remembers between cycles."""
+class Progress(NamedTuple):
+    """How far the search has come: what changes a few times in a search."""
 
     set_point_rad: float
     phase: Phase = Phase.SETTLE_BEFORE
-    phase_cycles: int = 0
-    cycles: int = 0  # since the search began
-    still_cycles: int = 0  # since the sensor last moved
-    still_rad: float = nan  # where it has stood since
-    last_rad: float = nan
-    travel_rad: float = 0.0  # all motion, either way
     sweep: int = 0  # ramps begun and ended: even ones up, odd ones down
     inside_a: float = nan  # a current under which the joint stood: the servo's
-    command_a: float = nan
-    anchor_rad: float = nan  # where the sensor stood as the ramp began
-    held_a: float = nan  # current of the last cycle in which it stood there
-    held_cycles: int = 0  # since then
     ends_a: tuple[float, float] = (nan, nan)  # last breakaway down, up
     widen: float = 1.0  # of the margin
     retries: int = 0
@@ -118,14 +108,32 @@ class RestSearchState(NamedTuple):
     reason: Reason | None = None
 
     @property
-    def finished(self) -> bool:
-        """True when the search ended, with or without an estimate."""
-        return self.phase in (Phase.DONE, Phase.FAILED)
-
-    @property
     def sign(self) -> float:
         """Direction of the present ramp."""
         return 1.0 if self.sweep % 2 == 0 else -1.0
+
+
+class RestSearchState(NamedTuple):
+    """Everything the search remembers between cycles; apart from `progress`, what changes with every cycle."""
+
+    progress: Progress
+    phase_cycles: int = 0
+    still_cycles: int = 0  # since the sensor last moved
+    still_rad: float = nan  # where it has stood since
+    command_a: float = nan
+    anchor_rad: float = nan  # where the sensor stood as the ramp began
+    held_a: float = nan  # current of the last cycle in which it stood there
+    held_cycles: int = 0  # since then
+
+    @property
+    def phase(self) -> Phase:
+        """Where the search is."""
+        return self.progress.phase
+
+    @property
+    def finished(self) -> bool:
+        """True when the search ended, with or without an estimate."""
+        return self.progress.phase in (Phase.DONE, Phase.FAILED)
 
 
 Step = tuple[RestSearchState, float | None]
@@ -133,7 +141,7 @@ Step = tuple[RestSearchState, float | None]
 
 def begin(set_point_rad: float) -> RestSearchState:
     """A search round a set point; the position servo has the joint."""
-    return RestSearchState(set_point_rad)
+    return RestSearchState(Progress(set_point_rad))
 
 
 def advance(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading) -> Step:
@@ -144,81 +152,81 @@ def advance(settings: RestSearchSettings, state: RestSearchState, reading: Searc
     """
     if state.finished:
         return state, None
-    if isnan(reading.position_rad) or isnan(reading.current_a):
+    progress, position_rad = state.progress, reading.position_rad
+    if isnan(position_rad) or isnan(reading.current_a):
         return _fail(state, Reason.LOST_SAMPLE)
-    state = _track(settings, state, reading)
-    if state.phase in (Phase.SETTLE_BEFORE, Phase.SETTLE_AFTER):
+    state = _track(settings, state, position_rad)
+    phase = progress.phase
+    if phase is Phase.SETTLE_BEFORE or phase is Phase.SETTLE_AFTER:
         return _settle(settings, state, reading)
-    if abs(reading.position_rad - state.set_point_rad) > settings.excursion_rad:
+    if abs(position_rad - progress.set_point_rad) > settings.excursion_rad:
         return _fail(state, Reason.EXCURSION)
-    if state.phase is Phase.STOP:
-        return _stop(settings, state)
-    return _stand(settings, state, reading) if state.phase is Phase.STAND else _ramp(settings, state, reading)
+    if phase is Phase.STOP:
+        return _stop(settings, state, reading)
+    return _stand(settings, state, reading) if phase is Phase.STAND else _ramp(settings, state, reading)
 
 
 def _fail(state: RestSearchState, reason: Reason) -> Step:
-    return state._replace(phase=Phase.FAILED, reason=reason), None
+    return _go_on(state, phase=Phase.FAILED, reason=reason), None
 
 
-def _track(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading) -> RestSearchState:
-    position_rad = reading.position_rad
-    moved_rad = 0.0 if isnan(state.last_rad) else abs(position_rad - state.last_rad)
-    state = state._replace(
-        cycles=state.cycles + 1,
-        phase_cycles=state.phase_cycles + 1,
-        last_rad=position_rad,
-        travel_rad=state.travel_rad + moved_rad,
+def _go_on(state: RestSearchState, **changes: Any) -> RestSearchState:
+    """The state with something of its progress changed, in the first cycle of a phase."""
+    return state._replace(progress=state.progress._replace(**changes), phase_cycles=0, still_cycles=0)
+
+
+def _track(settings: RestSearchSettings, state: RestSearchState, position_rad: float) -> RestSearchState:
+    progress, phase_cycles, still_cycles, still_rad, command_a, anchor_rad, held_a, held_cycles = state
+    if abs(position_rad - still_rad) <= settings.still_rad:
+        still_cycles += 1
+    else:
+        still_cycles, still_rad = 0, position_rad
+    return RestSearchState(
+        progress, phase_cycles + 1, still_cycles, still_rad, command_a, anchor_rad, held_a, held_cycles
     )
-    if abs(position_rad - state.still_rad) <= settings.still_rad:
-        return state._replace(still_cycles=state.still_cycles + 1)
-    return state._replace(still_cycles=0, still_rad=position_rad)
 
 
 def _settle(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading) -> Step:
-    in_dead_band = abs(reading.position_rad - state.set_point_rad) <= settings.dead_band_rad
+    progress = state.progress
+    in_dead_band = abs(reading.position_rad - progress.set_point_rad) <= settings.dead_band_rad
     if in_dead_band and state.still_cycles > settings.settled_cycles:
-        if state.phase is Phase.SETTLE_AFTER:
-            return state._replace(phase=Phase.DONE), None
-        state = state._replace(inside_a=reading.command_a, command_a=reading.command_a)
-        return _begin_stand(settings, state)
+        if progress.phase is Phase.SETTLE_AFTER:
+            return _go_on(state, phase=Phase.DONE), None
+        return _begin_stand(settings, state, reading, inside_a=reading.command_a)
     if state.phase_cycles > settings.settle_timeout_cycles:
         return _fail(state, Reason.NOT_SETTLED)
     return state, None
 
 
-def _begin_stand(settings: RestSearchSettings, state: RestSearchState) -> Step:
+def _begin_stand(
+    settings: RestSearchSettings, state: RestSearchState, reading: SearchReading, **changes: Any
+) -> Step:  # fmt: skip
     """Jump to where the ramp begins. From a motion that is still under way, this stops it."""
-    state = state._replace(
-        phase=Phase.STAND,
-        phase_cycles=0,
-        still_cycles=0,
-        anchor_rad=state.last_rad,
-        command_a=_start_a(settings, state),
-    )
-    return state, state.command_a
+    state = _go_on(state, phase=Phase.STAND, **changes)
+    command_a = _start_a(settings, state.progress)
+    return state._replace(anchor_rad=reading.position_rad, command_a=command_a), command_a
 
 
-def _start_a(settings: RestSearchSettings, state: RestSearchState) -> float:
-    low_a, high_a = state.ends_a
-    if state.sweep < COARSE_SWEEPS:
-        return state.inside_a
+def _start_a(settings: RestSearchSettings, progress: Progress) -> float:
+    low_a, high_a = progress.ends_a
+    if progress.sweep < COARSE_SWEEPS:
+        return progress.inside_a
     # what the fast ramp found lies too far out, by what it gained before motion was seen
-    share = settings.coarse_share if state.sweep < 2 * COARSE_SWEEPS else settings.margin_share
-    margin_a = max(state.widen * share * (high_a - low_a), settings.margin_a)
+    share = settings.coarse_share if progress.sweep < 2 * COARSE_SWEEPS else settings.margin_share
+    margin_a = max(progress.widen * share * (high_a - low_a), settings.margin_a)
     middle_a = (low_a + high_a) / 2.0
-    return max(high_a - margin_a, middle_a) if state.sign > 0.0 else min(low_a + margin_a, middle_a)
+    return max(high_a - margin_a, middle_a) if progress.sign > 0.0 else min(low_a + margin_a, middle_a)
 
 
 def _stand(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading) -> Step:
+    position_rad, sign = reading.position_rad, state.progress.sign
     if state.still_cycles >= settings.stand_cycles:
-        state = state._replace(
-            phase=Phase.RAMP, phase_cycles=0, anchor_rad=reading.position_rad, held_a=reading.current_a, held_cycles=0
-        )
-        return state, state.command_a
+        state = _go_on(state, phase=Phase.RAMP)
+        return state._replace(anchor_rad=position_rad, held_a=reading.current_a, held_cycles=0), state.command_a
     # it may still come from the other way; once it goes this way, the jump was too far
-    behind_rad = min(state.sign * state.anchor_rad, state.sign * reading.position_rad)
-    state = state._replace(anchor_rad=state.sign * behind_rad)
-    left = state.sign * reading.position_rad - behind_rad >= settings.threshold_rad
+    behind_rad = min(sign * state.anchor_rad, sign * position_rad)
+    state = state._replace(anchor_rad=sign * behind_rad)
+    left = sign * position_rad - behind_rad >= settings.threshold_rad
     if left or state.phase_cycles > settings.stand_timeout_cycles:
         return _retry(settings, state)
     return state, state.command_a
@@ -226,59 +234,61 @@ def _stand(settings: RestSearchSettings, state: RestSearchState, reading: Search
 
 def _retry(settings: RestSearchSettings, state: RestSearchState) -> Step:
     """The joint did not stand: the ramp would have begun too late, or the servo's own current moves the joint."""
-    if state.retries >= settings.retries:
+    progress = state.progress
+    if progress.retries >= settings.retries:
         return _fail(state, Reason.MOVED_EARLY)
-    state = state._replace(retries=state.retries + 1, phase_cycles=0, still_cycles=0)
-    if state.sweep < COARSE_SWEEPS:
-        return state._replace(phase=Phase.SETTLE_BEFORE, sweep=0), None
+    retries = progress.retries + 1
+    if progress.sweep < COARSE_SWEEPS:
+        return _go_on(state, phase=Phase.SETTLE_BEFORE, sweep=0, retries=retries), None
     # from the middle of the band friction stops it, whatever it is while sliding
-    state = state._replace(phase=Phase.STOP, widen=2.0 * state.widen, command_a=sum(state.ends_a) / 2.0)
-    return state, state.command_a
+    command_a = sum(progress.ends_a) / 2.0
+    state = _go_on(state, phase=Phase.STOP, widen=2.0 * progress.widen, retries=retries)
+    return state._replace(command_a=command_a), command_a
 
 
-def _stop(settings: RestSearchSettings, state: RestSearchState) -> Step:
+def _stop(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading) -> Step:
     if state.still_cycles >= settings.stand_cycles:
-        return _begin_stand(settings, state)
+        return _begin_stand(settings, state, reading)
     if state.phase_cycles > settings.stand_timeout_cycles:
         return _fail(state, Reason.MOVED_EARLY)
     return state, state.command_a
 
 
 def _ramp(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading) -> Step:
-    travel_rad = state.sign * (reading.position_rad - state.anchor_rad)
-    rate_a_s = _rate_a_s(settings, state)
-    if abs(travel_rad) <= settings.still_rad:
-        state = state._replace(held_a=reading.current_a, held_cycles=0)
-    else:
-        state = state._replace(held_cycles=state.held_cycles + 1)
+    progress, sign = state.progress, state.progress.sign
+    travel_rad = sign * (reading.position_rad - state.anchor_rad)
+    rate_a_s = _rate_a_s(settings, progress.sweep)
+    stands = abs(travel_rad) <= settings.still_rad
+    held_a, held_cycles = (reading.current_a, 0) if stands else (state.held_a, state.held_cycles + 1)
     if travel_rad >= settings.threshold_rad:
-        return _let_go(settings, state, rate_a_s)
+        # by the command's growth since it stood: eq. (3) is for steady speed
+        return _let_go(settings, state, reading, held_a + sign * rate_a_s * settings.period_s * held_cycles)
     if travel_rad <= -settings.threshold_rad:
-        return _retry(settings, state) if state.sweep >= COARSE_SWEEPS else _fail(state, Reason.WRONG_WAY)
-    command_a = state.command_a + state.sign * rate_a_s * settings.period_s
+        return _retry(settings, state) if progress.sweep >= COARSE_SWEEPS else _fail(state, Reason.WRONG_WAY)
+    command_a = state.command_a + sign * rate_a_s * settings.period_s
     if abs(command_a) > settings.ceiling_a:
         return _fail(state, Reason.CEILING)
-    return state._replace(command_a=command_a), command_a
+    return state._replace(command_a=command_a, held_a=held_a, held_cycles=held_cycles), command_a
 
 
-def _rate_a_s(settings: RestSearchSettings, state: RestSearchState) -> float:
-    if state.sweep < COARSE_SWEEPS:
+def _rate_a_s(settings: RestSearchSettings, sweep: int) -> float:
+    if sweep < COARSE_SWEEPS:
         return settings.coarse_a_s
-    pair = (state.sweep - COARSE_SWEEPS) // 2
+    pair = (sweep - COARSE_SWEEPS) // 2
     return settings.fine_a_s[pair % len(settings.fine_a_s)]
 
 
-def _let_go(settings: RestSearchSettings, state: RestSearchState, rate_a_s: float) -> Step:
+def _let_go(settings: RestSearchSettings, state: RestSearchState, reading: SearchReading, current_a: float) -> Step:
     """The joint moves: note the current, and go for the other end of the band."""
-    # by the command's growth since it stood: eq. (3) is for steady speed
-    current_a = state.held_a + state.sign * rate_a_s * settings.period_s * state.held_cycles
-    low_a, high_a = state.ends_a
-    ends_a = (low_a, current_a) if state.sign > 0.0 else (current_a, high_a)
-    fine = state.sweep >= COARSE_SWEEPS
-    breakaways = (*state.breakaways, Breakaway(state.sign, current_a, rate_a_s)) if fine else state.breakaways
-    state = state._replace(ends_a=ends_a, breakaways=breakaways, sweep=state.sweep + 1)
+    progress = state.progress
+    sign, sweep, (low_a, high_a) = progress.sign, progress.sweep, progress.ends_a
+    ends_a = (low_a, current_a) if sign > 0.0 else (current_a, high_a)
+    breakaways = progress.breakaways
+    if sweep >= COARSE_SWEEPS:
+        breakaways = (*breakaways, Breakaway(sign, current_a, _rate_a_s(settings, sweep)))
+    state = state._replace(progress=progress._replace(ends_a=ends_a, breakaways=breakaways, sweep=sweep + 1))
     if ends_a[1] <= ends_a[0]:
         return _fail(state, Reason.NO_BAND)
     if len(breakaways) >= 2 * settings.pairs:
-        return state._replace(phase=Phase.SETTLE_AFTER, phase_cycles=0, still_cycles=0), None
-    return _begin_stand(settings, state)
+        return _go_on(state, phase=Phase.SETTLE_AFTER), None
+    return _begin_stand(settings, state, reading)

@@ -47,12 +47,12 @@ class SimulatedDrive:
         self._open = False
         self._fault = ""
         self._switch(Status.DISABLED)
-        self._steps = 0
+        self._steps, self._period_s = 0, 0.0
         self._silent_cycles = 0
         self._script = FaultScript(faults)
         self._play = FaultPlay(self._script, self.plant)
         self._duty_counts = parameters.supply.duty_counts
-        self._overload = OverloadMeter(parameters.overload)
+        self._overload = OverloadMeter(parameters.overload) if parameters.overload.present else None
         self._modes = {Mode.DUTY, Mode.CURRENT} if parameters.current_loop.present else {Mode.DUTY}
 
     # the contract --------------------------------------------------------------------------------
@@ -76,6 +76,7 @@ class SimulatedDrive:
         # the longest step that divides the period
         self._steps = ceil(period_s / COARSEST_STEP_S - 1e-9)
         self.plant.use_step(period_s / self._steps)
+        self._period_s = self._steps * self.plant.step_s
         self._open = True
         self._switch(Status.DISABLED)
 
@@ -138,7 +139,7 @@ class SimulatedDrive:
             DriveConnectionError: the script loses this cycle's command and sample; time has passed all the same.
         """
         mode, value, _ = command
-        if self._script:
+        if self._script.faults:
             self._lose_sample()
         self._silent_cycles = 0
         if mode is Mode.OFF:
@@ -183,25 +184,25 @@ class SimulatedDrive:
             duration_s: simulated time [s], in whole periods.
         """
         self._require_open("idle")
-        for _ in range(round(duration_s / (self._steps * self.plant.step_s))):
+        for _ in range(round(duration_s / self._period_s)):
             self._pass_period()
 
     # the inside ---------------------------------------------------------------------------------------
 
     def _advance(self, stage: int, demand: float, duty: float) -> Sample:
         self._held = stage, demand
-        if self._script and self._meet_faults():
+        plant, faulty = self.plant, self._script.faults
+        if faulty and self._meet_faults():
             stage, demand, duty = OPEN, 0.0, 0.0
-        position_rad, velocity_rad_s, current_a, temperature_c, supply_v = self.plant.advance(
+        position_rad, velocity_rad_s, current_a, temperature_c, supply_v = plant.advance(
             stage, demand, self._steps
         ).tolist()
-        if self._overload.overloads(current_a, self._steps * self.plant.step_s):
+        if self._overload is not None and self._overload.overloads(current_a, self._period_s):
             self._trip(f"I2t overload, {current_a:.3g} A")
         sample = Sample(
-            self.plant.time_s, 0.0, position_rad, velocity_rad_s, duty, current_a,
-            supply_v, temperature_c, self._status,
-        )  # fmt: skip
-        return self._play.falsify(sample) if self._script else sample
+            plant.time_s, 0.0, position_rad, velocity_rad_s, duty, current_a, supply_v, temperature_c, self._status
+        )
+        return self._play.falsify(sample) if faulty else sample
 
     def _meet_faults(self) -> bool:
         """Do what the script wants of plant and power stage now; tell whether the stage has gone off."""
@@ -229,11 +230,11 @@ class SimulatedDrive:
 
     def _pass_period(self) -> None:
         """Let a period pass under the last command, until the watchdog acts."""
-        silent_s = self._silent_cycles * self._steps * self.plant.step_s
+        silent_s = self._silent_cycles * self._period_s
         if self._status in (Status.ENABLED, Status.QUICK_STOP) and silent_s >= self._watchdog_s:
             self._trip(_WATCHDOG_FAULT)
         stage, demand = self._held
-        if self._script and self._meet_faults():
+        if self._script.faults and self._meet_faults():
             stage, demand = self._held
         self.plant.advance(stage, demand, self._steps)
         self._silent_cycles += 1

@@ -122,6 +122,9 @@ class FaultScript:
         faults: what goes wrong.
         wall: the wall clock [s]; for faults that go by it the script begins now.
 
+    Attributes:
+        faults: all of them, by their start.
+
     Raises:
         ParameterError: two of a kind overlap.
     """
@@ -129,7 +132,7 @@ class FaultScript:
     def __init__(self, faults: Iterable[Fault] = (), wall: Callable[[], float] = monotonic) -> None:
         self._wall = wall
         self._origin_s = wall()
-        self._faults: list[Fault] = []
+        self.faults: list[Fault] = []
         for fault in sorted(faults, key=lambda one: one.start_s):
             self.add(fault)
 
@@ -139,7 +142,7 @@ class FaultScript:
         Raises:
             ParameterError: another of the kind is there at a time when this one is.
         """
-        for other in self._faults:
+        for other in self.faults:
             first, second = sorted((other, fault), key=lambda one: one.start_s)
             alike = type(other) is type(fault) and other.by_the_wall == fault.by_the_wall
             if alike and first.holds(second.start_s):
@@ -147,19 +150,19 @@ class FaultScript:
                     f"{type(fault).__name__}.start_s = {second.start_s:g} [s]: the one of {first.start_s:g} s is "
                     f"not over before {first.start_s + first.duration_s:g} s; one of a kind at a time"
                 )
-        self._faults.append(fault)
-        self._faults.sort(key=lambda one: one.start_s)
+        self.faults.append(fault)
+        self.faults.sort(key=lambda one: one.start_s)
 
     def lift(self, time_s: float) -> None:
         """Put right whatever is wrong at a time; what is to come stays."""
-        self._faults = [fault for fault in self._faults if not fault.holds(self.time_of(fault, time_s))]
+        self.faults = [fault for fault in self.faults if not fault.holds(self.time_of(fault, time_s))]
 
     def __bool__(self) -> bool:
-        return bool(self._faults)
+        return bool(self.faults)
 
     def holding(self, kind: type[Kind], time_s: float) -> Kind | None:
         """Return the fault of a kind that is there at a time, or None."""
-        for fault in self._faults:
+        for fault in self.faults:
             if isinstance(fault, kind) and fault.holds(self.time_of(fault, time_s)):
                 return fault
         return None

@@ -10,7 +10,7 @@ from sim_backend.clutch import Clutch
 from sim_backend.constants import constants_of
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import Load
-from sim_backend.kernel import advance, stored_energy
+from sim_backend.kernel import Whole, advance, stored_energy
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
 from sim_backend.state import at_rest
@@ -68,10 +68,13 @@ class Plant:
 
     def __init__(self, parameters: PlantParameters, seed: int = 0, step_s: float = COARSEST_STEP_S) -> None:
         self.parameters = parameters
-        self._packed, self._derived = pack(parameters), pack(constants_of(parameters))
-        self._state = pack(at_rest(seed, parameters.heat.start_c))
+        self._whole = pack(Whole(parameters, constants_of(parameters), at_rest(seed, parameters.heat.start_c)))
+        self._state = self._whole["state"]  # a view of it
         self._state["supply_v"] = parameters.supply.voltage_v
         self._demand, self._measured = np.zeros(1), np.zeros((1, 5))
+        self._row: NDArray[np.float64] = self._measured[0]
+        # the record's own count of steps, at hand: reading a record from Python takes as long as a control cycle
+        self._origin_s, self._steps = 0.0, 0
         self.step_s = step_s
         self.use_step(step_s)
 
@@ -82,7 +85,8 @@ class Plant:
             ParameterError: the step is coarser than 0.1 ms, or too coarse for something stiff.
         """
         self._check_step(step_s)
-        self._state["origin_s"] = self.time_s
+        self._origin_s, self._steps = self.time_s, 0
+        self._state["origin_s"] = self._origin_s
         self._state["origin_steps"] = self._state["steps"]
         self.step_s = step_s
         self._window = max(round(self.parameters.encoder.speed_window_s / step_s), 1)
@@ -92,8 +96,7 @@ class Plant:
     @property
     def time_s(self) -> float:
         """Simulated time since the plant was made [s]."""
-        state = self._state[0]
-        return float(state["origin_s"]) + int(state["steps"] - state["origin_steps"]) * self.step_s
+        return self._origin_s + self._steps * self.step_s
 
     def advance(self, stage: int, demand: float, steps: int) -> NDArray[np.float64]:
         """Advance at a constant demand and measure.
@@ -108,9 +111,12 @@ class Plant:
             shape (5,), overwritten by the next call.
         """
         self._demand[0] = demand
-        self._follow(stage, self._demand, steps, self._measured)
-        measured: NDArray[np.float64] = self._measured[0]
-        return measured
+        advance(
+            self._whole, self._history, self._measured, stage, self._demand, steps,
+            self.step_s, self._window, self._delay,
+        )  # fmt: skip
+        self._steps += steps
+        return self._row
 
     def follow(self, stage: int, demands: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
         """Advance demand after demand, as many calls of `advance` would, without the interpreter's lock.
@@ -124,14 +130,12 @@ class Plant:
             what the drive measures after each demand, columns as of `advance`; shape (n, 5).
         """
         measured = np.zeros((len(demands), 5))
-        self._follow(stage, np.ascontiguousarray(demands, dtype=np.float64), steps, measured)
-        return measured
-
-    def _follow(self, stage: int, demands: NDArray[np.float64], steps: int, measured: NDArray[np.float64]) -> None:
         advance(
-            self._packed, self._derived, self._state, self._history, measured,
-            stage, demands, steps, self.step_s, self._window, self._delay,
+            self._whole, self._history, measured, stage, np.ascontiguousarray(demands, dtype=np.float64), steps,
+            self.step_s, self._window, self._delay,
         )  # fmt: skip
+        self._steps += steps * len(demands)
+        return measured
 
     def hang(self, load: Load) -> None:
         """Hang a load on the arm and put the arm at rest at angle 0, in the middle of the free play."""
@@ -148,7 +152,8 @@ class Plant:
 
     def _change(self, **components: Any) -> None:
         self.parameters = replace(self.parameters, **components)
-        self._packed, self._derived = pack(self.parameters), pack(constants_of(self.parameters))
+        self._whole["parameters"] = pack(self.parameters)
+        self._whole["constants"] = pack(constants_of(self.parameters))
 
     def place(self, rotor_rad: float, arm_rad: float, rotor_rad_s: float = 0.0, arm_rad_s: float = 0.0) -> None:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
@@ -175,7 +180,7 @@ class Plant:
         return Energy(
             float(state["supplied_j"]),
             float(sum(state[name] for name in lost)),
-            stored_energy(self._packed, self._derived, self._state),
+            stored_energy(self._whole),
         )
 
     def _check_step(self, step_s: float) -> None:

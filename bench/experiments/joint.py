@@ -48,6 +48,7 @@ class Joint:
         self._period_s = configuration.control.period_s
         self._dead_band_rad = configuration.servo.dead_band_rad
         self._servo = PositionServo(configuration.servo, self._period_s)
+        self._drive_closes = configuration.servo.closed_by == "drive"
         self._still_rad = STILL_COUNTS * resolution_rad(configuration)
         self._reading: Reading | None = None
         self._command_a = 0.0
@@ -72,13 +73,15 @@ class Joint:
         """Track one set point per cycle; the readings, one for each. The event is that of the first."""
         readings = []
         for target_rad, velocity_rad_s in set_points:
-            readings.append((yield from self._servo_cycle(target_rad, velocity_rad_s, event=event)))
+            reading = self._reading = yield self._towards(target_rad, velocity_rad_s, event=event)
+            readings.append(reading)
             event = None
         return readings
 
     def step(self, target_rad: float, velocity_rad_s: float, load_current_a: float) -> Part[Reading]:
         """One cycle towards a set point; the load current is recorded."""
-        return (yield from self._servo_cycle(target_rad, velocity_rad_s, load_current_a))
+        reading = self._reading = yield self._towards(target_rad, velocity_rad_s, load_current_a)
+        return reading
 
     def move(
         self, target_rad: float, speed_rad_s: float | None = None, acceleration_rad_s2: float | None = None
@@ -118,7 +121,7 @@ class Joint:
         """
         rest_rad, currents_a = nan, [0.0]
         for _ in range(ceil(self._motion.settle_timeout_s / self._period_s)):
-            reading = yield from self._servo_cycle(target_rad)
+            reading = self._reading = yield self._towards(target_rad)
             position_rad = reading.sample.position_rad
             in_place = abs(position_rad - target_rad) <= self._dead_band_rad
             if not in_place or not abs(position_rad - rest_rad) <= self._still_rad:
@@ -141,41 +144,40 @@ class Joint:
         while not search.finished:
             current_a = search.advance(SearchReading(reading.sample.position_rad, reading.current_a, self._command_a))
             last_rad = reading.sample.position_rad
-            event = None if search.phase == phase else ("search", search.phase)
+            event = None if search.phase is phase else ("search", search.phase)
             phase = search.phase
             if current_a is None:
-                reading = yield from self._servo_cycle(set_point_rad, event=event)
+                action = self._towards(set_point_rad, event=event)
             else:
                 self._command_a = current_a
-                reading = yield Action(Command(Mode.CURRENT, current_a), set_point_rad, event=event)
-                self._reading = reading
+                action = Action(Command(Mode.CURRENT, current_a), set_point_rad, nan, event)
+            reading = self._reading = yield action
             travel_rad += abs(reading.sample.position_rad - last_rad)
         return replace(search.found(), seconds=reading.time_s - start_s, travel_rad=travel_rad)
 
     def reflect(self, target_rad: float, load_current_a: float, cycles: int = 20) -> Part[None]:
         """Hold an angle, and record the compensated current that the master would be given."""
         for _ in range(cycles):
-            yield from self._servo_cycle(target_rad, load_current_a=load_current_a)
+            self._reading = yield self._towards(target_rad, load_current_a=load_current_a)
 
-    def _servo_cycle(
+    def _towards(
         self,
         target_rad: float,
         velocity_rad_s: float = 0.0,
         load_current_a: float = nan,
         event: tuple[str, str] | None = None,
-    ) -> Part[Reading]:
-        command = self._servo_command(self._last(), target_rad, velocity_rad_s)
-        self._reading = yield Action(command, target_rad, load_current_a, event)
-        return self._reading
-
-    def _servo_command(self, reading: Reading, target_rad: float, velocity_rad_s: float) -> Command:
-        if self._servo.settings.closed_by == "drive":
+    ) -> Action:
+        """The position servo's action for a set point, by the last reading."""
+        reading = self._last()
+        if self._drive_closes:
             self._command_a = reading.current_a  # what the drive's own servo makes flow
-            return Command(Mode.POSITION, target_rad)
-        self._command_a = self._servo.current_a(
-            target_rad, reading.sample.position_rad, reading.velocity_rad_s, velocity_rad_s
-        )
-        return Command(Mode.CURRENT, self._command_a)
+            command = Command(Mode.POSITION, target_rad)
+        else:
+            self._command_a = self._servo.current_a(
+                target_rad, reading.sample.position_rad, reading.velocity_rad_s, velocity_rad_s
+            )
+            command = Command(Mode.CURRENT, self._command_a)
+        return Action(command, target_rad, load_current_a, event)
 
     def _last(self) -> Reading:
         if self._reading is None:

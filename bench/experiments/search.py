@@ -33,15 +33,15 @@ class Found:
 
 
 class Search(Protocol):
-    """One search, cycle by cycle."""
+    """One search, cycle by cycle.
 
-    @property
-    def finished(self) -> bool:
-        """True when it ended, with or without an estimate."""
+    Attributes:
+        finished: True when it ended, with or without an estimate.
+        phase: where it is, in words.
+    """
 
-    @property
-    def phase(self) -> str:
-        """Where it is, in words."""
+    finished: bool
+    phase: str
 
     def advance(self, reading: SearchReading) -> float | None:
         """One control cycle: the current to command [A], or None while the position servo has the joint."""
@@ -62,20 +62,14 @@ class PaperSearch:
         self._settings = paper_settings(configuration)
         self._rate_a_s = configuration.search.current_step_a / configuration.search.step_s
         self._state = zero_speed_search.begin(set_point_rad)
-
-    @property
-    def finished(self) -> bool:
-        """True when it ended, with or without an estimate."""
-        return self._state.finished
-
-    @property
-    def phase(self) -> str:
-        """Where it is in Fig. 5."""
-        return self._state.phase.value
+        self.finished, self.phase = self._state.finished, self._state.phase.value
 
     def advance(self, reading: SearchReading) -> float | None:
         """One control cycle."""
-        self._state, current_a = zero_speed_search.advance(self._settings, self._state, reading)
+        before = self._state
+        self._state, current_a = zero_speed_search.advance(self._settings, before, reading)
+        if self._state.phase is not before.phase:
+            self.finished, self.phase = self._state.finished, self._state.phase.value
         return current_a
 
     def found(self) -> Found:
@@ -98,28 +92,22 @@ class ImprovedSearch:
     def __init__(self, configuration: BenchConfiguration, set_point_rad: float) -> None:
         self._settings = improved_settings(configuration)
         self._state = rest_search.begin(set_point_rad)
-
-    @property
-    def finished(self) -> bool:
-        """True when it ended, with or without an estimate."""
-        return self._state.finished
-
-    @property
-    def phase(self) -> str:
-        """Where it is."""
-        return self._state.phase.value
+        self.finished, self.phase = self._state.finished, self._state.phase.value
 
     def advance(self, reading: SearchReading) -> float | None:
         """One control cycle."""
-        self._state, current_a = rest_search.advance(self._settings, self._state, reading)
+        before = self._state
+        self._state, current_a = rest_search.advance(self._settings, before, reading)
+        if self._state.phase is not before.phase:
+            self.finished, self.phase = self._state.finished, self._state.phase.value
         return current_a
 
     def found(self) -> Found:
         """How it ended."""
-        state = self._state
-        if state.phase is not rest_search.Phase.DONE:
-            return Found(state.reason.value if state.reason else state.phase.value)
-        return Found("", state.breakaways)
+        progress = self._state.progress
+        if progress.phase is not rest_search.Phase.DONE:
+            return Found(progress.reason.value if progress.reason else progress.phase.value)
+        return Found("", progress.breakaways)
 
 
 def begin_search(configuration: BenchConfiguration, set_point_rad: float) -> Search:

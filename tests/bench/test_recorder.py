@@ -82,8 +82,8 @@ def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience
     release.set()
 
 
-def fill(recorder):
-    for row in range(100):
+def fill(recorder, rows=range(100)):
+    for row in rows:
         recorder.row((float(row),))
 
 
@@ -101,3 +101,31 @@ def test_a_full_backlog_is_worked_through_at_the_end(monkeypatch):
     fill(recorder)
     recorder.close()
     assert len(sink.blocks) == 100
+
+
+def test_a_block_that_the_backlog_has_no_room_for_waits_and_loses_nothing(monkeypatch):
+    monkeypatch.setattr(Recorder, "BACKLOG", 1)
+    monkeypatch.setattr(Recorder, "BLOCK_ROWS", 4)
+    monkeypatch.setattr(Recorder, "BLOCK_S", 1e6)
+    in_hand, release = threading.Event(), threading.Event()
+
+    class Slow(ListSink):
+        def append(self, rows):
+            in_hand.set()
+            assert release.wait(30.0)
+            super().append(rows)
+
+    sink = Slow()
+    recorder = Recorder(sink)
+    fill(recorder, range(4))
+    assert in_hand.wait(30.0)
+    fill(recorder, range(4, 11))
+    for late in range(11, 30):
+        with pytest.raises(RecordingError, match="does not keep up"):
+            fill(recorder, [late])
+    release.set()
+    deadline_s = time.monotonic() + 10.0
+    while len(sink.blocks) < 2 and time.monotonic() < deadline_s:  # then there is room again
+        time.sleep(0.001)
+    recorder.close()
+    np.testing.assert_array_equal(np.vstack(sink.blocks)[:, 0], np.arange(30.0))
