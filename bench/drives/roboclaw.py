@@ -29,3 +29,8 @@ class RoboclawDriveSettings(RealDriveSettings):
     current: Literal["signed", "magnitude"] = quantity(
         "signed", "", "'magnitude' where it reports the current without the sign of the torque"
     )
+    questions: Literal["in turn", "together"] = quantity(
+        "in turn",
+        "",
+        "'together': a cycle's duty and questions in one write; quicker, and tried when the drive is opened",
+    )

@@ -1,14 +1,11 @@
 """A CANopen drive with the CiA 402 profile, as the drive contract wants it."""
 
 from contextlib import suppress
-from time import perf_counter
-from typing import Final
 
-from drivers.canopen.bus_load import cycle_s
 from drivers.canopen.demand import Demand
 from drivers.canopen.description import describe
-from drivers.canopen.heartbeat import NmtState
 from drivers.canopen.link import CanLink
+from drivers.canopen.period import check_bus_load, check_period
 from drivers.canopen.power_stage import PowerStage
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
@@ -16,10 +13,9 @@ from drivers.canopen.state_machine import State, status_of, towards_standstill
 from drivers.canopen.sync_cycle import CycleCounts
 from drivers.contract import Command, Description, Mode, Sample, Status
 from drivers.demand import check_mode
-from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault, DriveStateError
+from drivers.errors import DriveError, DriveFault
 from drivers.joint import JointScale
-
-_WATCHDOG_PERIODS: Final = 2  # cycles that the watchdog has to outlast
+from drivers.refusal import not_enabled, not_open, switched_itself_off
 
 
 class CanopenDrive:
@@ -68,20 +64,14 @@ class CanopenDrive:
             WatchdogError: the watchdog cannot be set.
         """
         self.close()
-        watchdog_s = self._settings.watchdog_s
-        if not 0.0 < period_s * _WATCHDOG_PERIODS <= watchdog_s:
-            raise DriveConfigurationError(
-                self._device,
-                f"control period {period_s:g} s: more than 0 and at most {watchdog_s / _WATCHDOG_PERIODS:g} s (half "
-                "the watchdog) is wanted; change the period or watchdog_s",
-            )
+        check_period(self._settings, period_s)
         self._link = CanLink(self._settings.bus, self._device)
         try:
             self._link.open()
             self._session = Session(self._link, self._settings, self._joint, period_s)
             self._power = PowerStage(self._session)
-            self._check_bus_load(self._session, period_s)
-            self._forgive_lost_host()
+            check_bus_load(self._settings, self._session.data.sizes, period_s)
+            self._power.forgive_lost_host()
         except BaseException:
             self.close()
             raise
@@ -160,92 +150,38 @@ class CanopenDrive:
         if command.mode is Mode.OFF:
             return self._exchange_off()
         session, power = self._opened("exchange")
-        if command.mode is not self._mode or self._demand is None:
-            raise self._not_enabled(power, command.mode)
-        payload = self._demand.payload(command, power.statusword)
-        self._run(session, self._demand.pdo.cob_id, payload)
+        demand = self._check_enabled(session, power, command.mode)
+        session.run(demand.pdo.cob_id, demand.payload(command, power.statusword))
         if power.state is not State.ENABLED:
             raise self._switched_off(session, power)
-        return self._sample(session, power)
+        return session.sample(status_of(power.state))
 
     def _exchange_off(self) -> Sample:
         session, power = self._opened("exchange")
         self._mode = Mode.OFF
         word = towards_standstill(power.state) if self._stopping else 0
-        answered = self._run(session, session.data.torque.cob_id, session.data.nothing(word))
-        sample = self._sample(session, power)
+        answered = session.run(session.data.torque.cob_id, session.data.nothing(word))
+        sample = session.sample(status_of(power.state))
         if answered and sample.status is not Status.QUICK_STOP:
             self._stopping = self._stopping and power.state is State.ENABLED
             if session.watchdog.armed and sample.status is Status.DISABLED:
                 session.watchdog.disarm()
         return sample
 
-    def _run(self, session: Session, cob_id: int, payload: bytes) -> bool:
-        """One cycle, with all that has to be looked after in it."""
-        session.keep_alive()
-        answered = session.cycle.run(cob_id, payload)
-        now_s, monitor = perf_counter(), session.monitor
-        session.ask_slow(now_s)
-        if not answered:
-            self._check_silence(session)
-        silence_s = monitor.silence_s(now_s)
-        if monitor.restarted or silence_s > monitor.timeout_s:
-            what = "has restarted" if monitor.restarted else f"has sent no heartbeat for {silence_s:.3g} s"
-            raise DriveConnectionError(self._device, f"{what}; check supply and cable, then open it again")
-        return answered
-
-    def _check_silence(self, session: Session) -> None:
-        silence_s, allowed_s = session.cycle.silence_s, self._settings.answer_s
-        if silence_s <= allowed_s:
-            return
-        state = session.monitor.state
-        if state is not None and state is not NmtState.OPERATIONAL:
-            raise DriveFault(
-                self._device, f"has left OPERATIONAL, it is {state.name}: {session.fault_name()}; clear the fault"
-            )
-        raise DriveConnectionError(
-            self._device,
-            f"no answer to SYNC for {silence_s:.3g} s; at most {allowed_s:g} s is allowed. Check cable and supply, "
-            "then open it again",
-        )
-
-    def _sample(self, session: Session, power: PowerStage) -> Sample:
-        cycle = session.cycle
-        state, motion = cycle.values
-        return session.measurement.sample(
-            state, motion, session.poll.readings, status_of(power.state), cycle.sync_s, perf_counter(), cycle.number
-        )
-
     def _opened(self, call: str) -> tuple[Session, PowerStage]:
         if self._session is None or self._power is None:
-            raise DriveStateError(self._device, f"{call} before open; call open(period_s) first")
+            raise not_open(self._device, call)
         return self._session, self._power
 
-    def _not_enabled(self, power: PowerStage, mode: Mode) -> DriveError:
-        if status_of(power.state) is Status.FAULT and self._session is not None:
-            return self._switched_off(self._session, power)
-        return DriveStateError(
-            self._device, f"a {mode.value} command in state '{power.state.value}'; enable {mode.value} mode first"
-        )
+    def _check_enabled(self, session: Session, power: PowerStage, mode: Mode) -> Demand:
+        """The demand that goes on, where a mode is enabled."""
+        if mode is self._mode and self._demand is not None:
+            return self._demand
+        if status_of(power.state) is Status.FAULT:
+            raise self._switched_off(session, power)
+        raise not_enabled(self._device, mode, f"'{power.state.value}'")
 
     def _switched_off(self, session: Session, power: PowerStage) -> DriveFault:
         named = status_of(power.state) is Status.FAULT or session.emergency is not None
         why = session.fault_name() if named else "no error is reported. Check the enable input (safe torque off)"
-        return DriveFault(
-            self._device, f"switched itself off, state '{power.state.value}': {why}; then clear the fault"
-        )
-
-    def _check_bus_load(self, session: Session, period_s: float) -> None:
-        fastest_s = cycle_s(session.data.sizes, self._settings.bus.bitrate)
-        if period_s < fastest_s:
-            raise DriveConfigurationError(
-                self._device,
-                f"control period {period_s:g} s: the frames of a cycle take {fastest_s:.3g} s on this bus; "
-                "at least that is wanted; change the period or the bit rate",
-            )
-
-    def _forgive_lost_host(self) -> None:
-        """Clear the fault that says only that the last host went away: this one is here, and the power is off."""
-        session, power = self._opened("open")
-        if power.state is State.FAULT and session.lost_its_host():
-            power.clear_fault()
+        return switched_itself_off(self._device, f"state '{power.state.value}', {why}")

@@ -14,6 +14,9 @@ from drivers.errors import DriveConfigurationError, DriveConnectionError
 
 ANSWER_S: Final = 0.2  # longest wait for one answer
 _ATTEMPTS: Final = 2
+_BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (CiA 301, 7.2.4.3)
+_NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
+_NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
 _ABSENT: Final = (0x0602_0000, 0x0609_0011)  # no such object, no such subindex
 
 
@@ -44,7 +47,7 @@ class ObjectAccess:
 
     def take(self, data: bytes) -> None:
         """Receive an answer of the drive's SDO server."""
-        self._client.on_response(0, data, 0.0)  # type: ignore[no-untyped-call]
+        self._client.on_response(0, data, 0.0)
 
     def read(self, item: DriveObject) -> int:
         """Value of an object [counts].
@@ -108,7 +111,11 @@ class ObjectAccess:
 
 
 class _Client(SdoClient):
-    """canopen's client, which takes the answers in itself: there is no receiving thread."""
+    """canopen's client, which takes the answers in itself: there is no receiving thread.
+
+    An answer that begins a transfer names its object. One that names another belongs to a request that was given up,
+    by this host or by the one before it: it is let go.
+    """
 
     RESPONSE_TIMEOUT = ANSWER_S
     RETRY_DELAY = 0.0
@@ -117,13 +124,26 @@ class _Client(SdoClient):
         super().__init__(0x600 + node_id, 0x580 + node_id, canopen.ObjectDictionary())  # type: ignore[no-untyped-call]
         self.network = link
         self._link = link
+        self._asked = b""  # index and subindex of the transfer
+
+    def send_request(self, request: bytes) -> None:
+        if request[0] >> 5 in _BEGINS:
+            self._asked = bytes(request[1:4])
+        super().send_request(request)  # type: ignore[no-untyped-call]
+
+    def on_response(self, can_id: int, data: bytes, timestamp: float) -> None:
+        if data[0] >> 5 not in _NAMES_OBJECT or bytes(data[1:4]) in (self._asked, _NO_OBJECT):
+            super().on_response(can_id, data, timestamp)  # type: ignore[no-untyped-call]
 
     def read_response(self) -> bytes:
         deadline_s = perf_counter() + self.RESPONSE_TIMEOUT
         while self.responses.empty():
             remaining_s = deadline_s - perf_counter()
             if remaining_s <= 0.0:
-                raise SdoCommunicationError("no answer")
+                self._link.drain()
+                break
             self._link.receive(remaining_s)
+        if self.responses.empty():
+            raise SdoCommunicationError("no answer")
         response: bytes = super().read_response()  # type: ignore[no-untyped-call]
         return response

@@ -134,6 +134,11 @@ class PowerStage:
             raise DriveFault(self._device, f"cannot be cleared: {name}; remove the cause, then clear it")
         session.emergency = None
 
+    def forgive_lost_host(self) -> None:
+        """Clear the fault that says only that the last host went away: this one is here, and the power is off."""
+        if self.state is State.FAULT and self._session.lost_its_host():
+            self.clear_fault()
+
     @property
     def _position_counts(self) -> int:
         return self._session.cycle.values[1][0]

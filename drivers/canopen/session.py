@@ -21,12 +21,14 @@ from drivers.canopen.objects import (
     SYNC_COB_ID,
 )
 from drivers.canopen.pdo_setup import ProcessData, choose_pdos, configure_pdos
+from drivers.canopen.presence import check_presence
 from drivers.canopen.settings import CanopenSettings
 from drivers.canopen.slow_poll import SlowPoll
 from drivers.canopen.state_machine import DISABLE_VOLTAGE
 from drivers.canopen.sync_cycle import SyncCycle, answer_wait_s
 from drivers.canopen.units import interpolation_period
 from drivers.canopen.watchdog import Watchdog, heartbeat_ms
+from drivers.contract import Sample, Status
 from drivers.errors import DriveConnectionError
 from drivers.joint import JointScale
 
@@ -81,6 +83,35 @@ class Session:
         """
         self._nmt(_START)
         self.await_until(lambda: self.monitor.state is NmtState.OPERATIONAL, "NMT state OPERATIONAL")
+
+    def run(self, cob_id: int, payload: bytes) -> bool:
+        """One cycle, with all that has to be looked after in it; tell whether it was answered in time.
+
+        Args:
+            cob_id: of the RPDO.
+            payload: of the RPDO.
+
+        Raises:
+            DriveConnectionError: the drive does not answer for too long, its heartbeat is gone, or it has restarted.
+            DriveFault: it has left OPERATIONAL.
+        """
+        self.keep_alive()
+        answered = self.cycle.run(cob_id, payload)
+        now_s = perf_counter()
+        self.ask_slow(now_s)
+        check_presence(self.settings, self.cycle, self.monitor, self.fault_name, now_s)
+        return answered
+
+    def sample(self, status: Status) -> Sample:
+        """The sample of the last SYNC that was answered.
+
+        Args:
+            status: of the power stage.
+        """
+        state, motion = self.cycle.values
+        return self.measurement.sample(
+            state, motion, self.poll.readings, status, self.cycle.sync_s, perf_counter(), self.cycle.number
+        )
 
     def leave(self) -> None:
         """Give the drive back: PRE-OPERATIONAL, nobody watches. With the power off only. Never raises."""

@@ -107,7 +107,8 @@ class SyncCycle:
         while self._missing:
             remaining_s = deadline_s - perf_counter()
             if remaining_s <= 0.0:
-                return False
+                self._link.drain()  # a host that was held up is no drive that is silent
+                return not self._missing
             self._link.receive(remaining_s)
         return True
 

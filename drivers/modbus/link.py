@@ -139,13 +139,13 @@ class Link:
         return text.decode(self.read(Block(text.space, text.address, text.words, ())))
 
     def _words(self, block: Block, call: Callable[[], ModbusPDU]) -> list[int]:
-        words = self._ask(block, call).registers
-        if len(words) != block.words:
-            raise self._no_answer(f"{len(words)} of {block.words} words", block)
-        return list(words)
+        return list(self._ask(block, call, block.words).registers)
 
-    def _ask(self, block: Block, call: Callable[[], ModbusPDU]) -> ModbusPDU:
-        """One request, asked again once where it was not answered."""
+    def _ask(self, block: Block, call: Callable[[], ModbusPDU], words: int | None = None) -> ModbusPDU:
+        """One request, asked again once where it was not answered, or with other than so many words.
+
+        RTU does not number its requests: an answer of another length is one that came late, to a request before.
+        """
         found = "nothing"
         for _ in range(ATTEMPTS):
             try:
@@ -157,7 +157,11 @@ class Link:
                 continue
             if answer.isError():
                 raise self._refused(answer, block)
-            return answer
+            if words is None or len(answer.registers) == words:
+                return answer
+            found = f"{len(answer.registers)} of {words} words"
+            if not self._recover():
+                break
         raise self._no_answer(found, block)
 
     def _recover(self) -> bool:

@@ -64,11 +64,7 @@ class Link:
         Raises:
             DriveConnectionError: no intact answer in time, or the port is gone.
         """
-        prepared = self._requests.get(command.number)
-        if prepared is None:
-            packet = read_packet(self._address, command)
-            prepared = self._requests[command.number] = packet, crc16(packet)
-        request, request_crc = prepared
+        request, request_crc = self._request(command)
         size = command.reply_bytes
         found = "nothing"
         for _ in range(ATTEMPTS):
@@ -97,6 +93,21 @@ class Link:
                 break
         raise self._no_answer(command.meaning, found)
 
+    def together(self, command: Write, value: int, reads: tuple[Read, ...]) -> list[tuple[int, ...]] | None:
+        """Tell and ask in one write. Returns the data of each answer; None where not every one was intact.
+
+        Raises:
+            DriveConnectionError: the port is gone.
+        """
+        packets = [write_packet(self._address, command, value)]
+        packets += [self._request(read)[0] for read in reads]
+        size = len(ACKNOWLEDGED) + sum(read.reply_bytes for read in reads)
+        reply = self._ask(b"".join(packets), size)
+        found = self._apart(reply, reads) if len(reply) == size and reply.startswith(ACKNOWLEDGED) else None
+        if found is None:
+            self._resync()
+        return found
+
     def shout(self, command: Write, *values: int) -> None:
         """Tell once, and do not wait for the acknowledgement. Never raises."""
         with suppress(Exception):
@@ -118,6 +129,25 @@ class Link:
             if not self._resync():
                 break
         raise self._no_answer("firmware version", found)
+
+    def _request(self, command: Read) -> tuple[bytes, int]:
+        """The packet of a question, and its CRC; made once."""
+        prepared = self._requests.get(command.number)
+        if prepared is None:
+            packet = read_packet(self._address, command)
+            prepared = self._requests[command.number] = packet, crc16(packet)
+        return prepared
+
+    def _apart(self, reply: bytes, reads: tuple[Read, ...]) -> list[tuple[int, ...]] | None:
+        """The data of each answer in a row of them, the acknowledgement first; None where one is not intact."""
+        found, start = [], len(ACKNOWLEDGED)
+        for read in reads:
+            answer = reply[start : start + read.reply_bytes]
+            if not is_intact(self._request(read)[1], answer):
+                return None
+            found.append(read.layout.unpack_from(answer))
+            start += read.reply_bytes
+        return found
 
     def _ask(self, packet: bytes, reply_bytes: int) -> bytes:
         try:

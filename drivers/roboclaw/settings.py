@@ -1,6 +1,7 @@
 """What has to be known of a RoboClaw before it is opened."""
 
 from dataclasses import dataclass
+from math import ceil
 from typing import Literal
 
 BAUD_RATES = (2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800)
@@ -23,6 +24,9 @@ class RoboclawSettings:
             that the manual does not state; "none": left to the control loop, which derives it from the position.
         current: "signed" where the controller reports the current with the sign of the motor's torque, "magnitude"
             where it does not; then it takes the sign of the applied duty.
+        questions: "in turn": each after the answer to the one before, as the maker's own library does; "together": a
+            cycle's duty and questions in one write. The manual calls packet serial buffered and says no more; a
+            controller that does not answer them all is refused when it is opened.
     """
 
     port: str
@@ -34,3 +38,19 @@ class RoboclawSettings:
     slow_every: int = 4
     velocity: Literal["drive", "none"] = "drive"
     current: Literal["signed", "magnitude"] = "signed"
+    questions: Literal["in turn", "together"] = "in turn"
+
+    @property
+    def device(self) -> str:
+        """The name used in messages."""
+        return f"{self.port} address {self.address:#x} M{self.motor}"
+
+    @property
+    def watchdog_steps(self) -> int:
+        """The serial time-out as it is set [0.1 s]; not shorter than was asked for."""
+        return max(1, ceil(self.watchdog_s / WATCHDOG_STEP_S - 1e-9))
+
+    @property
+    def set_watchdog_s(self) -> float:
+        """The same [s]."""
+        return self.watchdog_steps * WATCHDOG_STEP_S

@@ -52,8 +52,9 @@ class Telemetry:
         self._supply_at_s = self._temperature_at_s = self._status_at_s = time.perf_counter()
         self._slow = self._slow_reads()
         self._cycle = 0
-        for read in self._slow:
-            read()
+        for ask in self._slow:
+            ask()
+        self.quick: tuple[Read, ...] = self._quick_reads()
 
     @property
     def measured(self) -> frozenset[str]:
@@ -79,37 +80,48 @@ class Telemetry:
         }
         return {name: step for name, step in steps.items() if name in self.measured}
 
-    def sample(self, status: Status) -> Sample:
-        """Ask, and return what was found; `faults` is up to date afterwards where it was its turn.
+    def ask(self) -> tuple[list[tuple[int, ...]], list[float]]:
+        """Ask for what is wanted in every cycle, in turn. Returns the data of `quick`, and when each came [s].
 
         Raises:
             DriveConnectionError: no valid answer in time.
         """
-        link, channel, joint, index = self._link, self._channel, self._joint, self._index
-        position_rad = joint.position_rad(self._encoder.follow(link.read(channel.encoder)[0]))
-        position_at_s = time.perf_counter()
-        velocity_rad_s, velocity_at_s = nan, position_at_s
-        if self._has_speed:
-            velocity_rad_s = joint.velocity_rad_s(link.read(channel.speed)[0])
-            velocity_at_s = time.perf_counter()
-        duty = joint.motor_sign * link.read(commands.APPLIED_DUTY)[index] / DUTY_FULL
-        duty_at_s = time.perf_counter()
-        current_a = self._current_a(duty) if self.has_current else nan
-        self._cycle += 1
-        if self._cycle % self._slow_every == 0:
-            self._slow[self._cycle // self._slow_every % len(self._slow)]()
+        found, times_s = [], []
+        for read in self.quick:
+            found.append(self._link.read(read))
+            times_s.append(time.perf_counter())
+        return found, times_s
+
+    def sample(self, status: Status, found: list[tuple[int, ...]], times_s: list[float]) -> Sample:
+        """The sample of what was found; a slow question is asked where it is its turn, `faults` is up to date then.
+
+        Args:
+            status: of the power stage.
+            found: data of `quick`.
+            times_s: when each was measured [s].
+
+        Raises:
+            DriveConnectionError: no valid answer in time.
+        """
+        joint, has_speed, has_current = self._joint, self._has_speed, self.has_current
+        self._ask_slow()
+        position_rad = joint.position_rad(self._encoder.follow(found[0][0]))
+        velocity_rad_s = joint.velocity_rad_s(found[1][0]) if has_speed else nan
+        place = 2 if has_speed else 1
+        duty = joint.motor_sign * found[place][self._index] / DUTY_FULL
+        current_a = self._current_a(found[place + 1][self._index], duty) if has_current else nan
         now_s = time.perf_counter()
         ages = Ages(
-            now_s - position_at_s,
-            now_s - velocity_at_s if self._has_speed else 0.0,
-            now_s - duty_at_s,
-            now_s - duty_at_s if self.has_current else 0.0,
+            now_s - times_s[0],
+            now_s - times_s[1] if has_speed else 0.0,
+            now_s - times_s[place],
+            now_s - times_s[place + 1] if has_current else 0.0,
             now_s - self._supply_at_s if self.has_supply else 0.0,
             now_s - self._temperature_at_s if self.has_temperature else 0.0,
             now_s - self._status_at_s,
         )
         return Sample(
-            position_at_s, ages.position_s, position_rad, velocity_rad_s, duty, current_a,
+            times_s[0], ages.position_s, position_rad, velocity_rad_s, duty, current_a,
             self._supply_v, self._temperature_c, status, ages,
         )  # fmt: skip
 
@@ -119,8 +131,13 @@ class Telemetry:
         self._status_at_s = time.perf_counter()
         return self.faults
 
-    def _current_a(self, duty: float) -> float:
-        reported_a = self._link.read(commands.CURRENTS)[self._index] * _CURRENT_A
+    def _ask_slow(self) -> None:
+        self._cycle += 1
+        if self._cycle % self._slow_every == 0:
+            self._slow[self._cycle // self._slow_every % len(self._slow)]()
+
+    def _current_a(self, counts: int, duty: float) -> float:
+        reported_a = counts * _CURRENT_A
         if self._is_signed:
             return self._joint.motor_sign * reported_a
         return copysign(reported_a, duty) if reported_a else 0.0
@@ -132,6 +149,12 @@ class Telemetry:
     def _read_temperature(self) -> None:
         self._temperature_c = self._link.read(commands.TEMPERATURE)[0] * _TEMPERATURE_C
         self._temperature_at_s = time.perf_counter()
+
+    def _quick_reads(self) -> tuple[Read, ...]:
+        """What is asked for in every cycle: encoder, speed where there is one, applied duty, currents likewise."""
+        speed = (self._channel.speed,) if self._has_speed else ()
+        currents = (commands.CURRENTS,) if self.has_current else ()
+        return (self._channel.encoder, *speed, commands.APPLIED_DUTY, *currents)
 
     def _slow_reads(self) -> list[Callable[[], object]]:
         """The slow questions in turn; the status twice as often as the others."""

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim_backend.devices.side_channel import SideChannelClient
+from tests.devices.turns import ask_for_turns
 
 START_S = 90.0  # the first start on a machine compiles the plant
 
@@ -64,6 +65,7 @@ def device_process(kind: str, *options: str) -> Iterator[DeviceProcess]:
     """Run `friction-bench simulate-device <kind> <options>`, and end it."""
     words = [sys.executable, "-m", "bench.cli", "simulate-device", kind, *options, "--json"]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    ask_for_turns(process.pid)
     killer = threading.Timer(START_S, process.kill)
     killer.start()
     try:

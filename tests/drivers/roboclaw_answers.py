@@ -5,6 +5,7 @@ Checksums are computed here bit by bit from the polynomial in the manual; nothin
 
 import serial
 
+SIZES = {14: 5, 32: 6, 33: 6}  # of writes, with address, command and CRC; a read has 2 bytes
 VERSION = b"USB Roboclaw 2x15a v4.1.34\n\0"
 
 
@@ -38,6 +39,7 @@ class Answers:
         self.corrupt = 0  # so many answers to come have a bit turned over
         self.duties = []
         self.keeps_timeout = True
+        self.buffered = True
         self.closed = True
         self._waiting = b""
 
@@ -49,8 +51,13 @@ class Answers:
         return self
 
     def write(self, packet):
+        """Take packets in a row; a controller without `buffered` hears the first of them."""
         self.sent.append(bytes(packet))
-        answer = self._answer(bytes(packet))
+        answer, rest = b"", bytes(packet)
+        while rest and (self.buffered or not answer):
+            size = SIZES.get(rest[1], 2)
+            answer += self._answer(rest[:size])
+            rest = rest[size:]
         if self.corrupt and answer:
             self.corrupt -= 1
             answer = answer[:-1] + bytes([answer[-1] ^ 0x10])

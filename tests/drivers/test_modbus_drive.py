@@ -2,6 +2,7 @@
 
 import os
 import socket
+import threading
 import time
 import tty
 from math import isnan, pi
@@ -306,3 +307,32 @@ def test_the_roboteq_map_has_no_demand_but_zero_to_switch_off():
     assert drive.describe().modes == {Mode.DUTY}
     with pytest.raises(DriveConnectionError, match="is it plugged in, and not open elsewhere"):
         drive.open(0.01)
+
+
+def test_an_answer_that_comes_late_is_not_taken_for_that_of_another_request(line):
+    """RTU does not number its requests; the answer to one of two registers is no answer to one of a single register."""
+    ours, path = line
+    link = Link(ModbusSettings("roboteq", "rtu", path, answer_timeout_s=TIMEOUT_S))
+    link.begin()
+    late, wanted = bytes.fromhex("01 04 04 00 00 00 07"), bytes.fromhex("01 04 02 00 2a")
+
+    def answer():
+        for frame in (late, wanted):
+            os.read(ours, 8)
+            os.write(ours, frame + crc(frame))
+
+    drive = threading.Thread(target=answer)
+    drive.start()
+    assert link.read_one(Register("speed", Space.INPUT, 0x2061, Number.INT16)) == 42.0
+    drive.join()
+    link.close()
+
+
+def crc(frame):
+    """CRC-16 of Modbus over serial line, low byte first."""
+    remainder = 0xFFFF
+    for byte in frame:
+        remainder ^= byte
+        for _ in range(8):
+            remainder = (remainder >> 1) ^ 0xA001 if remainder & 1 else remainder >> 1
+    return remainder.to_bytes(2, "little")

@@ -60,8 +60,37 @@ def test_a_cycle_asks_in_this_order(answers):
     assert [packet.hex(" ") for packet in answers.sent] == ["80 20 40 00 56 32", "80 10", "80 12", "80 30", "80 31"]
 
 
-def test_a_sample_in_si_units(answers):
-    drive = opened()
+def test_questions_asked_together_go_out_in_one_write(answers):
+    drive = opened(slow_every=100, questions="together")
+    drive.enable(Mode.DUTY)
+    answers.sent.clear()
+    drive.exchange(duty(0.5))
+    assert [packet.hex(" ") for packet in answers.sent] == ["80 20 40 00 56 32 80 10 80 12 80 30 80 31"]
+
+
+def test_a_controller_that_does_not_answer_them_together_is_refused(answers):
+    answers.buffered = False
+    with pytest.raises(DriveConfigurationError, match=r'set drive.questions = "in turn"'):
+        opened(questions="together")
+    assert answers.closed
+
+
+def test_together_what_was_not_answered_whole_is_asked_in_turn(answers):
+    drive = opened(slow_every=100, questions="together")
+    drive.enable(Mode.DUTY)
+    answers.sent.clear()
+    answers.corrupt = 1
+    sample = drive.exchange(duty(0.5))
+    assert sample.status is Status.ENABLED
+    assert [packet.hex(" ") for packet in answers.sent[1:]] == [
+        "80 20 40 00 56 32", "80 10", "80 12", "80 30", "80 31",
+    ]  # fmt: skip
+    assert answers.duties[-2:] == [16384, 16384]
+
+
+@pytest.mark.parametrize("questions", ["in turn", "together"])
+def test_a_sample_in_si_units(answers, questions):
+    drive = opened(questions=questions)
     drive.enable(Mode.DUTY)
     answers.data[16] = (1000).to_bytes(4, "big") + b"\0"
     answers.data[48] = (16384).to_bytes(2, "big") + (-1).to_bytes(2, "big", signed=True)

@@ -133,7 +133,7 @@ def test_a_stage_that_is_taken_away_without_a_fault_is_noticed(node, drive_of):
     drive = _moving(drive_of())
     node._control = lambda: None
     node.put(0x6041, 0, 0x0240)
-    with pytest.raises(DriveFault, match=r"switched itself off, state 'switch on disabled'.*safe torque off"):
+    with pytest.raises(DriveFault, match=r"switched itself off: state 'switch on disabled'.*safe torque off"):
         _run(drive)
 
 
@@ -285,6 +285,38 @@ def test_nobody_at_the_node_id_is_said_in_bounded_time(node, drive_of):
     with pytest.raises(DriveConnectionError, match="is the drive on, the cable in, node ID and bit rate right"):
         drive_of(node_id=6).open(0.005)
     assert time.perf_counter() - start_s < PATIENCE_S
+
+
+def test_answers_to_a_host_that_was_here_before_are_let_go(node, drive_of):
+    drive = drive_of()
+    answer = node._answer
+
+    def late(data):
+        """What two requests of the host before got, come in together with the first answer to this one."""
+        node._answer = answer
+        node._send(0x585, bytes.fromhex("60 40 60 00 00 00 00 00"))
+        node._send(0x585, bytes.fromhex("43 18 10 04 ef be 00 00"))
+        node._send(0x585, bytes.fromhex("80 71 60 00 00 00 02 06"))
+        answer(data)
+
+    node._answer = late
+    drive.open(0.005)
+    assert drive.exchange(OFF).status is Status.DISABLED
+
+
+def test_a_host_that_is_held_up_finds_the_answer_that_has_come_meanwhile(node, drive_of):
+    drive = _moving(drive_of(**PATIENT))
+    receive = drive._link.receive
+
+    def held_up(timeout_s):
+        drive._link.receive = receive
+        time.sleep(0.1)  # longer than a cycle waits
+        return False
+
+    before, missed = _fresh(drive), drive.counts.missed
+    drive._link.receive = held_up
+    assert drive.exchange(PUSH).number == before.number + 1
+    assert drive.counts.missed == missed
 
 
 def test_a_drive_that_does_not_answer_sync_is_not_opened(node, drive_of):

@@ -1,0 +1,141 @@
+"""A connected drive: from the open line, through identity and watchdog, to its requests and the state that it tells."""
+
+from math import nan
+
+from drivers.contract import Mode, Sample, Status
+from drivers.errors import DriveConfigurationError, DriveError
+from drivers.joint import JointScale
+from drivers.modbus.demand import Demand
+from drivers.modbus.link import Link
+from drivers.modbus.opening import identify, set_watchdog
+from drivers.modbus.power_stage import state_of
+from drivers.modbus.register_map import RegisterMap
+from drivers.modbus.requests import Values, plan
+from drivers.modbus.sampling import Sampling
+from drivers.modbus.settings import ModbusSettings
+from drivers.standstill import Standstill
+
+
+class Session:
+    """Everything between connecting and disconnecting.
+
+    Args:
+        settings: how to reach it.
+        register_map: what it keeps where.
+        joint: scales and signs.
+
+    Attributes:
+        told: the state that the drive was last told to be in.
+        state: what it says it is.
+
+    Raises:
+        DriveError: at the first step that fails. The drive is off then where it can be told, and the port is free.
+    """
+
+    def __init__(self, settings: ModbusSettings, register_map: RegisterMap, joint: JointScale) -> None:
+        self._settings, self._map, self._joint = settings, register_map, joint
+        self._plan = plan(register_map)
+        self._demand = Demand(register_map, joint)
+        self._sampling = Sampling(register_map, joint)
+        self._braking = Standstill()
+        self._fault = self._cycle = 0
+        self.told = self.state = Status.DISABLED
+        self.link = Link(settings)
+        try:
+            self.link.begin()
+            self.identity = identify(self.link, register_map, settings.device)
+            self.switch_off()
+            self.link.begin()
+            set_watchdog(self.link, register_map, settings)
+            self._read_slow()
+        except BaseException:
+            self.leave()
+            raise
+
+    def move(self, mode: Mode, value: float) -> Values:
+        """Write a demand [duty, A or rad of the joint]. Returns what was read.
+
+        Raises:
+            DriveConnectionError: no valid answer within the time limit.
+            DriveConfigurationError: its register does not hold the value; nothing was sent.
+        """
+        return self._transact(self._demand.motion(mode, value))
+
+    def stay(self, mode: Mode) -> Values:
+        """Write the demand of a mode that moves nothing: in POSITION the present one; as `move`."""
+        here_rad = 0.0
+        if mode is Mode.POSITION:
+            here_rad = self._joint.position_rad(self.link.read_one(self._map.measured["position_counts"]))
+        return self.move(mode, here_rad)
+
+    def rest(self) -> Values:
+        """Write that nothing is demanded; as `move`."""
+        return self._transact(self._demand.rest(self.told is Status.QUICK_STOP))
+
+    def switch_off(self) -> None:
+        """Power off, within a time limit of its own."""
+        self.link.begin()
+        self.told = Status.DISABLED
+        self.rest()
+
+    def begin_quick_stop(self) -> None:
+        """Brake, in the drive's own way; `told` is DISABLED again once that is over."""
+        self.told = Status.QUICK_STOP
+        self._braking.restart()
+        self.rest()
+
+    def clear_fault(self) -> None:
+        """Acknowledge a fault, and switch off."""
+        clearing = self._demand.clearing()
+        if clearing is not None:
+            self._transact(clearing)
+        self.switch_off()
+
+    def sample(self, values: Values, at_s: float) -> Sample:
+        """The sample of a cycle whose values were read at a time [s]; asks for what is slow where it is its turn.
+
+        Raises:
+            DriveConnectionError: no valid answer within the time limit.
+        """
+        self._cycle += 1
+        if self._plan.slow and self._cycle % self._settings.slow_every == 0:
+            self._read_slow()
+        return self._sampling.sample(values, self.state, at_s)
+
+    def fault_text(self) -> str:
+        """The fault in words."""
+        return self._map.fault_name(self._fault) if self._map.fault is not None else "a fault that it does not name"
+
+    def leave(self) -> None:
+        """Power off where it answers, and give the port back; otherwise its watchdog stops it."""
+        try:
+            self.switch_off()
+        except DriveError:
+            pass
+        finally:
+            self.link.close()
+
+    def _transact(self, values: Values) -> Values:
+        try:
+            found = self._plan.cycle(self.link, values)
+        except ValueError as error:
+            raise DriveConfigurationError(self._settings.device, f"{error}. Limit the demand") from error
+        self._follow(found)
+        return found
+
+    def _follow(self, values: Values) -> None:
+        """Take over the state that the drive reports."""
+        self.state = state_of(self._map, values, self.told)
+        self._fault = int(values[self._map.fault.name]) if self._map.fault is not None else 0
+        if self.told is Status.QUICK_STOP and self._has_stopped(values):
+            self.told = Status.DISABLED
+
+    def _has_stopped(self, values: Values) -> bool:
+        """Whether a quick stop is over: by the drive's own word, or where it has none by its count."""
+        if self._map.status is not None and "quick_stop" in self._map.status.words:
+            return self.state is not Status.QUICK_STOP
+        return self._braking.stands(values.get(self._map.measured["position_counts"].name, nan))
+
+    def _read_slow(self) -> None:
+        for block in self._plan.slow:
+            self._sampling.keep(block.decode(self.link.read(block)))
