@@ -34,8 +34,7 @@ def write_sealed(answer: Answer, recordings: Path, path: Path) -> None:
     Raises:
         SealError: it cannot be written.
     """
-    text = json.dumps(answer.to_json(), sort_keys=True)
-    coded = base64.b85encode(zlib.compress(text.encode(), 9)).decode()
+    coded = sealed(answer)
     lines = [coded[start : start + _LINE] for start in range(0, len(coded), _LINE)]
     values: dict[str, Any] = {"what": WHAT, "recordings_sha256": digest_of(recordings), "sealed": lines}
     values["sha256"] = _digest(values)
@@ -43,6 +42,28 @@ def write_sealed(answer: Answer, recordings: Path, path: Path) -> None:
         path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
     except OSError as error:
         raise SealError(f"{path}: cannot be written: {error.strerror}") from error
+
+
+def sealed(answer: Answer) -> str:
+    """An answer as one line of text that a glance does not read."""
+    text = json.dumps(answer.to_json(), sort_keys=True)
+    return base64.b85encode(zlib.compress(text.encode(), 9)).decode()
+
+
+def unsealed(text: str, where: str) -> Answer:
+    """The answer in a line of text.
+
+    Args:
+        text: as `sealed` made it.
+        where: it stands, for the message.
+
+    Raises:
+        SealError: it is no such line.
+    """
+    try:
+        return Answer.from_json(json.loads(zlib.decompress(base64.b85decode(text))))
+    except (ValueError, zlib.error, KeyError, TypeError) as error:
+        raise SealError(f"{where}: the sealed answer cannot be opened: {error}") from error
 
 
 def read_sealed(path: Path, recordings: Path | None = None) -> Answer:
@@ -60,8 +81,7 @@ def read_sealed(path: Path, recordings: Path | None = None) -> Answer:
         raise SealError(f"{path}: was changed after it was sealed; take the file as the challenge wrote it")
     if recordings is not None and digest_of(recordings) != values["recordings_sha256"]:
         raise SealError(f"{recordings}: are not the recordings that {path} was sealed with, or were changed since")
-    text = zlib.decompress(base64.b85decode("".join(values["sealed"])))
-    return Answer.from_json(json.loads(text))
+    return unsealed("".join(values["sealed"]), str(path))
 
 
 def digest_of(recordings: Path) -> str:

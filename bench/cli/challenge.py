@@ -82,15 +82,10 @@ def reveal(
 
 
 def _guess_of(context: typer.Context, study: int) -> "Guess":
-    from bench.challenge.guess import Guess
-    from bench.study import diagnose, ladder
+    from bench.service.study_guess import guess_of_study
 
     with session_of(context).open_store() as store:
-        rungs = ladder(store, study)["rungs"]
-        last = diagnose(store, study)
-    added = [(name,) for name in rungs[-1]["effects"] if name not in rungs[0]["effects"]]
-    named = [tuple(one["effects"]) for one in last["classes"]]
-    return Guess((*added, *named), last["verdict"] == "unknown-effect")
+        return guess_of_study(store, study)
 
 
 def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, Any]:

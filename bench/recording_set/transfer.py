@@ -1,6 +1,6 @@
 """Recording sets into the store, and experiments out of it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,18 +23,21 @@ IMPORT_KIND = "import"
 FEWEST_ROWS = 2  # fewer make no recording
 
 
-def import_recording_set(store: Store, recording_set: RecordingSet, name: str) -> int:
+def import_recording_set(
+    store: Store, recording_set: RecordingSet, name: str, further: Mapping[str, str] | None = None
+) -> int:
     """Add a recording set to the store as one experiment: all of it, or nothing.
 
     Args:
         store: where it goes.
         recording_set: checked already, since it could be read.
         name: under which its user will look for it.
+        further: what else is kept among the experiment's parameters.
 
     Returns:
         The experiment's id.
     """
-    parameters = {"name": name, "recording_set": recording_set.name}
+    parameters = {"name": name, "recording_set": recording_set.name, **(further or {})}
     rig = recording_set.rig.model_dump(mode="json", exclude_none=True)
     recordings = (_with_outcome(recording) for recording in recording_set.recordings)
     return store.add_imported(IMPORT_KIND, parameters, {"software": software()}, rig, recordings)

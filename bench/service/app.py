@@ -14,6 +14,7 @@ from bench.service import (
     audit,
     bench_state,
     calibrations,
+    challenges,
     effects,
     error_map,
     experiments,
@@ -69,6 +70,7 @@ A missing effect, found and added:
 
 
 _ROOMS = (
+    challenges,
     bench_state,
     leases,
     experiments,

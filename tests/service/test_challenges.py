@@ -1,0 +1,59 @@
+"""A challenge over REST: made, studied by its recordings alone, guessed at, revealed."""
+
+import json
+
+import pytest
+
+from bench.challenge import difficulty
+from bench.challenge.difficulty import Difficulty
+from bench.challenge.kept import answer_of
+
+QUICK = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 2.0, 1, 1)
+SEED = 3
+
+
+@pytest.fixture(scope="module")
+def challenge(service):
+    patch = pytest.MonkeyPatch()
+    patch.setitem(difficulty.DIFFICULTIES, "easy", QUICK)
+    answer = service.client.post("/challenges", json={"difficulty": "easy", "seed": SEED})
+    patch.undo()
+    assert answer.status_code == 201, answer.text
+    return answer.json()
+
+
+def test_it_is_listed_and_its_answer_is_not_told(service, challenge):
+    number = challenge["challenge_id"]
+    assert challenge in service.stranger.get("/challenges").json()["items"]
+    truth = answer_of(service.store, number).truths[0]
+    told = json.dumps([challenge, service.stranger.get(f"/experiments/{number}").json()])
+    assert truth.title not in told
+    assert truth.name not in told
+    assert str(truth.size) not in told
+    assert service.stranger.get(f"/trials?experiment_id={number}").json()["items"]
+
+
+def test_a_right_guess_is_right_and_a_wrong_one_tells_what_was_missed(service, challenge):
+    path = f"/challenges/{challenge['challenge_id']}/reveal"
+    first = service.client.post(path, json={"guess": "nothing"}).json()
+    assert not first["perfect"]
+    assert len(first["missed"]) == len(first["hidden"]) == 1
+    names = first["hidden"][0]["effects"]
+    right = service.client.post(path, json={"guess": names[0] if names else "none-of-these"}).json()
+    assert right["perfect"]
+    assert right["right"] == first["missed"]
+    assert "just that" in right["sentence"]
+
+
+def test_what_cannot_be_revealed_says_why(service, challenge):
+    path = f"/challenges/{challenge['challenge_id']}/reveal"
+    assert service.stranger.post(path, json={"guess": "nothing"}).status_code == 401
+    for body in ({}, {"guess": "nothing", "study_id": 1}):
+        answer = service.client.post(path, json=body)
+        assert answer.status_code == 422
+        assert "one of guess and study_id" in answer.json()["detail"]
+    assert "moonlight" in service.client.post(path, json={"guess": "moonlight"}).json()["detail"]
+    other = service.run("steps", repeats=1)["experiment_id"]
+    answer = service.client.post(f"/challenges/{other}/reveal", json={"guess": "nothing"})
+    assert answer.status_code == 404
+    assert "is no challenge" in answer.json()["detail"]
