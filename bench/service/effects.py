@@ -1,12 +1,14 @@
 """/effects: the catalogue of physical effects that a model can be made of."""
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter, Depends, Path, Request
 from pydantic import BaseModel, Field
 
 from bench.service.access import allow_read
+from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
+from bench.service.problems import problems
 
 router = APIRouter(prefix="/effects", tags=["effects"], dependencies=[Depends(allow_read)])
 
@@ -41,6 +43,26 @@ class Catalogue(BaseModel):
     items: list[Effect]
 
 
+class ExampleTrial(BaseModel):
+    """One swing of the simulated joint; all lists have the same length."""
+
+    load_kg: float
+    time_s: list[float]
+    driver: list[float | None]
+    without: list[float] = Field(description="effort without the effect")
+    effect: list[float] = Field(description="what the effect adds; add any multiple of it")
+
+
+class Example(BaseModel):
+    """What an effect adds to the effort of a simulated joint that is swung with two loads."""
+
+    effect: str
+    effort_unit: str
+    driver: str = Field(description="the variable that drives the effect")
+    driver_unit: str
+    trials: list[ExampleTrial]
+
+
 @router.get("", summary="All effects of the catalogue")
 def catalogue() -> Catalogue:
     """Physics, equation, parameters, what excites each effect and what it is confused with."""
@@ -48,3 +70,15 @@ def catalogue() -> Catalogue:
 
     found: list[dict[str, Any]] = plain(effects_catalogue())
     return Catalogue(items=[Effect.model_validate(one) for one in found])
+
+
+@router.get("/{name}/example", summary="A small simulated example", responses=problems(404, 422))
+async def example(request: Request, name: Annotated[str, Path(max_length=100, examples=["backlash"])]) -> Example:
+    """To be looked at: a joint that is swung with two loads, without the effect, and what the effect adds."""
+
+    def call() -> Any:
+        from bench.study import effect_example
+
+        return plain(effect_example(name))
+
+    return Example.model_validate(await in_worker(request, call))

@@ -7,7 +7,7 @@ from bench.study.changes import add_effect, drop_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe, list_studies
 from bench.study.diagnose import diagnose
-from bench.study.effects import effects_catalogue
+from bench.study.effects import effect_example, effects_catalogue
 from bench.study.error_map import error_map, moments
 from bench.study.ladder import ladder
 from bench.study.search import search
@@ -19,6 +19,7 @@ __all__ = [
     "describe",
     "diagnose",
     "drop_effect",
+    "effect_example",
     "effects_catalogue",
     "error_map",
     "ladder",

@@ -2,7 +2,7 @@
 
 import { replace } from "./dom.js";
 import { benchView } from "./bench.js";
-import { effectsView } from "./effects.js";
+import { learnView } from "./learn.js";
 import { Live } from "./live.js";
 import { promptBar } from "./prompt.js";
 import { statusBar } from "./status.js";
@@ -11,7 +11,7 @@ import { studiesView } from "./studies.js";
 import { tokenForm } from "./token.js";
 import { trialsView } from "./trials.js";
 
-const VIEWS = { bench: benchView, trials: trialsView, study: studiesView, effects: effectsView };
+const VIEWS = { bench: benchView, trials: trialsView, study: studiesView, learn: learnView };
 const live = new Live();
 let leave = () => {};
 

@@ -5,7 +5,7 @@ import { h, replace } from "./dom.js";
 import { nameOf, number, unitOf, when } from "./format.js";
 import { attempt } from "./problem.js";
 
-export async function newStudy(place) {
+export async function newStudy(place, wanted = null) {
   const experiments = await attempt(place, async () => (await get("/experiments", { limit: 100 })).items);
   if (!experiments) return;
   const usable = experiments.filter((one) => one.outcome !== "refused" && one.outcome !== "running");
@@ -14,7 +14,7 @@ export async function newStudy(place) {
     return;
   }
   const name = h("input", { id: "study-name", required: true, value: `study ${new Date().toLocaleDateString()}` });
-  const boxes = usable.map((one) => h("input", { type: "checkbox", value: String(one.experiment_id) }));
+  const boxes = usable.map((one) => h("input", { type: "checkbox", value: String(one.experiment_id), checked: one.experiment_id === wanted }));
   const holdOut = h("div");
   const answer = h("div");
   const button = h("button", { class: "primary" }, "Create study");
@@ -32,6 +32,10 @@ export async function newStudy(place) {
     `${one.experiment_id}: ${one.kind}, ${one.source}, ${one.outcome}, ${when(one.started_utc)}${noteOf(one)}`));
   replace(place, h("form", { class: "form", onsubmit: submit }, h("label", { for: "study-name" }, "Name", name),
     h("fieldset", {}, h("legend", {}, "Experiments whose trials are used"), choices), holdOut, h("div", { class: "row" }, button), answer));
+  if (chosen().length) {
+    change();
+    place.scrollIntoView({ block: "start" });
+  }
 }
 
 function noteOf(experiment) {

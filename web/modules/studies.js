@@ -8,14 +8,15 @@ import { attempt } from "./problem.js";
 import { studyView } from "./study.js";
 
 export function studiesView(place, { rest }) {
-  if (rest[0]) return studyView(place, rest[0]);
+  const wanted = rest[0] === "new" ? Number(rest[1]) : null; // an experiment to make a study of
+  if (rest[0] && rest[0] !== "new") return studyView(place, rest[0]);
   const list = h("div");
   const create = h("div");
   replace(place, panel("Studies", h("p", { class: "soft" },
     "A study compares measured trials with a model, names the physical effect that is missing, and shows the error fall when it is added."), list),
   panel("New study", create));
   attempt(list, async () => replace(list, studyTable((await get("/studies")).items)));
-  newStudy(create);
+  newStudy(create, wanted);
   return () => {};
 }
 

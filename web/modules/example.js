@@ -1,0 +1,40 @@
+// A joint that is swung, without an effect and with as much of it as the slider says; and the effect over what drives it.
+
+import { Chart } from "./chart.js";
+import { h, replace } from "./dom.js";
+import { number } from "./format.js";
+import { SERIES, colour, draw } from "./plot.js";
+
+const MOST = 2; // of the size that the service proposes
+
+export function examplePlot(place, example) {
+  const slider = h("input", { type: "range", id: "example-size", min: "0", max: String(MOST), step: "0.05", value: "1" });
+  const load = h("select", { id: "example-load" }, example.trials.map((trial, index) => h("option", { value: String(index) }, `${number(1000 * trial.load_kg)} g at the tip`)));
+  const [time, driver] = [h("div"), h("div", { class: "plot", role: "img", "aria-label": `What the effect adds, against ${example.driver}` })];
+  replace(place, h("p", { class: "soft" }, "A joint swings to and fro and rests twice. The slider changes how much of the effect there is; a model without it would be wrong by the lower curve."),
+    h("div", { class: "row" }, h("label", { for: "example-size" }, "How much of it", slider), h("label", { for: "example-load" }, "Load", load)), time, driver);
+  const chart = new Chart(time, { label: "Effort of the joint with and without the effect", height: 340 });
+  const show = () => {
+    const trial = example.trials[Number(load.value)];
+    chart.show(contentOf(trial, Number(slider.value), example.effort_unit));
+    return draw(driver, overDriver(example, Number(slider.value)), { height: 280, xaxis: { title: { text: `${example.driver} [${example.driver_unit}]` } },
+      yaxis: { title: { text: `what it adds [${example.effort_unit}]` } } });
+  };
+  for (const input of [slider, load]) input.addEventListener("input", show);
+  show();
+  return chart;
+}
+
+function contentOf(trial, size, unit) {
+  const x = Float64Array.from(trial.time_s);
+  const added = Float64Array.from(trial.effect, (value) => size * value);
+  return { rows: [{ title: `effort [${unit}]` }, { title: `added [${unit}]` }], xTitle: "time [s]", lines: [
+    { row: 0, name: "without", colour: "blue", x, y: Float64Array.from(trial.without) },
+    { row: 0, name: "with", colour: "orange", dash: [6, 4], width: 2, x, y: added.map((value, index) => value + trial.without[index]) },
+    { row: 1, name: "added by the effect", colour: "red", x, y: added }] };
+}
+
+function overDriver(example, size) {
+  return example.trials.map((trial, index) => ({ x: trial.driver, y: trial.effect.map((value) => size * value), mode: "markers", name: `${number(1000 * trial.load_kg)} g`,
+    showlegend: true, marker: { size: 5, symbol: index ? "diamond" : "circle", color: colour(SERIES[index]) } }));
+}
