@@ -70,7 +70,6 @@ A missing effect, found and added:
 
 
 _ROOMS = (
-    challenges,
     bench_state,
     leases,
     experiments,
@@ -81,6 +80,7 @@ _ROOMS = (
     studies,
     error_map,
     effects,
+    challenges,
     audit,
 )
 

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import ParameterError
 from bench.service.access import allow_read, require_token
+from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.problems import problems
 from bench.service.services import StoreOf
@@ -99,6 +100,7 @@ async def create(request: Request, response: Response, store: StoreOf, body: New
         return _represent(keep_challenge(store, seed, body.difficulty))
 
     made = await in_worker(request, call)
+    note(request, f"made challenge {made.challenge_id} ({made.difficulty})")
     response.headers["Location"] = f"{request.url.path}/{made.challenge_id}"
     return made
 
@@ -121,7 +123,9 @@ async def reveal(request: Request, store: StoreOf, challenge_id: ChallengeId, bo
     """Opens the seal and holds the guess against what was hidden."""
     if (body.guess is None) == (body.study_id is None):
         raise ParameterError("wanted is one of guess and study_id: what do you say is hidden?")
-    return await in_worker(request, _reveal, store, challenge_id, body)
+    told = await in_worker(request, _reveal, store, challenge_id, body)
+    note(request, f"revealed challenge {challenge_id}: guess {', '.join(told.guessed) or 'nothing'}")
+    return told
 
 
 def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:

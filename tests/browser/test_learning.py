@@ -1,0 +1,41 @@
+"""Learning on the page: effects with their examples, and a challenge from its making to its answer."""
+
+import pytest
+
+from bench.challenge import difficulty
+from bench.challenge.difficulty import Difficulty
+
+pytestmark = pytest.mark.browser
+QUICK = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 2.0, 1, 1)
+
+
+def test_an_effect_is_explained_and_its_example_answers_to_the_slider(open_page):
+    page = open_page("#learn")
+    page.get_by_label("Search").fill("grease wiped")
+    page.get_by_role("link", name="Direction-asymmetric viscous friction").click()
+    page.locator("math").wait_for()
+    page.get_by_text("several speeds in both directions").wait_for()
+    page.get_by_text("added by the effect").wait_for()
+    points = "document.querySelector('.js-plotly-plot').data[0].y.map(Math.abs).reduce((a, b) => Math.max(a, b))"
+    page.locator(".js-plotly-plot").wait_for()
+    before = page.evaluate(points)
+    page.get_by_label("How much of it").focus()
+    page.keyboard.press("End")
+    page.wait_for_function(f"Math.abs({points} - 2 * {before}) < 1e-9")
+
+
+def test_a_challenge_is_made_guessed_at_and_revealed(open_page, monkeypatch):
+    monkeypatch.setitem(difficulty.DIFFICULTIES, "easy", QUICK)
+    page = open_page("#learn")
+    page.set_default_timeout(60_000)
+    page.get_by_role("button", name="New challenge").click()
+    page.get_by_text("is ready. Make a study of experiment").wait_for()
+    page.get_by_role("link", name="Study challenge").first.click()
+    page.locator("fieldset input:checked").wait_for()
+    page.get_by_role("link", name="Learn").click()
+    page.get_by_role("button", name="Guess at challenge").first.click()
+    page.get_by_label("I say").select_option("nothing")
+    page.get_by_role("button", name="Reveal").click()
+    page.get_by_text("One mechanism was hidden").wait_for()
+    assert page.locator("[aria-label='What was hidden'] tbody tr").count() == 1
+    page.get_by_text("missed", exact=False).first.wait_for()
