@@ -5,13 +5,14 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
 from bench.drives.settings import DriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from bench.friction import FrictionSettings
 from bench.limits import Limits
+from bench.master import MasterSettings
 from bench.quantities import quantity
 from bench.rest import RestSettings
 from bench.rig import Rig, Section
@@ -108,6 +109,47 @@ class BenchConfiguration(Section):
     friction: FrictionSettings | None = Field(
         default=None, description="Friction curves; without them those of the calibration in use"
     )
+    master: MasterSettings | None = Field(
+        default=None, description="A second joint with the operator's hand on it, whose slave the joint is"
+    )
+
+    @model_validator(mode="after")
+    def _check_master(self) -> "BenchConfiguration":
+        if self.master is not None and (self.master.drive.kind == "sim") != (self.drive.kind == "sim"):
+            raise ValueError(
+                f"master.drive.kind is '{self.master.drive.kind}' and drive.kind is '{self.drive.kind}'; a simulated "
+                "joint and a real one have no common time. Choose 'sim' for both or for neither"
+            )
+        return self
+
+    def require_master(self) -> MasterSettings:
+        """The master.
+
+        Raises:
+            ConfigurationError: there is none.
+        """
+        if self.master is None:
+            raise ConfigurationError(
+                f"bench '{self.name}' has one joint, and a master is needed too: add [master.drive] to bench.toml, and "
+                "[master.rig] where the master is not built as the slave is"
+            )
+        return self.master
+
+    def of_master(self) -> "BenchConfiguration":
+        """The master as a bench of its own.
+
+        Raises:
+            ConfigurationError: there is none.
+        """
+        master = self.require_master()
+        return BenchConfiguration(
+            name=f"{self.name}, master",
+            rig=master.rig or self.rig,
+            drive=master.drive,
+            control=self.control,
+            limits=master.limits,
+            store=self.store,
+        )
 
 
 def read_configuration(path: Path) -> BenchConfiguration:
@@ -117,9 +159,9 @@ def read_configuration(path: Path) -> BenchConfiguration:
         ConfigurationError: naming the file, each key, its value, what is allowed and the unit.
     """
     values = _read_toml(path)
-    rig = values.get("rig")
-    if isinstance(rig, str):
-        values["rig"] = _read_toml(path.parent / rig)
+    for table in (values, values.get("master")):
+        if isinstance(table, dict) and isinstance(table.get("rig"), str):
+            table["rig"] = _read_toml(path.parent / table["rig"])
     return parse_configuration(values, str(path))
 
 

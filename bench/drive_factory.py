@@ -17,6 +17,7 @@ from drivers.contract import Drive
 
 if TYPE_CHECKING:
     from sim_backend.faults import Fault
+    from sim_backend.surroundings import Hand, Surroundings
 
 Ask = Callable[[str], bool]
 """Shows a sentence to the person at the bench; returns True when it is done, False when the person gives up."""
@@ -84,6 +85,22 @@ def wall_torque_n_m(drive: Drive) -> float:
     from sim_backend.drive import SimulatedDrive
 
     return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan
+
+
+def make_hand(drive: Drive) -> "Hand | None":
+    """The operator's hand on the arm of a simulated drive; None at a real one, where a person stands."""
+    from sim_backend.drive import SimulatedDrive
+    from sim_backend.surroundings import Hand
+
+    return Hand(drive.plant) if isinstance(drive, SimulatedDrive) else None
+
+
+def make_surroundings(drive: Drive) -> "Surroundings | None":
+    """What the arm of a simulated drive meets; None at a real one."""
+    from sim_backend.drive import SimulatedDrive
+    from sim_backend.surroundings import Surroundings
+
+    return Surroundings(drive.plant) if isinstance(drive, SimulatedDrive) else None
 
 
 # each imports what it needs by itself: a bench needs neither the libraries nor the compiler of another kind

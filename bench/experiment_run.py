@@ -7,17 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench import session
-from bench.drive_factory import Equipment
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.live import LiveBuffer
-from bench.loop import RECORDED, ControlLoop, Outcome, OutcomeName, Reading
+from bench.loop import Outcome, OutcomeName, Reading
 from bench.recorder import Sink
 from bench.session import Session
+from bench.station import Station
 from bench.stop_request import StopRequest
 from bench.store import Store
 from bench.store.space import SpaceNeed
-from bench.technician import Technician
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,14 +31,13 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """Everything that an experiment needs, checked; the drive is open and off."""
+    """Everything that an experiment needs, checked; what it moves is open and off."""
 
     kind: ExperimentKind
     parameters: Parameters
     plans: list[TrialPlan]
     duration_s: float
-    equipment: Equipment
-    loop: ControlLoop
+    station: Station
     space: SpaceNeed
     session: Session
 
@@ -80,7 +78,7 @@ class ExperimentRun:
     @property
     def reading(self) -> Reading | None:
         """The last one."""
-        return self._prepared.loop.last_reading if self._prepared is not None else None
+        return self._prepared.station.loop.last_reading if self._prepared is not None else None
 
     @property
     def trial_count(self) -> int:
@@ -104,7 +102,7 @@ class ExperimentRun:
         self._prepared = prepared
         outcome, reason = self._run_trials(prepared, store, live)
         try:
-            prepared.equipment.drive.close()
+            prepared.station.close()
         except Exception as error:
             outcome, reason = _worse(outcome, reason, f"closing the drive: {error}")
         results: dict[str, Any] = {}
@@ -122,7 +120,7 @@ class ExperimentRun:
         for index, plan in enumerate(prepared.plans):
             self.trial_index = index
             try:
-                if not self._hang_load(plan, prepared.equipment.technician):
+                if not self._prepare_arm(plan, prepared.station):
                     return "stopped", self._stop.reason
                 store.require_space(prepared.space, trials=1)
                 outcome = self._run_trial(plan, prepared, store, live)
@@ -132,11 +130,11 @@ class ExperimentRun:
                 return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
         return "completed", ""
 
-    def _hang_load(self, plan: TrialPlan, technician: Technician) -> bool:
+    def _prepare_arm(self, plan: TrialPlan, station: Station) -> bool:
         """Have the load hung, with the power off; False where a stop came before it hung."""
         if not self.is_stopped():
             try:
-                technician.hang_load(plan.load_kg, plan.balanced)
+                station.prepare(plan)
             except ExperimentError:
                 if not self.is_stopped():
                     raise
@@ -144,10 +142,11 @@ class ExperimentRun:
 
     def _run_trial(self, plan: TrialPlan, prepared: Prepared, store: Store, live: LiveBuffer) -> Outcome:
         conditions = {**plan.conditions, session.CONDITION: prepared.session.seconds()}
-        writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, RECORDED)
-        live.begin_trial()
-        outcome = prepared.loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
-        prepared.session.passed(prepared.loop.last_reading.time_s if prepared.loop.last_reading else 0.0)
+        loop = prepared.station.loop
+        writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, loop.channels)
+        live.begin_trial(loop.channels)
+        outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
+        prepared.session.passed(loop.last_reading.time_s if loop.last_reading else 0.0)
         self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
         writer.finish(outcome.outcome, outcome.reason, results)

@@ -43,9 +43,10 @@ class LiveBuffer:
         self._trial_row = 0  # number of the first row of the trial
         self._kept = 0
 
-    def begin_trial(self) -> None:
-        """Forget the rows of the trial before."""
+    def begin_trial(self, channels: tuple[str, ...] | None = None) -> None:
+        """Forget the rows of the trial before; rows of other channels may come."""
         with self._lock:
+            self._channels = channels or self._channels
             self._first_row += self._kept
             self._trial_row = self._first_row
             self._kept = 0
@@ -75,9 +76,9 @@ class LiveBuffer:
             restarted = left_out or 0 <= after_row < self._trial_row
             begin = first_row if restarted else after_row + 1
             wanted = last_row + 1 - begin
-            blocks = self._newest(wanted)
-        rows = np.concatenate(blocks)[-wanted:] if wanted else np.empty((0, len(self._channels)))
-        return LiveRows(self._channels, rows, last_row, restarted)
+            blocks, channels = self._newest(wanted), self._channels
+        rows = np.concatenate(blocks)[-wanted:] if wanted else np.empty((0, len(channels)))
+        return LiveRows(channels, rows, last_row, restarted)
 
     def _newest(self, wanted: int) -> list[FloatArray]:
         """The last blocks that hold at least that many rows."""

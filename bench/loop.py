@@ -63,6 +63,8 @@ class ControlLoop:
             current commands need a drive with a current mode.
     """
 
+    channels = RECORDED
+
     def __init__(
         self, drive: Drive, clock: Clock, guard: Guard, period_s: float, current_servo: CurrentServo | None = None
     ) -> None:

@@ -23,7 +23,10 @@ _GIT_TIMEOUT_S = 5.0
 
 
 def provenance(
-    configuration: BaseModel | None = None, drive: Description | None = None, seed: int | None = None
+    configuration: BaseModel | None = None,
+    drive: Description | None = None,
+    seed: int | None = None,
+    master: Description | None = None,
 ) -> dict[str, Any]:
     """What an experiment was made with, JSON-able.
 
@@ -35,6 +38,8 @@ def provenance(
         found["configuration"] = configuration.model_dump(mode="json", exclude_none=True, exclude={"store"})
     if drive is not None:
         found["drive"] = _drive(drive)
+    if master is not None:
+        found["master_drive"] = _drive(master)
     if seed is not None:
         found["seed"] = seed
     return found

@@ -6,24 +6,24 @@ from typing import Any, Literal
 
 from bench import commissioned
 from bench.calibration import with_friction
-from bench.clock import Clock, VirtualClock, WallClock
+from bench.clock import VirtualClock, WallClock
 from bench.configuration import BenchConfiguration
-from bench.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
+from bench.drive_factory import has_hardware, is_simulated, seed_of
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiment_run import ExperimentRun, Prepared, Request
 from bench.experiments.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
-from bench.limits import Guard, Limits
+from bench.limits import Limits
 from bench.live import LiveBuffer, LiveRows
-from bench.loop import RECORDED, ControlLoop, OutcomeName, Reading
+from bench.loop import RECORDED, OutcomeName, Reading
+from bench.pair.cycle import PAIR_RECORDED
 from bench.prompt import Prompt, PromptDesk
 from bench.provenance import provenance
-from bench.servo import check_modes, current_servo
 from bench.session import session_of
+from bench.station import Station, make_station
 from bench.store import Store
 from bench.store.space import SpaceNeed
-from bench.timing import check_timing
-from drivers.contract import Description, Drive
+from drivers.contract import Description
 from drivers.errors import DriveError
 
 Pace = Literal["real-time", "fast"]
@@ -75,7 +75,7 @@ class Runner:
         self._starting = threading.Lock()
         self._thread: threading.Thread | None = None
         self._run: ExperimentRun | None = None
-        self._description: Description | None = None
+        self._descriptions: tuple[Description, ...] = ()  # of the joint; or of the slave, and the master
         self._live = LiveBuffer(RECORDED)
         self._desk = PromptDesk()
         self._closed = False
@@ -115,7 +115,8 @@ class Runner:
 
     def status(self) -> RunnerStatus:
         """What the bench is doing, or did last. Never waits."""
-        run, description, limits = self._run, self._description, self.configuration.limits
+        run, limits = self._run, self.configuration.limits
+        description = self._descriptions[0] if self._descriptions else None
         if run is None:
             return RunnerStatus(None, "", "", "", 0, 0, 0.0, None, description, limits)
         outcome, reason = run.outcome, run.reason
@@ -179,7 +180,7 @@ class Runner:
         try:
             run.experiment_id = self._begin(configuration, run.request, prepared.parameters.model_dump(mode="json"))
         except BaseException:
-            prepared.equipment.drive.close()
+            prepared.station.close()
             raise
         self._thread = threading.Thread(
             target=run.carry_out, args=(prepared, self._store, self._live), name=f"experiment {run.experiment_id}"
@@ -196,30 +197,33 @@ class Runner:
         kind.refuse(parameters, configuration)
         plans = kind.plan(parameters, configuration)
         duration_s = kind.duration_s(parameters, configuration)
-        space = SpaceNeed.of(duration_s / len(plans), configuration.control.period_s, configuration.store.reserve_mb)
+        channels = len(PAIR_RECORDED if kind.pair else RECORDED)
+        space = SpaceNeed.of(
+            duration_s / len(plans), configuration.control.period_s, configuration.store.reserve_mb, channels
+        )
         self._store.require_space(space, len(plans))
         session = session_of(configuration, self._store)
-        equipment = make_equipment(configuration, lambda sentence: self._desk.ask(sentence, run.is_stopped))
-        self._description = None
+        station = make_station(
+            configuration, kind.pair, clock, lambda sentence: self._desk.ask(sentence, run.is_stopped)
+        )
+        self._descriptions = ()
         try:
-            loop = self._open(equipment.drive, clock)
-            refuse_modes(kind.name, kind.modes(parameters), equipment.drive.describe())
-            if kind.name != commissioned.KIND and not is_simulated(configuration):
-                commissioned.require_commissioned(self._store, provenance(configuration, self._description))
+            station.open()
+            self._descriptions = tuple(drive.describe() for drive in station.drives)
+            refuse_modes(kind.name, kind.modes(parameters), self._descriptions[0])
+            if kind.name != commissioned.KIND:
+                self._require_commissioned(configuration, station)
         except BaseException:
-            equipment.drive.close()
+            station.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, equipment, loop, space, session)
+        return Prepared(kind, parameters, plans, duration_s, station, space, session)
 
-    def _open(self, drive: Drive, clock: Clock) -> ControlLoop:
-        """Open a drive, and refuse it where it does not fit the configuration."""
-        configuration, period_s = self.configuration, self.configuration.control.period_s
-        drive.open(period_s)
-        self._description = description = drive.describe()
-        check_timing(description, period_s)
-        check_modes(configuration.servo, description)
-        servo = current_servo(configuration.rig)
-        return ControlLoop(drive, clock, Guard(configuration.limits), period_s, servo)
+    def _require_commissioned(self, configuration: BenchConfiguration, station: Station) -> None:
+        """Refuse a real drive that has not passed the commissioning move."""
+        benches = (configuration,) if len(station.drives) == 1 else (configuration, configuration.of_master())
+        for bench, drive in zip(benches, station.drives, strict=True):
+            if not is_simulated(bench):
+                commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
 
     def _is_real_time(self, pace: Pace | None) -> bool:
         simulated = is_simulated(self.configuration)
@@ -230,13 +234,21 @@ class Runner:
         return pace == "real-time" or not simulated
 
     def _begin(self, configuration: BenchConfiguration, request: Request, parameters: dict[str, Any]) -> int:
-        drive = self._description
-        simulated = not has_hardware(configuration) or (drive is not None and drive.simulated)
+        drives, benches = self._descriptions, [configuration]
+        if find_kind(request.kind).pair and configuration.master is not None:
+            benches.append(configuration.of_master())
+        hardware = any(has_hardware(bench) for bench in benches)
+        simulated = not hardware or (bool(drives) and all(drive.simulated for drive in drives))
         return self._store.begin_experiment(
             request.kind,
             parameters,
             "simulated" if simulated else "real",
-            provenance(configuration, drive, seed_of(configuration)),
+            provenance(
+                configuration,
+                drives[0] if drives else None,
+                seed_of(configuration),
+                drives[1] if len(drives) > 1 else None,
+            ),
             configuration.rig.model_dump(mode="json", exclude_none=True),
             request.operator,
             request.note,

@@ -1,5 +1,7 @@
 """Whether a drive keeps up with the control period, and watches over it: checked before motion."""
 
+from collections.abc import Sequence
+
 from bench.errors import ConfigurationError
 from drivers.contract import Description
 
@@ -24,4 +26,19 @@ def check_timing(drive: Description, period_s: float) -> None:
         raise ConfigurationError(
             f"the watchdog of drive '{drive.device}' stops it after {drive.watchdog_s:g} s; {least_s:g} s (two control "
             f"periods) .. {SLOWEST_WATCHDOG_S:g} s is wanted. Change drive.watchdog_s or control.period_s"
+        )
+
+
+def check_pair_timing(drives: Sequence[Description], period_s: float) -> None:
+    """Compare what drives take that are asked one after the other with the control period.
+
+    Raises:
+        ConfigurationError: together they are too slow.
+    """
+    shortest_s = sum(1.0 / drive.max_rate_hz for drive in drives)
+    if period_s < shortest_s:
+        names = " and ".join(f"'{drive.device}'" for drive in drives)
+        raise ConfigurationError(
+            f"control.period_s is {period_s:g} s; drives {names}, one after the other in each cycle, take "
+            f"{shortest_s:.2g} s. Choose a longer period or a faster line"
         )

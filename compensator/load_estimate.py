@@ -31,6 +31,7 @@ class EstimatorSettings:
         window: readings that speed and acceleration are taken from.
         rest_cycles: the joint is at rest when it has stood for more than this.
         stuck_cycles: it is stuck when it has stood for more than this outside of the dead-band.
+        onset_cycles: by then a current that moves the joint has been seen to move it.
         blend_s: time constant with which the difference between two branches dies away.
     """
 
@@ -41,6 +42,7 @@ class EstimatorSettings:
     window: int = 40
     rest_cycles: int = 20
     stuck_cycles: int = 40
+    onset_cycles: int = 6
     blend_s: float = 0.1
 
     @property

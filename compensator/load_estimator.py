@@ -1,11 +1,13 @@
 """The load of a joint, cycle after cycle, at rest and in motion: what a master arm can follow.
 
-    at rest     I_load of the last zero-speed search, for as long as the motor current agrees with it: eq. (1) allows
-                any load within the static friction round the present current
-    stuck       speed 0 although the set point is elsewhere (a wall): friction is taken as that of motion towards the
-                set point                                                                      (paper, section 3.2.1)
+    at rest     I_load of the last zero-speed search, or what was known before, for as long as the motor current agrees
+                with it: eq. (1) allows any load within the static friction round the present current
+    stuck       speed 0 although the set point is elsewhere (a wall): the same; as the push grows, what is known is
+                pressed to the end of that band at which friction is that of motion towards the set point, and this is
+                the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
-    turning     just set off, turned back, or within the free play after that: held
+    turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
+                the joint stands
 
 A pure function, (state, observation) -> (state, estimate). Where one branch takes over from another, the difference
 between the two dies away with `blend_s`; until then it is part of the band.
@@ -30,6 +32,7 @@ __all__ = [
 ]  # fmt: skip
 
 BAND = 1.96  # standard deviations in half of a 95 % interval
+MISSED_CYCLES = 3  # without motion, before the joint may be standing
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
 
@@ -100,7 +103,8 @@ def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Obs
     if (not outside and state.still_cycles > settings.rest_cycles) or observation.rest is not None:
         return Branch.REST
     travel_rad = abs(state.extreme_rad - state.turned_rad)
-    window_moves = state.moving_cycles > settings.window >= 2 * state.still_cycles
+    # what follows the last motion may be at rest already, held by any friction
+    window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
     return Branch.MOVING if window_moves and travel_rad > settings.free_play_rad else Branch.TURNING
 
 
@@ -110,30 +114,59 @@ def _own(
     """The value of the branch alone, whatever was given out before."""
     held_a = state.known_a + joint.gravity_at(observation.position_rad)
     if branch is Branch.REST:
-        return _at_rest(joint, state, observation, held_a)
+        return _at_rest(joint, settings, state, held_a)
     if branch is Branch.STUCK:
-        return _stuck(joint, observation)
+        return _stuck(joint, settings, state, observation, held_a)
     if branch is Branch.MOVING:
         return _moving(joint, settings, state, observation)
+    if branch is Branch.TURNING and state.still_cycles > settings.onset_cycles and not isnan(held_a):
+        return _allowed(joint, settings, state, held_a, nan, branch)
     return LoadEstimate(held_a, state.estimate.half_width_a, branch)
 
 
-def _at_rest(joint: JointUnderLoad, state: EstimatorState, observation: Observation, held_a: float) -> LoadEstimate:
+def _at_rest(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, held_a: float) -> LoadEstimate:
     """The search's result, or what was known before it, as far as static friction allows it."""
-    margin = 1.0 + 3.0 * joint.friction_scatter
-    low_a, high_a = sorted(_about_to_move_a(joint, observation.current_a, way, margin) for way in (1.0, -1.0))
-    known_a, half_a = (held_a, inf) if state.rest is None else state.rest[:2]
-    allowed_a = (low_a + high_a) / 2.0 if isnan(known_a) else min(max(known_a, low_a), high_a)
-    if state.rest is None or allowed_a != known_a:
-        half_a = max(high_a - allowed_a, allowed_a - low_a)
-    return LoadEstimate(allowed_a, half_a, Branch.REST)
+    if state.rest is None:
+        return _allowed(joint, settings, state, held_a, nan, Branch.REST)
+    known_a, half_a, _ = state.rest
+    given = _allowed(joint, settings, state, known_a, nan, Branch.REST)
+    return given._replace(half_width_a=half_a) if given.load_current_a == known_a else given
 
 
-def _stuck(joint: JointUnderLoad, observation: Observation) -> LoadEstimate:
-    """The push may have stopped growing anywhere in the band of static friction; the rule takes its near end."""
+def _stuck(
+    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation, held_a: float
+) -> LoadEstimate:
+    """The near end of the band of static friction, as for motion towards the set point: a push that grows lies there.
+
+    What was known before stands for as long as the band holds it: then friction alone may be what holds the joint.
+    """
     way = copysign(1.0, observation.target_rad - observation.position_rad)
-    near_a, far_a = (_about_to_move_a(joint, observation.current_a, one, 1.0) for one in (way, -way))
-    return LoadEstimate(near_a, abs(far_a - near_a), Branch.STUCK, joint.friction_a(0.0, way))
+    near_a = _about_to_move_a(joint, _stood_a(settings, state), way, 1.0)
+    given = _allowed(joint, settings, state, held_a, near_a, Branch.STUCK)
+    return given._replace(friction_current_a=joint.friction_a(0.0, way))
+
+
+def _allowed(
+    joint: JointUnderLoad,
+    settings: EstimatorSettings,
+    state: EstimatorState,
+    known_a: float,
+    else_a: float,
+    branch: Branch,
+) -> LoadEstimate:
+    """What is known, as far as static friction allows it: eq. (1); the middle, or something else, where nothing is."""
+    margin = 1.0 + 3.0 * joint.friction_scatter
+    low_a, high_a = sorted(_about_to_move_a(joint, _stood_a(settings, state), way, margin) for way in (1.0, -1.0))
+    if isnan(known_a):
+        known_a = (low_a + high_a) / 2.0 if isnan(else_a) else else_a
+    given_a = min(max(known_a, low_a), high_a)
+    return LoadEstimate(given_a, max(high_a - given_a, given_a - low_a), branch)
+
+
+def _stood_a(settings: EstimatorSettings, state: EstimatorState) -> float:
+    """The newest current [A] that is known not to have moved the joint: motion shows only after a while."""
+    seen = state.currents_a
+    return seen[-min(settings.onset_cycles, state.still_cycles, len(seen) - 1) - 1]
 
 
 def _about_to_move_a(joint: JointUnderLoad, current_a: float, way: float, margin: float) -> float:

@@ -1,6 +1,7 @@
 """The plant: parameters, state and the compiled kernel behind four calls."""
 
 from dataclasses import dataclass, replace
+from math import sin
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,14 @@ from numpy.typing import NDArray
 from sim_backend.clutch import Clutch
 from sim_backend.constants import constants_of
 from sim_backend.errors import ParameterError
-from sim_backend.gravity import Load
+from sim_backend.gravity import STANDARD_GRAVITY_M_S2, Load
 from sim_backend.kernel import Whole, advance, stored_energy
+from sim_backend.operator import Operator
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
 from sim_backend.state import at_rest
 from sim_backend.stiffness import stiffest
+from sim_backend.wall import Wall
 
 COARSEST_STEP_S = 1e-4
 
@@ -149,6 +152,31 @@ class Plant:
     def loosen_clutch(self, limit_n_m: float) -> None:
         """Let the clutch slip at a torque [N m]; 0 is rigid again."""
         self._change(clutch=Clutch(limit_n_m=limit_n_m))
+
+    def put_wall(self, wall: Wall) -> None:
+        """Put a wall in the arm's way, or take it away.
+
+        Raises:
+            ParameterError: too stiff for the integration step.
+        """
+        before = self.parameters
+        self._change(wall=wall)
+        try:
+            self._check_step(self.step_s)
+        except ParameterError:
+            self._change(wall=before.wall)
+            raise
+
+    def take_hold(self, operator: Operator) -> None:
+        """Let an operator hold the arm from now on, or have something else in mind; arm and hand move on as they do."""
+        self._change(operator=operator)
+
+    def interaction_n_m(self) -> float:
+        """Return the true torque that holds up load and arm, and presses the arm against what it leans on [N m]."""
+        state, parameters = self._state[0], self.parameters
+        angle_rad = float(state["arm_rad"]) + parameters.centre_of_mass.angle_rad
+        weight_n_m = STANDARD_GRAVITY_M_S2 * float(self._whole["constants"]["moment_kg_m"][0]) * sin(angle_rad)
+        return weight_n_m - float(state["leant_n_m"])
 
     def _change(self, **components: Any) -> None:
         self.parameters = replace(self.parameters, **components)

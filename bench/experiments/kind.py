@@ -1,15 +1,18 @@
 """What every kind of experiment offers: parameters, a plan of trials, a refusal before motion, a summary."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
 from bench.configuration import BenchConfiguration
-from bench.loop import OutcomeName, Procedure
+from bench.loop import OutcomeName
 from compensator.lab.recording import Condition
 from drivers.contract import Mode
+
+AnyProcedure = Generator[Any, Any, dict[str, Any]]
+"""Of one joint (`bench.cycle.Procedure`), or of a pair (`bench.pair.cycle.PairProcedure`)."""
 
 
 class Parameters(BaseModel):
@@ -26,14 +29,16 @@ class TrialPlan:
         name: unique within its experiment.
         conditions: what is held constant; the keys carry units.
         procedure: makes a fresh procedure.
-        load_kg, balanced: what has to hang on the arm.
+        load_kg, balanced: what has to hang on the arm; of a pair, on the slave's.
+        wall_rad: where a wall stands in the way of a pair's slave; None: nowhere. Of others it means nothing.
     """
 
     name: str
     conditions: dict[str, Condition]
-    procedure: Callable[[], Procedure]
+    procedure: Callable[[], AnyProcedure]
     load_kg: float
     balanced: bool = False
+    wall_rad: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +70,7 @@ class ExperimentKind:
         duration_s: estimate of the time it takes in real time [s].
         summarise: results of the whole from those of its trials; JSON-able, units in the names.
         modes: that the drive has to close itself; position and current are done without.
+        pair: it moves a master and a slave; its procedures are those of `bench.pair.cycle`.
     """
 
     name: str
@@ -76,3 +82,4 @@ class ExperimentKind:
     duration_s: Callable[[Any, BenchConfiguration], float]
     summarise: Callable[[Any, list[FinishedTrial]], dict[str, Any]]
     modes: Callable[[Any], frozenset[Mode]] = any_drive
+    pair: bool = False

@@ -19,6 +19,7 @@ from bench.experiments import (
     speed_sweep,
     steady_speeds,
     steps,
+    teleoperation,
     waveform,
 )
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
@@ -40,6 +41,7 @@ KINDS: dict[str, ExperimentKind] = {
         coast_down.KIND,
         hold_and_soak.KIND,
         waveform.KIND,
+        teleoperation.KIND,
         commissioning.KIND,
     )
 }

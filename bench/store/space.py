@@ -26,10 +26,10 @@ class SpaceNeed:
     told: str
 
     @classmethod
-    def of(cls, trial_s: float, period_s: float, reserve_mb: float) -> Self:
+    def of(cls, trial_s: float, period_s: float, reserve_mb: float, channels: int = CHANNELS) -> Self:
         """The need of a trial of an estimated length [s], sampled every `period_s` [s]."""
-        size = ceil(trial_s / period_s * CHANNELS * SAMPLE_BYTES * OVERHEAD)
-        told = f"{trial_s:.0f} s at {1 / period_s:.0f} rows/s of {CHANNELS} channels"
+        size = ceil(trial_s / period_s * channels * SAMPLE_BYTES * OVERHEAD)
+        told = f"{trial_s:.0f} s at {1 / period_s:.0f} rows/s of {channels} channels"
         return cls(size, ceil(reserve_mb * 1e6), told)
 
     def check(self, free_bytes: int | None, trials: int, where: str) -> None:

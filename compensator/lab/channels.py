@@ -37,6 +37,22 @@ CHANNELS: dict[str, Channel] = {
         Channel("force_n", "N", "motor force of a linear joint"),
         Channel("enabled", "1", "power stage on (1) or off (0)"),
         Channel("age_s", "s", "age of the sample when it was received"),
+        # of a pair: the others are the slave's
+        Channel("master_position_rad", "rad", "the master's motor-side position / gear ratio"),
+        Channel("master_velocity_rad_s", "rad/s", "the master's motor-side speed / gear ratio"),
+        Channel("master_duty", "1", "signed PWM duty applied to the master, -1 .. 1"),
+        Channel("master_current_a", "A", "the master's motor current measured by its drive"),
+        Channel("master_current_estimate_a", "A", "the master's motor current from duty and speed, eq. (3)"),
+        Channel("master_current_command_a", "A", "the master's motor current asked for"),
+        Channel("master_supply_v", "V", "the master's supply voltage"),
+        Channel("master_temperature_c", "degC", "temperature that the master's drive reports"),
+        Channel("master_enabled", "1", "the master's power stage on (1) or off (0)"),
+        Channel("master_age_s", "s", "age of the master's sample when it was received"),
+        Channel("reflected_n_m", "N m", "load of the slave that is reflected to the operator"),
+        Channel(
+            "interaction_n_m", "N m", "what truly holds up load and arm and presses on a wall; simulated pairs only"
+        ),
+        Channel("hand_n_m", "N m", "what the operator's hand truly does to the master; simulated pairs only"),
     )
 }
 EVENT_COLUMN = "event"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench import runner as runner_module
+from bench import station
 from bench.commissioned import fingerprint
 from bench.configuration import default_configuration, parse_configuration
 from bench.cycle import Reading
@@ -114,7 +114,7 @@ def test_a_pass_holds_for_one_drive_with_one_configuration():
 def real_bench(monkeypatch, tmp_path):
     """A bench whose drive is a real one, by its configuration; and the function that makes its runner."""
     drive = FakeDrive()
-    monkeypatch.setattr(runner_module, "make_equipment", lambda _configuration, _ask: Equipment(drive, drive))
+    monkeypatch.setattr(station, "make_equipment", lambda _configuration, _ask: Equipment(drive, drive))
     values = default_configuration().model_dump(mode="json", exclude_none=True)
     values["rig"] = RIG.model_dump(exclude_none=True)
     values["drive"] = {"kind": "roboclaw", "port": "/dev/ttyACM0"}

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from bench import runner as runner_module
+from bench import station
 from bench.configuration import default_configuration
 from bench.drive_factory import Equipment
 from bench.errors import PromptError
@@ -27,9 +27,7 @@ def wait_for(condition, timeout_s=20.0):
 def bench(monkeypatch, tmp_path):
     """A runner whose drive is the fake one, and whose loads are hung by a person."""
     drive = FakeDrive()
-    monkeypatch.setattr(
-        runner_module, "make_equipment", lambda _configuration, ask: Equipment(drive, PersonTechnician(ask))
-    )
+    monkeypatch.setattr(station, "make_equipment", lambda _configuration, ask: Equipment(drive, PersonTechnician(ask)))
     with Store.open(f"sqlite:///{tmp_path / 'bench.sqlite'}") as store:
         runner = Runner(default_configuration(), store)
         yield runner, drive, store

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from bench import runner as runner_module
+from bench import station
 from bench.configuration import default_configuration
 from bench.drive_factory import Equipment
 from bench.errors import BusyError, ConfigurationError, LimitError, ParameterError, UnknownKindError
@@ -175,7 +175,7 @@ def test_close_stops_and_nothing_starts_afterwards(store):
 def fake(monkeypatch):
     """A fake drive in place of the simulated one."""
     drive = FakeDrive()
-    monkeypatch.setattr(runner_module, "make_equipment", lambda _configuration, _ask: Equipment(drive, drive))
+    monkeypatch.setattr(station, "make_equipment", lambda _configuration, _ask: Equipment(drive, drive))
     yield drive
     assert not drive.powered
 

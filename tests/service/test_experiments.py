@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import httpx
 import pytest
 
-from bench import runner as runner_module
+from bench import station
 from bench.drive_factory import Equipment
 from bench.technician import PersonTechnician
 from tests.bench.fake_drive import FakeDrive
@@ -202,9 +202,7 @@ def test_an_answer_to_what_is_not_asked(idle):
 
 def test_the_person_at_the_bench_is_asked_over_rest(idle, monkeypatch):
     drive = FakeDrive()
-    monkeypatch.setattr(
-        runner_module, "make_equipment", lambda _configuration, ask: Equipment(drive, PersonTechnician(ask))
-    )
+    monkeypatch.setattr(station, "make_equipment", lambda _configuration, ask: Equipment(drive, PersonTechnician(ask)))
     idle.start("steps", repeats=1)
     deadline_s = time.monotonic() + 20.0
     while (prompt := idle.client.get("/bench").json()["prompt"]) is None:

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from bench import runner
+from bench import station
 from bench.drive_factory import Equipment, make_equipment
 from drivers.contract import Command, Mode, Sample
 
@@ -78,7 +78,7 @@ def main() -> None:
         found = make_equipment(*words)
         return Equipment(WitnessedDrive(found.drive, path, raise_after_s), found.technician)  # type: ignore[arg-type]
 
-    runner.make_equipment = witnessed
+    station.make_equipment = witnessed
     sys.argv = ["friction-bench", *arguments]
     from bench.cli import main as command
 

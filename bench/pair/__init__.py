@@ -1,0 +1,1 @@
+"""A master and a slave: two joints, two drives, one loop."""

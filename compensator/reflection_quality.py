@@ -1,0 +1,84 @@
+"""How well a load is reflected, from recorded samples: error, delay, and whether a joint swings without end."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+LEAST_TURNS = 4  # two periods
+LEAST_CORRELATION = 0.5  # below, what is reflected is no image of the truth, and has no delay
+
+
+class Swing(NamedTuple):
+    """How a position moves while it should rest.
+
+    Attributes:
+        amplitude_rad: half of what lies between its extremes.
+        turns: how often it turned back by more than the threshold.
+    """
+
+    amplitude_rad: float
+    turns: int
+
+    @property
+    def is_limit_cycle(self) -> bool:
+        """Whether it goes on swinging: it turned back at least `LEAST_TURNS` times."""
+        return self.turns >= LEAST_TURNS
+
+
+def swing(position_rad: FloatArray, threshold_rad: float) -> Swing:
+    """How a position swings.
+
+    Args:
+        position_rad: samples of a time in which it should rest, shape (n,); at least one.
+        threshold_rad: what is less is noise of the encoder.
+    """
+    low = high = extreme = float(position_rad[0])
+    way, turns = 0, 0
+    for position in position_rad.tolist():
+        if way == 0:
+            low, high = min(low, position), max(high, position)
+            way = int(position > low + threshold_rad) - int(position < high - threshold_rad)
+            extreme = position
+        elif way * (position - extreme) >= 0.0:
+            extreme = position
+        elif way * (extreme - position) > threshold_rad:
+            way, turns, extreme = -way, turns + 1, position
+    return Swing(float(np.ptp(position_rad)) / 2.0, turns)
+
+
+def delay_s(reflected: FloatArray, truth: FloatArray, period_s: float, longest_s: float = 0.5) -> float | None:
+    """By how much what is reflected comes later than the truth: where the two correlate best.
+
+    Args:
+        reflected: samples of one motion, one period apart, shape (n,); finite.
+        truth: at the same times.
+        period_s: of the samples.
+        longest_s: most delay that is looked for, and most lead.
+
+    Returns:
+        The delay [s], between samples by a parabola; None where the two correlate by less than `LEAST_CORRELATION`
+        everywhere, or best at the edge.
+    """
+    most = min(round(longest_s / period_s), len(truth) // 2)
+    alike = np.array([_correlation(*_shifted(reflected, truth, lag)) for lag in range(-most, most + 1)])
+    best = int(np.argmax(alike))
+    if not alike[best] >= LEAST_CORRELATION or best in (0, len(alike) - 1):
+        return None
+    before, at, after = alike[best - 1 : best + 2]
+    bend = before - 2.0 * at + after
+    return float((best - most + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)) * period_s)
+
+
+def _shifted(reflected: FloatArray, truth: FloatArray, lag: int) -> tuple[FloatArray, FloatArray]:
+    """What is reflected, beside the truth that was so many samples before."""
+    if lag >= 0:
+        return reflected[lag:], truth[: len(truth) - lag]
+    return reflected[:lag], truth[-lag:]
+
+
+def _correlation(one: FloatArray, other: FloatArray) -> float:
+    one, other = one - np.mean(one), other - np.mean(other)
+    size = float(np.sqrt(np.sum(one**2) * np.sum(other**2)))
+    return float(np.sum(one * other)) / size if size > 0.0 else 0.0
