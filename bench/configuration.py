@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, ValidationError, field_validator
 
 from bench.drives.settings import DriveSettings
 from bench.drives.simulated import SimulatedDriveSettings
@@ -113,25 +113,21 @@ class BenchConfiguration(Section):
         default=None, description="A second joint with the operator's hand on it, whose slave the joint is"
     )
 
-    @model_validator(mode="after")
-    def _check_master(self) -> "BenchConfiguration":
-        if self.master is not None and (self.master.drive.kind == "sim") != (self.drive.kind == "sim"):
-            raise ValueError(
-                f"master.drive.kind is '{self.master.drive.kind}' and drive.kind is '{self.drive.kind}'; a simulated "
-                "joint and a real one have no common time. Choose 'sim' for both or for neither"
-            )
-        return self
-
     def require_master(self) -> MasterSettings:
         """The master.
 
         Raises:
-            ConfigurationError: there is none.
+            ConfigurationError: there is none, or one joint is real and the other is not.
         """
         if self.master is None:
             raise ConfigurationError(
                 f"bench '{self.name}' has one joint, and a master is needed too: add [master.drive] to bench.toml, and "
                 "[master.rig] where the master is not built as the slave is"
+            )
+        if (self.master.drive.kind == "sim") != (self.drive.kind == "sim"):
+            raise ConfigurationError(
+                f"master.drive.kind is '{self.master.drive.kind}' and drive.kind is '{self.drive.kind}'; a simulated "
+                "joint and a real one have no common time. Choose 'sim' for both or for neither"
             )
         return self.master
 
@@ -139,7 +135,7 @@ class BenchConfiguration(Section):
         """The master as a bench of its own.
 
         Raises:
-            ConfigurationError: there is none.
+            ConfigurationError: as `require_master`.
         """
         master = self.require_master()
         return BenchConfiguration(
