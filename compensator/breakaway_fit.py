@@ -15,7 +15,7 @@ from math import nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from compensator.errors import ModelParameterError
 from compensator.interval import CONFIDENCE, Interval
@@ -86,7 +86,7 @@ def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
     freedom, scatter_a, quantile = count - unknowns, nan, nan
     if freedom > 0:
         scatter_a = sqrt(float(np.sum((current_a - columns @ solution) ** 2)) / freedom)
-        quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, freedom))
+        quantile = float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0))
     load, friction = (_interval(solution[place], quantile * scatter_a * sqrt(variances[place])) for place in (0, 1))
     delay = solution[2] if unknowns > 2 else 0.0
     ramped_a = float(np.mean(direction * (current_a - solution[0])))

@@ -5,13 +5,15 @@ M-estimator (Huber, Ann. Statist. 1 (1973), 799) whose residuals do not all scat
 J. Econometrics 29 (1985), 305): at creeping speed a window averages over little of the path, and scatters more.
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, least_squares
 
 from compensator.kinetic_friction import FloatArray
+
+if TYPE_CHECKING:  # imported when needed: every command starts with this file, and scipy's optimizers take a while
+    from scipy.optimize import OptimizeResult
 
 SHAPES = (0.3, 4.0)  # allowed ds; the literature has 0.5 .. 2
 STARTS = tuple((share, shape) for share in (0.005, 0.02, 0.06, 0.2) for shape in (1.0, 2.0))
@@ -102,7 +104,9 @@ def solve(speed: FloatArray, current: FloatArray, stribeck: bool, acceleration: 
     return Solution(p, _covariance(problem, best, free, scale_a), free, spread_a, len(problem.fitted))
 
 
-def _run(problem: _Problem, start: FloatArray, scale_a: float) -> OptimizeResult:
+def _run(problem: _Problem, start: FloatArray, scale_a: float) -> "OptimizeResult":
+    from scipy.optimize import least_squares
+
     low, high = problem.low[problem.fitted], problem.high[problem.fitted]
     return least_squares(
         problem.residuals,
@@ -121,7 +125,7 @@ def _spread(residual_a: FloatArray, parameters: int) -> float:
     return float(1.4826 * np.median(np.abs(residual_a)) * np.sqrt(count / (count - parameters)))
 
 
-def _covariance(problem: _Problem, best: OptimizeResult, free: NDArray[np.bool_], scale_a: float) -> FloatArray:
+def _covariance(problem: _Problem, best: "OptimizeResult", free: NDArray[np.bool_], scale_a: float) -> FloatArray:
     columns = problem.derivatives(best.x)[:, free[problem.fitted]]
     bend = 1.0 + (best.fun / scale_a) ** 2
     influence_a, slope = best.fun / np.sqrt(bend), bend**-1.5

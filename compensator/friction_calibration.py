@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from compensator import motor
 from compensator.calibration_points import check_accelerations, check_points
@@ -71,7 +71,7 @@ def fit(
     speed, current = check_points(speed_rad_s, current_a, stribeck)
     acceleration = None if acceleration_rad_s2 is None else check_accelerations(acceleration_rad_s2, speed)
     solution = solve(speed, current, stribeck, acceleration)
-    quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, len(speed) - solution.fitted))
+    quantile = float(stdtrit(len(speed) - solution.fitted, 0.5 + CONFIDENCE / 2.0))
     parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
     curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name not in NO_PART_OF_THE_CURVE})
     return FrictionFit(curve, parameters, solution.scatter_a, len(speed))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from compensator.interval import CONFIDENCE, Interval
 from compensator.kinetic_friction import FloatArray
@@ -64,5 +64,5 @@ def fit_line(columns: FloatArray, response: FloatArray) -> Line:
     told = bool(rank == columns.shape[1])
     gram = columns.T @ columns / np.outer(scales, scales)
     covariance = residual**2 * (np.linalg.inv(gram) if told else gram) / np.outer(scales, scales)
-    quantile = float(student_t.ppf(0.5 + CONFIDENCE / 2.0, freedom))
+    quantile = float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0))
     return Line(told, values / scales, covariance, quantile, residual)

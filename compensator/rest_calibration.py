@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from compensator.breakaway_fit import BreakawayFit
 from compensator.errors import CalibrationError
@@ -174,6 +173,8 @@ def _fit(
 
 def _scatter(found: Sequence[BreakawayFit]) -> tuple[float, float]:
     """Floor and share of the scatter of a breakaway, from that within each search."""
+    from scipy.optimize import nnls  # imported when needed: every command starts with this file
+
     variance = np.array([one.scatter_a**2 for one in found])
     friction_a = np.array([one.friction_current_a.value for one in found])
     scale = np.mean(variance) or FLOOR_A**2

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from math import isfinite, nan
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from bench.errors import ParameterError
 from bench.experiments.signal_play import FloatArray, Quantity
@@ -42,6 +41,8 @@ class Waveform:
         cycles = np.arange(round(float(self.time_s[-1]) / period_s) + 1) * period_s
         cycles = np.minimum(cycles, self.time_s[-1])
         if self.quantity == "position_rad":
+            from scipy.interpolate import PchipInterpolator  # imported when needed: every command starts with this file
+
             return np.asarray(PchipInterpolator(self.time_s, self.values)(cycles))
         return np.asarray(np.interp(cycles, self.time_s, self.values))
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from compensator.lab.fit import Fit
 from compensator.lab.linear import solve_normal
@@ -85,5 +85,5 @@ def _half_widths(fit: Fit) -> FloatArray:
     if count > 2:
         spread = np.array(without) - np.mean(without, axis=0)
         error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
-        half[kept] = error * student_t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1)
+        half[kept] = error * stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE)
     return half
