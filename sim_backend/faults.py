@@ -48,6 +48,10 @@ class SamplesLate(Fault):
     age_s: float = quantity("s", above=0, at_most=1)
 
 
+class ModeRefused(Fault):
+    """The drive takes no other mode than the one it is in."""
+
+
 class Trip(Fault, ABC):
     """The drive switches itself off, and cannot be cleared while the cause is there."""
 

@@ -116,7 +116,7 @@ class ModbusDrive(Drive):
             DriveConnectionError: no valid answer within the time limit.
         """
         session = self._opened("exchange")
-        mode, value = command.mode, command.value
+        mode, value, asked_s = command.mode, command.value, perf_counter()
         if mode is Mode.OFF:
             self._mode = Mode.OFF
             if session.told is Status.ENABLED:
@@ -126,7 +126,7 @@ class ModbusDrive(Drive):
             self._check_motion(session, mode, value)
             values = session.move(mode, value)
             self._lateness.told()
-        return session.sample(values, perf_counter())
+        return session.sample(values, asked_s)
 
     # the inside ----------------------------------------------------------------------------------
 

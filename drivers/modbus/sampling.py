@@ -79,7 +79,7 @@ class Sampling:
         self._kept_at_s = time.perf_counter()
 
     def sample(self, values: Values, state: Status, at_s: float) -> Sample:
-        """The sample of values that were read at a time [s]."""
+        """The sample of values that were asked for at a time [s]."""
         now_s = time.perf_counter()
         age_s = now_s - at_s
         slow_age_s = now_s - self._kept_at_s if self._kept else age_s

@@ -59,7 +59,9 @@ class Session:
             DriveConnectionError: no valid answer within the time limit.
             DriveConfigurationError: its register does not hold the value; nothing was sent.
         """
-        return self._transact(self._demand.motion(mode, value))
+        found = self._transact(self._demand.motion(mode, value))
+        self._demand.keep(mode)
+        return found
 
     def stay(self, mode: Mode) -> Values:
         """Write the demand of a mode that moves nothing: in POSITION the present one; as `move`."""
@@ -92,7 +94,9 @@ class Session:
         self.switch_off()
 
     def sample(self, values: Values, at_s: float) -> Sample:
-        """The sample of a cycle whose values were read at a time [s]; asks for what is slow where it is its turn.
+        """The sample of a cycle whose values were asked for at a time [s]; asks for what is slow where it is its turn.
+
+        They were measured then or a little later: ages that come of it are not too small, however slow the line is.
 
         Raises:
             DriveConnectionError: no valid answer within the time limit.

@@ -53,7 +53,7 @@ class Session:
         before, sent_s = motor.counts, perf_counter()
         found = motor.tell_and_ask(counts, telemetry.quick) if self._asks_together else None
         if found is not None:
-            times_s = [sent_s] * len(found)  # measured since then
+            times_s = [sent_s] * len(found)
         else:
             motor.tell(counts)
             found, times_s = telemetry.ask()

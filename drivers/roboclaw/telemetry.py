@@ -81,15 +81,17 @@ class Telemetry:
         return {name: step for name, step in steps.items() if name in self.measured}
 
     def ask(self) -> tuple[list[tuple[int, ...]], list[float]]:
-        """Ask for what is wanted in every cycle, in turn. Returns the data of `quick`, and when each came [s].
+        """Ask for what is wanted in every cycle, in turn. Returns the data of `quick`, and when each was asked for [s].
+
+        It was measured then or a little later: ages that come of it are not too small, however slow the line is.
 
         Raises:
             DriveConnectionError: no valid answer in time.
         """
         found, times_s = [], []
         for read in self.quick:
-            found.append(self._link.read(read))
             times_s.append(time.perf_counter())
+            found.append(self._link.read(read))
         return found, times_s
 
     def sample(self, status: Status, found: list[tuple[int, ...]], times_s: list[float]) -> Sample:
@@ -98,7 +100,7 @@ class Telemetry:
         Args:
             status: of the power stage.
             found: data of `quick`.
-            times_s: when each was measured [s].
+            times_s: when each was asked for [s].
 
         Raises:
             DriveConnectionError: no valid answer in time.

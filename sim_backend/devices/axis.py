@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 from drivers.contract import Sample, Status
 from sim_backend.errors import ParameterError
 from sim_backend.fault_play import FaultPlay
-from sim_backend.faults import Fault, FaultScript, OverCurrent, TorqueDisabled, Trip
+from sim_backend.faults import Fault, FaultScript, ModeRefused, OverCurrent, TorqueDisabled, Trip
 from sim_backend.gravity import Load
 from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
 from sim_backend.overload import OverloadMeter
@@ -93,6 +93,10 @@ class Axis:
     def torque_is_disabled(self) -> bool:
         """Tell whether the safe-torque-off circuit is open."""
         return self.script.holding(TorqueDisabled, self.time_s) is not None
+
+    def mode_is_refused(self) -> bool:
+        """Tell whether the drive takes no other mode."""
+        return self.script.holding(ModeRefused, self.time_s) is not None
 
     def meet(self, fault: Fault) -> None:
         """Let something go wrong, in the axis' time.

@@ -12,6 +12,7 @@ NAMES: dict[str, type[Fault]] = {
     "supply-lost": faults.SupplyLost,
     "drive-failed": faults.DriveFailed,
     "torque-disabled": faults.TorqueDisabled,
+    "mode-refused": faults.ModeRefused,
     "encoder-stuck": faults.EncoderStuck,
     "encoder-jump": faults.EncoderJump,
     "samples-late": faults.SamplesLate,

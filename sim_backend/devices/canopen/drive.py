@@ -240,6 +240,8 @@ class ServoDrive:
     def _check_mode(self, value: int) -> None:
         if value != 0 and value not in self.family.modes:
             raise Abort(AbortCode.INVALID_VALUE)
+        if value != self._mode_number and self.axis.mode_is_refused():
+            raise Abort(AbortCode.DEVICE_STATE)
 
 
 def _check_quick_stop(value: int) -> None:

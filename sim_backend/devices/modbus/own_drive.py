@@ -9,7 +9,7 @@ from typing import Any
 from drivers.contract import Sample
 from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.modbus.own_map import COMMAND_BLOCK, DEFAULTS, REGISTERS, identity
-from sim_backend.devices.modbus.refusal import ILLEGAL_FUNCTION, Refused
+from sim_backend.devices.modbus.refusal import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused
 from sim_backend.devices.modbus.register_file import RegisterFile
 from sim_backend.faults import OverCurrent, OverTemperature, SupplyLost, Trip
 from sim_backend.parameters import PlantParameters
@@ -103,7 +103,10 @@ class OwnDrive:
         """Write registers, all or none."""
         if function not in WRITES:
             raise Refused(ILLEGAL_FUNCTION)
-        self._kept |= self._file.parse(address, words)
+        wanted = self._file.parse(address, words)
+        if wanted.get("mode", self._kept["mode"]) != self._kept["mode"] and self.axis.mode_is_refused():
+            raise Refused(ILLEGAL_VALUE)
+        self._kept |= wanted
         if address in COMMAND_BLOCK:
             self._told_s = self.axis.time_s
             self._obey(Control(self._kept["control"]))

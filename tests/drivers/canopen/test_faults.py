@@ -2,10 +2,13 @@
 
 import time
 
+import can
 import pytest
 
+from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
+from tests.drivers.canopen.conftest import JOINT
 
 OFF = Command(Mode.OFF)
 PUSH = Command(Mode.CURRENT, 0.2)
@@ -225,6 +228,28 @@ def test_frames_that_are_not_what_they_should_be_are_counted_and_not_believed(no
     assert stale.number == before.number
     assert _fresh(drive).number >= before.number + 2
     assert drive.garbled == 4
+
+
+def test_a_bus_that_goes_off_in_motion_ends_in_the_drives_own_stop(node, channel, monkeypatch):
+    """The kernel's error frame of a controller that has left the bus, on a bus inside this process."""
+    monkeypatch.setattr(
+        "drivers.canopen.link.open_bus", lambda _settings, _device: can.Bus(interface="virtual", channel=channel)
+    )
+    drive = _moving(CanopenDrive(CanopenSettings(BusSettings("socketcan", channel), node_id=5), JOINT))
+    try:
+        node.bus.send(can.Message(arbitration_id=0x40, is_error_frame=True, data=bytes(8)))
+        node.silent = True  # nothing passes a controller that is off the bus
+        start_s = time.perf_counter()
+        with pytest.raises(DriveConnectionError, match=r"the bus is off after too many errors; check wiring"):
+            _run(drive)
+        with pytest.raises(DriveConnectionError, match="power-off is not confirmed"):
+            drive.disable()
+        assert time.perf_counter() - start_s < drive.describe().longest_call_s
+        _await_off(node)
+        node.silent = False
+        _reconnects(drive)
+    finally:
+        drive.close()
 
 
 def test_a_drive_that_restarts_in_motion_is_noticed(node, drive_of):

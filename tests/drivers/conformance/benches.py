@@ -14,7 +14,6 @@ from bench.limits import Guard
 from bench.loop import ControlLoop, Outcome
 from bench.servo import current_servo
 from drivers.contract import Drive
-from drivers.errors import DriveConnectionError
 from tests.bench.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
 
@@ -61,7 +60,7 @@ class Bench:
     @contextmanager
     def opened(self) -> Iterator[Drive]:
         with self.drive() as made:
-            open_patiently(made)
+            made.open(PERIOD_S)
             yield made
 
     def hang_as_asked(self, sentence: str) -> bool:
@@ -77,17 +76,6 @@ class Bench:
         if self.device is not None:
             self.device.side.ask("repair")
             self.device.wait_for_power(False)
-
-
-def open_patiently(drive: Drive) -> None:
-    """Open a drive; again where its device did not get its turn on a busy machine."""
-    for patience in range(5, -1, -1):
-        try:
-            drive.open(PERIOD_S)
-            return
-        except DriveConnectionError:
-            if not patience:
-                raise
 
 
 def configured(**drive: Any) -> BenchConfiguration:

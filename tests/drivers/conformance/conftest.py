@@ -1,18 +1,13 @@
 from collections.abc import Iterator
-from contextlib import suppress
 
 import pytest
 
-from drivers.errors import DriveError
 from tests.drivers.conformance.benches import BENCHES, Bench
 
 
 @pytest.fixture(scope="module", params=BENCHES)
 def running(request: pytest.FixtureRequest) -> Iterator[Bench]:
     with BENCHES[request.param]() as made:
-        for _ in range(3):  # the first answers of a device that has just started are slow
-            with suppress(DriveError), made.opened():
-                break
         yield made
 
 

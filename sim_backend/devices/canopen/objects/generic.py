@@ -37,6 +37,12 @@ def _objects(rating: Rating) -> list[Object]:
         variable(0x6079, "DC link circuit voltage", U32, RO, mappable=True),  # mV
         variable(0x6087, "Torque slope", U32, RW, 100_000),  # permille/s
         record(
+            0x608F,
+            "Position encoder resolution",
+            Entry(1, "Encoder increments", U32, RO, round(turn)),
+            Entry(2, "Motor revolutions", U32, RO, 1),
+        ),
+        record(
             0x60C2,
             "Interpolation time period",
             Entry(1, "Interpolation time period value", U8, RW, 10),
