@@ -1,11 +1,11 @@
 """`friction-bench simulate-device`: a drive in software that speaks its wire protocol, in a process of its own."""
 
 import json as json_text
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from bench.cli.device_options import DeviceOptions, with_device_options
 from bench.cli.output import say
 
 if TYPE_CHECKING:
@@ -19,40 +19,30 @@ app = typer.Typer(
     "paste the section that it prints into bench.toml, and run the bench in another.",
 )
 
-Preset = Annotated[str, typer.Option(help="Plant that is simulated.")]
-Plant = Annotated[Path | None, typer.Option(help="TOML file with plant parameters that differ from the preset.")]
-Seed = Annotated[int, typer.Option(min=0, help="Seed of the plant's scatter and noise.")]
-SidePort = Annotated[int, typer.Option(min=0, max=65535, help="TCP port of the side channel; 0 is any free one.")]
-Link = Annotated[Path | None, typer.Option(help="Symbolic link to put on the port, so that its name stays.")]
 Baud = Annotated[int, typer.Option(min=0, help="Pace of the line in bits a second; 0 is as fast as the machine.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the addresses as one line of JSON, for programs.")]
 
 
 @app.command()
+@with_device_options
 def roboclaw(
     address: Annotated[int, typer.Option(min=128, max=135, help="Address of the drive.")] = 128,
     usb: Annotated[bool, typer.Option("--usb", help="Answer to every address, as over USB.")] = False,
     baud: Baud = 115200,
-    link: Link = None,
-    preset: Preset = "paper",
-    plant: Plant = None,
-    seed: Seed = 1,
-    side_port: SidePort = 0,
-    json: Json = False,
+    *,
+    options: DeviceOptions,
 ) -> None:
     """A RoboClaw on a pseudo-terminal (packet serial)."""
-    from bench.simulated_device import Joint, start_roboclaw
+    from bench.simulated_device import start_roboclaw
 
-    device = start_roboclaw(
-        Joint(preset, plant, seed), address=address, usb=usb, baud=baud or None, link=link, side_port=side_port
-    )
+    device = start_roboclaw(options.joint(), address=address, usb=usb, baud=baud or None, **options.place())
     section: Section = {"kind": "roboclaw", "port": device.path, "address": address}
     if baud:
         section["baud_rate"] = baud
-    _serve(device, "RoboClaw", section, json)
+    _serve(device, "RoboClaw", section, options.json)
 
 
 @app.command()
+@with_device_options
 def canopen(
     family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic",
     node: Annotated[int, typer.Option(min=1, max=127, help="Node number.")] = 5,
@@ -65,28 +55,24 @@ def canopen(
     channel: Annotated[
         str, typer.Option(help="socketcand: TCP port, 0 is any free one; socketcan: the interface, such as vcan0.")
     ] = "0",
-    link: Link = None,
-    preset: Preset = "paper",
-    plant: Plant = None,
-    seed: Seed = 1,
-    side_port: SidePort = 0,
-    json: Json = False,
+    *,
+    options: DeviceOptions,
 ) -> None:
     """A CiA 402 servo drive on a CAN bus (CANopen)."""
-    from bench.simulated_device import Joint, start_canopen
+    from bench.simulated_device import start_canopen
 
     device = start_canopen(
-        Joint(preset, plant, seed),
-        family=family, node_id=node, interface=interface, channel=channel, link=link, side_port=side_port,
+        options.joint(), family=family, node_id=node, interface=interface, channel=channel, **options.place(),
     )  # fmt: skip
     section: Section = {"kind": "canopen", "interface": interface, "channel": device.path, "node_id": node}
     if interface == "socketcand":
         host, _, tcp_port = device.path.rpartition(":")
         section |= {"channel": "can0", "host": host, "port": int(tcp_port)}
-    _serve(device, f"CiA 402 drive ({family})", section, json)
+    _serve(device, f"CiA 402 drive ({family})", section, options.json)
 
 
 @app.command()
+@with_device_options
 def modbus(
     map_: Annotated[str, typer.Option("--map", help="Register map: friction-bench or roboteq.")] = "friction-bench",
     transport: Annotated[str, typer.Option(help="rtu (a pseudo-terminal) or tcp.")] = "rtu",
@@ -96,20 +82,16 @@ def modbus(
     ] = False,
     baud: Baud = 115200,
     port: Annotated[int, typer.Option(min=0, max=65535, help="TCP port; 0 is any free one.")] = 0,
-    link: Link = None,
-    preset: Preset = "paper",
-    plant: Plant = None,
-    seed: Seed = 1,
-    side_port: SidePort = 0,
-    json: Json = False,
+    *,
+    options: DeviceOptions,
 ) -> None:
     """A drive on Modbus RTU or TCP; docs/modbus-map.md is its manual."""
-    from bench.simulated_device import Joint, start_modbus
+    from bench.simulated_device import start_modbus
 
     device = start_modbus(
-        Joint(preset, plant, seed),
+        options.joint(),
         map=map_, transport=transport, unit=unit, low_word_first=low_word_first, baud=baud or None, port=port,
-        link=link, side_port=side_port,
+        **options.place(),
     )  # fmt: skip
     section: Section = {"kind": "modbus", "map": map_, "transport": transport, "unit": unit}
     if transport == "tcp":
@@ -119,7 +101,7 @@ def modbus(
         section |= {"port": device.path, "baud_rate": baud or 115200}
     if map_ == "roboteq":  # its watchdog has no register
         section |= {"watchdog_s": 1.0, "watchdog_is_set_in_drive": True}
-    _serve(device, f"Modbus drive ({map_})", section, json)
+    _serve(device, f"Modbus drive ({map_})", section, options.json)
 
 
 @app.command()

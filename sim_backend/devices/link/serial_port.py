@@ -1,19 +1,17 @@
 """The thread that carries bytes between a pseudo-terminal and a device, at the line's pace and with its faults."""
 
-import threading
 from pathlib import Path
 
 from sim_backend.devices.link.byte_device import ByteDevice
-from sim_backend.devices.link.faults import Direction, LinkFaultKind
+from sim_backend.devices.link.faults import Direction
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.pause import pause_until
+from sim_backend.devices.link.port import LOOK_UP_S, PortThread
 from sim_backend.devices.link.pseudo_terminal import PseudoTerminal
 from sim_backend.devices.wall_time import WallTime
 
-_LOOK_UP_S = 0.02  # how soon a port notices that it shall close or disconnect
 
-
-class SerialPort(threading.Thread):
+class SerialPort(PortThread):
     """A device behind a serial port.
 
     Args:
@@ -24,41 +22,15 @@ class SerialPort(threading.Thread):
     """
 
     def __init__(self, device: ByteDevice, clock: WallTime, line: Line, link: Path | None = None) -> None:
-        super().__init__(name="device serial port", daemon=True)
+        super().__init__(line, clock, "device serial port")
         self._device = device
-        self._clock = clock
-        self._line = line
         self._link = link
-        self._closing = threading.Event()
         self._terminal: PseudoTerminal | None = PseudoTerminal(link)
         self.path = self._terminal.path
-        self.error: BaseException | None = None
-
-    def run(self) -> None:
-        """Carry bytes until `close`."""
-        try:
-            while not self._closing.is_set():
-                self._serve()
-        except BaseException as error:
-            self.error = error
-            raise
-        finally:
-            self._unplug()
-
-    def close(self) -> None:
-        """End the thread and the port."""
-        self._closing.set()
-        if self.is_alive():
-            self.join()
-        self._unplug()
 
     def _serve(self) -> None:
-        if self._line.faults.holds(LinkFaultKind.DISCONNECT, self._clock.now_s()):
-            self._unplug()
-            self._closing.wait(_LOOK_UP_S)
-            return
         terminal = self._plugged()
-        data = terminal.read(_LOOK_UP_S)
+        data = terminal.read(LOOK_UP_S)
         if data:
             self._carry(terminal, data)
 

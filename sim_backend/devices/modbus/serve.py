@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from sim_backend.devices.link.line import Line
-from sim_backend.devices.link.relay import SerialRelay, TcpRelay
+from sim_backend.devices.link.serial_relay import SerialRelay
+from sim_backend.devices.link.tcp_relay import TcpRelay
 from sim_backend.devices.modbus.own_drive import OwnDrive
 from sim_backend.devices.modbus.register_device import RegisterDevice
 from sim_backend.devices.modbus.roboteq import Roboteq

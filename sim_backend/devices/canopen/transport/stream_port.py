@@ -2,7 +2,7 @@
 
 import select
 import socket
-import threading
+from abc import abstractmethod
 from pathlib import Path
 
 from sim_backend.devices.canopen.frame import Frame
@@ -10,50 +10,24 @@ from sim_backend.devices.canopen.transport.can_device import CanDevice
 from sim_backend.devices.canopen.transport.slcan import SlcanAdapter
 from sim_backend.devices.canopen.transport.socketcand import SocketcandSession
 from sim_backend.devices.canopen.transport.stream import Stream
-from sim_backend.devices.link.faults import LinkFaultKind
 from sim_backend.devices.link.line import Line
+from sim_backend.devices.link.port import LOOK_UP_S, PortThread
 from sim_backend.devices.link.pseudo_terminal import PseudoTerminal
 from sim_backend.devices.link.unwritten import Unwritten
 from sim_backend.devices.wall_time import WallTime
 
-_LOOK_UP_S = 0.02  # how soon a port notices that it shall close or disconnect
 
-
-class _Port(threading.Thread):
+class _Port(PortThread):
     """The device's bus, and the thread that reads."""
 
     def __init__(self, device: CanDevice, clock: WallTime, line: Line, name: str) -> None:
-        super().__init__(name=name, daemon=True)
+        super().__init__(line, clock, name)
         self._device = device
-        self._clock = clock
-        self._line = line
-        self._closing = threading.Event()
-        self.error: BaseException | None = None
         device.node.send = self._tell
 
-    def run(self) -> None:
-        """Boot the node, and carry frames until `close`."""
+    def _begin(self) -> None:
         with self._device.lock:
             self._device.node.boot()
-        try:
-            while not self._closing.is_set():
-                if self._line.faults.holds(LinkFaultKind.DISCONNECT, self._clock.now_s()):
-                    self._unplug()
-                    self._closing.wait(_LOOK_UP_S)
-                else:
-                    self._serve()
-        except BaseException as error:
-            self.error = error
-            raise
-        finally:
-            self._unplug()
-
-    def close(self) -> None:
-        """End the thread and the port."""
-        self._closing.set()
-        if self.is_alive():
-            self.join()
-        self._unplug()
 
     def _deliver(self, frame: Frame) -> None:
         with self._device.lock:
@@ -61,14 +35,9 @@ class _Port(threading.Thread):
             self._device.advance_to(now_s)
             self._device.receive(frame, now_s)
 
-    def _serve(self) -> None:
-        raise NotImplementedError
-
-    def _unplug(self) -> None:
-        raise NotImplementedError
-
+    @abstractmethod
     def _tell(self, frame: Frame) -> None:
-        raise NotImplementedError
+        """Tell hosts of a frame of the device's."""
 
 
 class SlcanPort(_Port):
@@ -90,7 +59,7 @@ class SlcanPort(_Port):
 
     def _serve(self) -> None:
         terminal = self._terminal or self._plug()
-        data = terminal.read(_LOOK_UP_S)
+        data = terminal.read(LOOK_UP_S)
         if data and self._stream is not None:
             self._stream.arrive(data)
 
@@ -136,7 +105,7 @@ class SocketcandPort(_Port):
         self._server.close()
 
     def _serve(self) -> None:
-        ready, _, _ = select.select([self._server, *self._streams], [], [], _LOOK_UP_S)
+        ready, _, _ = select.select([self._server, *self._streams], [], [], LOOK_UP_S)
         for one in ready:
             if one is self._server:
                 self._welcome()
