@@ -50,6 +50,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     shown = [one for one in singles if _standing(one).ratio >= SHOWN]
     pairs = [one for one in answered if one.family == "pair" and _both_clear(one)]
     memory = [one for one in answered if one.family == "memory"]
+    settled = [one for one in answered if one.settled is not None and one.settled.predicted >= MUST_NAME]
     return [
         *_false_alarms(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
@@ -63,6 +64,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         *_outside(answered),
         _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
+        _share("named alone after six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
     ]
 
 
@@ -172,6 +174,10 @@ def _in_class(one: Result) -> bool:
 
 def _flagged(one: Result) -> bool:
     return _answer(one).unknown
+
+
+def _is_settled(one: Result) -> bool:
+    return one.settled is not None and one.settled.named == one.names
 
 
 def _both_clear(one: Result) -> bool:

@@ -33,6 +33,7 @@ class Family:
         sizes: part of each one's range, as shares of it (log).
         memory: recorded by motions that show what happens at rest and at reversals.
         imperfect: late, jittered and lossy recordings.
+        settled: recorded in a few trials; then the lab's own suggestions are recorded too.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Family:
     sizes: tuple[float, float] = SIZES
     memory: bool = False
     imperfect: bool = False
+    settled: bool = False
 
 
 FAMILIES: dict[str, Family] = {
@@ -53,6 +55,7 @@ FAMILIES: dict[str, Family] = {
         Family("pair", 1, SINGLE, 2, LARGE),
         Family("outside", 1, OUTSIDE, 1, LARGE),
         Family("memory", 1, MEMORY, 1, LARGE, memory=True),
+        Family("settle", 1, SINGLE, 1, LARGE, settled=True),
     )
 }
 
@@ -118,6 +121,9 @@ def protocol_of(item: Item, heaviest_kg: float, top_rad_s: float) -> Protocol:
     """What is recorded: three loads and all motions; for memory, reversals and steps."""
     loads: dict[str, Any] = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4), heaviest_kg], "repeats": 1}
     motions = {**loads, "speed_rad_s": round(top_rad_s, 2), "duration_s": DURATION_S}
+    if FAMILIES[item.family].settled:
+        few = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4)], "waveforms": ["slow-sine", "multisine", "triangles"]}
+        return [("excitation", {**motions, **few})]
     if not FAMILIES[item.family].memory:
         return [("excitation", motions)]
     shown = ["slow-sine", "small-sine", "sweep", "triangles"]

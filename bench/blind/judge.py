@@ -11,6 +11,7 @@ from bench.blind.items import FAMILIES, PERIOD_S, Item, draw_item, protocol_of
 from bench.blind.lab_answer import LabAnswer, ask_lab, base_fit
 from bench.blind.oracle import Standing, standing
 from bench.blind.rivals import RIVALS
+from bench.blind.settling import Settled, settle
 from bench.challenge.hidden_plant import DrawnPlant
 from bench.challenge.names import accepted
 from bench.challenge.owner import bench_of, rig_of
@@ -41,7 +42,8 @@ class Result:
         unexplained: rms that the base model leaves with the mechanisms over that without them, where that was measured.
         oracle_error: held-out, of the model with the truth in it.
         rivals: rival -> what it names.
-        seconds: that the lab took; simulated_s: of joint time that was recorded.
+        seconds: that the lab took.
+        settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
     """
 
     key: str
@@ -56,6 +58,7 @@ class Result:
     rivals: dict[str, tuple[str, ...]] = field(default_factory=dict)
     seconds: float = 0.0
     refusal: str = ""
+    settled: Settled | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Nested dicts."""
@@ -72,6 +75,7 @@ class Result:
             named = tuple(tuple(names) for names in answer["named"])
             made["answer"] = LabAnswer(**{**answer, "first": tuple(answer["first"]), "named": named})
         made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
+        made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
         made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
         return cls(**made)
 
@@ -96,13 +100,15 @@ def judge(item: Item) -> Result:
         standings, error = _oracle(fit, gathered, names)
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
         unexplained = _unexplained(item, drawn, fit) if names == ("",) else None
+        settled = _settled(item, drawn, recordings, fit, names[0]) if FAMILIES[item.family].settled else None
     except LabError as refusal:
         empty = (None,) * len(truths)
         return Result(
             item.key, item.family, truths, names, sizes, None, empty, None, float("nan"), refusal=str(refusal)
         )
     return Result(
-        item.key, item.family, truths, names, sizes, answer, standings, unexplained, error, rivals, seconds
+        item.key, item.family, truths, names, sizes, answer, standings, unexplained, error, rivals, seconds,
+        settled=settled,
     )  # fmt: skip
 
 
@@ -117,15 +123,24 @@ def _recorded(item: Item) -> tuple[DrawnPlant, list[Recording]]:
     raise ExperimentError(f"item {item.key}: no joint completes the protocol: {reason}")
 
 
-def _record(item: Item, drawn: DrawnPlant, attempt: int, without: str | None) -> list[Recording]:
+def _bench(item: Item, drawn: DrawnPlant, without: str | None) -> BenchConfiguration:
     configuration = bench_of(drawn, item.seed, without)
     control = configuration.control.model_copy(update={"period_s": PERIOD_S})
-    configuration = configuration.model_copy(update={"control": control})
+    return configuration.model_copy(update={"control": control})
+
+
+def _record(item: Item, drawn: DrawnPlant, attempt: int, without: str | None) -> list[Recording]:
+    configuration = _bench(item, drawn, without)
     random = np.random.default_rng((item.seed, attempt, 1))
     protocol = protocol_of(item, drawn.joint.heaviest_kg, drawn.joint.top_rad_s)
     if not FAMILIES[item.family].imperfect:
         return record(configuration, protocol)
     return worn(record(_late(configuration, float(random.uniform(*DELAY_S))), protocol), random)
+
+
+def _settled(item: Item, drawn: DrawnPlant, recordings: list[Recording], fit: Fit, name: str) -> Settled | None:
+    configuration = _bench(item, drawn, None)
+    return settle(configuration, recordings, fit, name)
 
 
 def _late(configuration: BenchConfiguration, delay_s: float) -> BenchConfiguration:

@@ -48,6 +48,11 @@ def base_fit(recordings: Sequence[Recording], rig: Rig) -> Fit:
     return fit_model(dataset, [*default_effects(facts), CHAIN])
 
 
+def refitted(fit: Fit, recordings: Sequence[Recording]) -> Fit:
+    """The same model, fitted to other recordings of the same joint."""
+    return fit_model(make_dataset(recordings, fit.dataset.facts, Processing()), fit.names)
+
+
 def ask_lab(fit: Fit, steps: int) -> LabAnswer:
     """Diagnose, add what is named, and diagnose again, so many times at most."""
     first = found = diagnose(fit)

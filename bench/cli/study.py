@@ -1,13 +1,14 @@
-"""`friction-bench study ...`: compare, diagnose, add, drop, search, ladder."""
+"""`friction-bench study ...`: compare, diagnose, suggest, add, drop, search, ladder, report."""
 
 from enum import Enum
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from bench.cli import study_tables as tables
 from bench.cli.bench_session import session_of
-from bench.cli.output import Json, print_json, table
+from bench.cli.output import Json, print_json, say, table, write_whole
 
 app = typer.Typer(no_args_is_help=True)
 StudyId = Annotated[int, typer.Argument(metavar="STUDY", help="Number of the study.")]
@@ -19,6 +20,8 @@ _HOLD_OUT = (
     "Without it, each trial is left out in turn."
 )
 _WHERE = "Use only trials of which this holds; repeatable."
+_START = "Run them one after the other: the joint moves. Then add them to the study, and diagnose again."
+_EXTEND = "Experiment whose trials are added; repeatable. Without it, those that were run for the study."
 _BASE = "Effect of the first model; repeatable. Without it, the rigid joint with General Kinetic Friction."
 
 
@@ -97,6 +100,55 @@ def search(
 ) -> None:
     """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
     _show(context, as_json, tables.search, "search", study, model_id=model, most=most)
+
+
+@app.command("suggest")
+def suggest(
+    context: typer.Context,
+    study: StudyId,
+    model: Model = None,
+    trials: Annotated[int, typer.Option(min=1, max=50, help="Trials at most.")] = 6,
+    start: Annotated[bool, typer.Option("--start", help=_START)] = False,
+    as_json: Json = False,
+) -> None:
+    """Which trials would tell the rivals apart: of the bench's own kinds, inside its limits, by d' per minute."""
+    from bench.cli.study_trials import carry_out_all, suggested
+
+    found = suggested(session_of(context), study, model, trials)
+    if start:
+        if not as_json:
+            tables.suggestion(found)
+        carry_out_all(session_of(context), found, as_json)
+    else:
+        print_json(found) if as_json else tables.suggestion(found)
+
+
+@app.command("extend")
+def extend(
+    context: typer.Context,
+    study: StudyId,
+    experiment: Annotated[list[int] | None, typer.Option(help=_EXTEND)] = None,
+    as_json: Json = False,
+) -> None:
+    """Add trials to a study and refit its newest model to all of them."""
+    _show(context, as_json, tables.extended, "extend_study", study, experiment or [])
+
+
+@app.command("report")
+def report(
+    context: typer.Context,
+    study: StudyId,
+    html: Annotated[Path, typer.Option(help="File to write.")],
+    suggest: Annotated[bool, typer.Option(help="Say which trials to record next; takes longer.")] = True,
+) -> None:
+    """One HTML file to be filed: trials, ladder, model, pictures, diagnosis, what to record next, provenance."""
+    from bench.study import report_html
+
+    session = session_of(context)
+    with session.open_store() as store:
+        page = report_html(store, study, session.configuration() if suggest else None)
+    write_whole(html, [page.encode()])
+    say(f"written: {html}")
 
 
 @app.command("ladder")

@@ -76,6 +76,40 @@ def search(found: Found) -> None:
     say(found["sentence"])
 
 
+def suggestion(found: Found) -> None:
+    """Trials to record next, and why."""
+    say(found["diagnosis"])
+    say(found["sentence"])
+    rows = [
+        (
+            one["kind"],
+            _values(one["parameters"]),
+            one["minutes"],
+            f"{one['before']:.1f} -> {one['after']:.1f}",
+            one["sentence"],
+        )
+        for one in found["trials"]
+    ]
+    if rows:
+        table("Trials to record next", ["kind", "parameters", "minutes#", "predicted d'#", "why"], rows)
+    pairs = [(one["true"], one["rival"] or "nothing", one["before"], one["after"]) for one in found["pairs"]]
+    table("If the truth is one, predicted d' against the other", ["truth", "rival", "now#", "then#"], pairs)
+
+
+def _values(parameters: Found) -> str:
+    return ", ".join(f"{name} {_value(value)}" for name, value in parameters.items())
+
+
+def _value(value: object) -> str:
+    return " ".join(map(_value, value)) or "none" if isinstance(value, list | tuple) else text(value)
+
+
+def extended(found: Found) -> None:
+    """What was added to a study."""
+    say(found["sentence"])
+    table("Added", ["id#", "name"], [(one["trial_id"], one["name"]) for one in found["added"]])
+
+
 def change(found: Found) -> None:
     """What adding or dropping an effect did."""
     say(found["sentence"])
@@ -105,6 +139,8 @@ def ladder(found: Found) -> None:
 
 def _change(rung: Found) -> str:
     signs = [f"+ {name}" for name in _names(rung["added"])] + [f"- {name}" for name in _names(rung["removed"])]
+    if not signs and rung["parent_id"] is not None:
+        return f"the same, {rung['trials']} trials"
     return ", ".join(signs) or f"base: {', '.join(rung['effects'])}"
 
 

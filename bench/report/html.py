@@ -25,15 +25,20 @@ for (const place of document.querySelectorAll(".figure")) {
 """
 
 
-def write_html(path: Path, title: str, sections: Sequence[Section]) -> None:
-    """Write a report. The file is complete or not there: it is written beside and then renamed."""
+def html_page(title: str, sections: Sequence[Section]) -> str:
+    """A report as one HTML page."""
     parts = [part for number, section in enumerate(sections) for part in _section(section, number)]
-    page = (
+    return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>\n'
         f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head>\n'
         f"<body><h1>{escape(title)}</h1>\n{''.join(parts)}\n"
         f"<script>{get_plotlyjs()}</script><script>{_DRAW}</script></body></html>\n"
     )
+
+
+def write_html(path: Path, title: str, sections: Sequence[Section]) -> None:
+    """Write a report. The file is complete or not there: it is written beside and then renamed."""
+    page = html_page(title, sections)
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f"{path.name}.part")
     unfinished.write_text(page, encoding="utf-8")

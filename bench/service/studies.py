@@ -11,8 +11,9 @@ from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
 from bench.service.problems import problems
-from bench.service.services import StoreOf
+from bench.service.services import RunnerOf, StoreOf
 from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Studies, Study, StudyName
+from bench.service.suggestion_models import Extended, Suggested
 from bench.store import Store
 from bench.store.errors import NotFoundError
 
@@ -71,6 +72,23 @@ class SearchFrom(BaseModel):
     most: int = Field(default=4, ge=1, le=10, description="effects that are added at most")
 
 
+class SuggestFrom(BaseModel):
+    """What is to be told apart, and in how many trials."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"trials": 4}]})
+    model_id: int | None = Field(default=None, ge=1, description="which model; null: the newest of the study")
+    trials: int = Field(default=6, ge=1, le=50, description="trials at most")
+
+
+class MoreTrials(BaseModel):
+    """Experiments whose trials a study is given."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"experiment_ids": [7, 8]}]})
+    experiment_ids: list[int] = Field(
+        default=[], max_length=1000, description="none: every completed one with the note that the suggestion names"
+    )
+
+
 async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
     def call() -> Any:
         from bench import study  # the lab is imported when it is first needed: `serve` starts at once
@@ -127,6 +145,22 @@ async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
     return Ladder.model_validate(await _lab(request, "ladder", store, study_id))
 
 
+@router.get(
+    "/{study_id}/report",
+    summary="One HTML file to be filed",
+    response_class=Response,
+    responses={
+        200: {"description": "Needs no network.", "content": {"text/html": {"schema": {"type": "string"}}}},
+        **problems(404, 422),
+    },
+)
+async def report(request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId) -> Response:
+    """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
+    page: str = await _lab(request, "report_html", store, study_id, runner.configuration)
+    headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
+    return Response(page, media_type="text/html", headers=headers)
+
+
 @router.post(
     "/{study_id}/models",
     status_code=201,
@@ -154,6 +188,32 @@ async def search(request: Request, store: StoreOf, study_id: StudyId, body: Sear
     found = await _lab(request, "search", store, study_id, **body.model_dump())
     note(request, f"made {len(found['steps'])} models, the last of them {found['model_id']}")
     return Searched.model_validate(found)
+
+
+@router.post(
+    "/{study_id}/suggest",
+    summary="Which trials to record next",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def suggest(
+    request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId, body: SuggestFrom
+) -> Suggested:
+    """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
+    found = await _lab(request, "suggest", store, study_id, runner.configuration, **body.model_dump())
+    return Suggested.model_validate(found)
+
+
+@router.post(
+    "/{study_id}/trials",
+    status_code=201,
+    summary="Add trials to a study",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def extend(request: Request, store: StoreOf, study_id: StudyId, body: MoreTrials) -> Extended:
+    """Refits the newest model to all trials; earlier models stay what they were."""
+    return Extended.model_validate(await _lab(request, "extend_study", store, study_id, body.experiment_ids))
 
 
 @router.delete(

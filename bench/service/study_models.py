@@ -257,6 +257,7 @@ class Rung(BaseModel):
     held_out_low: float | None
     held_out_high: float | None
     held_out_kind: str = Field(description="hold-out, leave-one-trial-out or leave-one-block-out")
+    trials: int | None = Field(description="of the study when the model was fitted; null: in models of older versions")
 
 
 class Ladder(BaseModel):

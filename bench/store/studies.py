@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from sqlalchemy import Connection, delete, select
+from sqlalchemy import Connection, delete, select, update
 
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.experiments import insert_row, now
@@ -27,6 +27,16 @@ def get(connection: Connection, study_id: int) -> StudyRow:
     if row is None:
         raise NotFoundError(f"study {study_id} is not in the store; list the studies to see which are")
     return StudyRow(**row._asdict())
+
+
+def change(connection: Connection, study_id: int, definition: dict[str, Any]) -> None:
+    """Replace the definition of a study.
+
+    Raises:
+        NotFoundError: no such study.
+    """
+    get(connection, study_id)
+    connection.execute(update(STUDY).where(STUDY.c.id == study_id).values(definition=definition))
 
 
 def find(connection: Connection, limit: int | None, offset: int) -> list[StudyRow]:

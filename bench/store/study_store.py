@@ -18,6 +18,11 @@ class StudyStore:
         with self._database.writing() as connection:
             return studies.add(connection, name, definition)
 
+    def change_study(self, study_id: int, definition: dict[str, Any]) -> None:
+        """Replace the definition of a study, or `NotFoundError`."""
+        with self._database.writing() as connection:
+            studies.change(connection, study_id, definition)
+
     def study(self, study_id: int) -> StudyRow:
         """One study, or `NotFoundError`."""
         with self._database.reading() as connection:

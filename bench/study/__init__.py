@@ -9,8 +9,11 @@ from bench.study.create import create_study, describe, list_studies
 from bench.study.diagnose import diagnose
 from bench.study.effects import effect_example, effects_catalogue
 from bench.study.error_map import error_map, moments
+from bench.study.extend import extend_study
 from bench.study.ladder import ladder
+from bench.study.report import report_html
 from bench.study.search import search
+from bench.study.suggest import suggest
 
 __all__ = [
     "add_effect",
@@ -22,8 +25,11 @@ __all__ = [
     "effect_example",
     "effects_catalogue",
     "error_map",
+    "extend_study",
     "ladder",
     "list_studies",
     "moments",
+    "report_html",
     "search",
+    "suggest",
 ]

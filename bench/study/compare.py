@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from bench.store import Store
-from bench.study.material import Material, load, model_of
+from bench.study.material import Material, load_model
 from compensator.lab import comparison
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.fit import Fit
@@ -26,8 +26,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
     Raises:
         StudyError: no such model, or the trials cannot be used.
     """
-    material = load(store, study_id)
-    model = model_of(store, study_id, model_id)
+    material, model = load_model(store, study_id, model_id)
     fit = material.fit_of(model)
     found = comparison.compare(fit)
     return {

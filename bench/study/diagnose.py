@@ -4,7 +4,7 @@ from typing import Any
 
 from bench.store import Store
 from bench.study.errors import lab_errors
-from bench.study.material import Material, load, model_of
+from bench.study.material import Material, load_model
 from compensator.lab import diagnosis
 from compensator.lab.catalogue import effect_named
 from compensator.lab.diagnose import diagnose as diagnose_fit
@@ -22,8 +22,7 @@ def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[s
     Raises:
         StudyError: no such model, or no effect can be judged on these trials.
     """
-    material = load(store, study_id)
-    model = model_of(store, study_id, model_id)
+    material, model = load_model(store, study_id, model_id)
     fit = material.fit_of(model)
     with lab_errors():
         found = diagnose_fit(fit)

@@ -7,7 +7,7 @@ from typing import Any
 
 from bench.store import Store
 from bench.study.errors import StudyError, lab_errors
-from bench.study.material import load, model_of
+from bench.study.material import load_model
 from compensator.lab import error_map as lab
 from compensator.lab.drivers import DRIVERS
 
@@ -18,8 +18,7 @@ def error_map(store: Store, study_id: int, model_id: int | None = None) -> dict[
     Raises:
         StudyError: no such model, or the trials hold one speed or one load only.
     """
-    material = load(store, study_id)
-    model = model_of(store, study_id, model_id)
+    material, model = load_model(store, study_id, model_id)
     with lab_errors():
         found = lab.error_map(material.fit_of(model))
     unit = material.dataset.effort_definition.unit
@@ -46,8 +45,7 @@ def moments(store: Store, study_id: int, where: Sequence[str], model_id: int | N
         StudyError: no such model, a criterion that is none, or a driver that these trials do not have.
     """
     criteria = dict(_parse(text) for text in where)
-    material = load(store, study_id)
-    model = model_of(store, study_id, model_id)
+    material, model = load_model(store, study_id, model_id)
     with lab_errors():
         found = lab.moments(material.fit_of(model), criteria)
     items = []

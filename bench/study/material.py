@@ -1,6 +1,6 @@
 """A study's material: its definition, its trials as the lab wants them, and its models fitted."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
@@ -40,6 +40,10 @@ class Definition:
     experiment_ids: tuple[int, ...] = ()
     hold_out: tuple[str, ...] = ()
     where: tuple[str, ...] = field(default=())
+
+    def first(self, trials: int) -> "Definition":
+        """As it was when it had so many trials: later ones are added at the end."""
+        return replace(self, trial_ids=self.trial_ids[:trials], held_out=self.held_out[:trials])
 
     def to_json(self) -> dict[str, Any]:
         """For the store."""
@@ -116,6 +120,19 @@ def load(store: Store, study_id: int) -> Material:
     """
     row = store.study(study_id)
     return material_of(store, study_id, row.name, Definition.from_json(row.definition))
+
+
+def load_model(store: Store, study_id: int, model_id: int | None) -> tuple[Material, ModelRow]:
+    """A model of a study, and the study's material as it was when the model was fitted.
+
+    Raises:
+        NotFoundError, StudyError: as `load` and `model_of`.
+    """
+    row = store.study(study_id)
+    model = model_of(store, study_id, model_id)
+    definition = Definition.from_json(row.definition)
+    used = int(model.result.get("trials") or len(definition.trial_ids))
+    return material_of(store, study_id, row.name, definition.first(used)), model
 
 
 def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:

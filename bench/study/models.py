@@ -16,7 +16,8 @@ def keep_model(store: Store, material: Material, parent_id: int | None, fit: Fit
 
 
 def result_of(fit: Fit, outside: HeldOut) -> dict[str, Any]:
-    """What is kept of a fit: relative errors (0..1), the shapes, and the coefficients in their units."""
+    """What is kept of a fit: relative errors (0..1), the shapes, the coefficients in their units, and
+    how many of the study's trials there were."""
     low, high = error_interval(outside)
     floor = repeatability_floor(fit)
     rows = fit.training & fit.dataset.counted
@@ -26,6 +27,7 @@ def result_of(fit: Fit, outside: HeldOut) -> dict[str, Any]:
         "held_out_low": low,
         "held_out_high": high,
         "held_out_kind": outside.kind,
+        "trials": len(fit.dataset.trials),
         "floor": None if floor is None else floor.relative,
         "shapes": {name: list(shape) for name, shape in fit.shapes.items()},
         "coefficients": {term.effect.name: term.coefficients.tolist() for term in fit.terms},

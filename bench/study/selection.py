@@ -1,10 +1,11 @@
 """Which trials a study uses, and which of them judge the model instead of being fitted."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.store.records import Trial
 from bench.study.errors import StudyError
+from compensator.lab.recording import Condition
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,11 @@ class Criterion:
 
     def matches(self, trial: Trial) -> bool:
         """Whether the trial has one of the values."""
-        found = {"trial": trial.name, "kind": trial.kind, "trial_id": trial.id, **trial.conditions}.get(self.key)
+        return self.holds({"trial": trial.name, "kind": trial.kind, "trial_id": trial.id, **trial.conditions})
+
+    def holds(self, known: Mapping[str, Condition]) -> bool:
+        """Whether what is known of a trial, by key, has one of the values."""
+        found = known.get(self.key)
         return found is not None and any(_same(found, value) for value in self.values)
 
 

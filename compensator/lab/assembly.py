@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from compensator.lab.bandwidth import choose_cutoff_hz
-from compensator.lab.dataset import Dataset, Processing, Trial
+from compensator.lab.dataset import Dataset, Processing, Scales, Trial
 from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.effort import choose_effort
 from compensator.lab.errors import UnusableDataError
@@ -24,13 +23,6 @@ NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
 FEWEST_ROWS = 40
 CONSTANT = 1e-9  # of its largest value: what changes less does not change
 FLANK_SHARE = 0.1  # of the sliding rows that must be left when those near a crossing of the free play are dropped
-
-
-class _Span(NamedTuple):
-    """Range of all trials: of position, and of time."""
-
-    position: float
-    session_s: float
 
 
 def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Processing) -> Dataset:
@@ -60,11 +52,11 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
             f"{' x '.join(effort.channels)} is {measured[0]:.3g} {effort.unit} all the time; check the channel's "
             "mapping, or choose trials in which it is measured"
         )
-    spans = _Span(span, _session_span_s(signals))
     noise = max(_velocity_noise(s, facts, cutoff) for s in signals)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
-    trials = tuple(_make_trial(s, facts, cutoff, noise, slow, fast, spans) for s in signals)
-    plain = Dataset(trials, effort, facts, cutoff, processing.rows)
+    scales = Scales(noise, slow, fast, span, _session_span_s(signals))
+    trials = tuple(_make_trial(s, facts, cutoff, scales) for s in signals)
+    plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
     settled = replace(plain, trials=_on_one_flank(trials), cache={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
     dataset = settled if int(settled.counted.sum()) >= enough else replace(plain, crosses_free_play=True)
@@ -75,6 +67,18 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
             f"{FEWEST_ROWS} are needed: record longer motion"
         )
     return dataset
+
+
+def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
+    """Rows of other trials of the same joint, made with the very cut-off and scales of a dataset; none of its own.
+
+    Raises:
+        UnusableDataError: as `make_signals`.
+    """
+    effort, facts, cutoff = dataset.effort_definition, dataset.facts, dataset.cutoff_hz
+    signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
+    trials = tuple(_make_trial(s, facts, cutoff, dataset.scales) for s in signals)
+    return replace(dataset, trials=trials if dataset.crosses_free_play else _on_one_flank(trials), cache={})
 
 
 def _session_span_s(signals: Sequence[Signals]) -> float:
@@ -96,9 +100,7 @@ def _check_conditions(recordings: Sequence[Recording]) -> None:
                 )
 
 
-def _make_trial(
-    signals: Signals, facts: Facts, cutoff_hz: float, noise: float, slow: float, fast: float, span: _Span
-) -> Trial:
+def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales) -> Trial:
     nothing = np.zeros(len(signals.time_s))
     motion = Motion(
         facts=facts,
@@ -108,21 +110,21 @@ def _make_trial(
         velocity=signals.velocity,
         acceleration=signals.acceleration,
         jerk=signals.jerk,
-        direction=np.tanh(signals.velocity / max(noise, TINY_SHARE * slow)),
+        direction=np.tanh(signals.velocity / max(scales.noise, TINY_SHARE * scales.slow)),
         load_effort=nothing,
         predicted=nothing,
         effort_rate=nothing,
         temperature_c=signals.temperature_c,
         supply_v=signals.supply_v,
-        position_span=span.position,
-        session_span_s=span.session_s,
-        slow=slow,
-        fast=fast,
+        position_span=scales.position_span,
+        session_span_s=scales.session_span_s,
+        slow=scales.slow,
+        fast=scales.fast,
     )
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)
     picked = picked[signals.usable[picked]]
-    return Trial(signals, motion, picked, classify(signals.velocity, slow, signals.rate_hz)[picked])
+    return Trial(signals, motion, picked, classify(signals.velocity, scales.slow, signals.rate_hz)[picked])
 
 
 def _on_one_flank(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:

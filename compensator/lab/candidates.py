@@ -72,7 +72,7 @@ class _Builder:
     def __init__(self, fit: Fit, show_in: EffectRows, rows: BoolArray, weights: FloatArray) -> None:
         self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
         self._nuisance = nuisance_columns(fit.dataset, show_in)
-        self._model = _model_columns(fit)
+        self._model = model_columns(fit)
         self._index: dict[frozenset[str], int] = {}
         self.bases: list[Base] = []
         self._base_without(frozenset())
@@ -121,7 +121,7 @@ def _hidden(effect: Effect, hiding: list[str]) -> str:
     )
 
 
-def _model_columns(fit: Fit) -> FloatArray:
+def model_columns(fit: Fit) -> FloatArray:
     """The model's columns that no bound holds, and the tangent of every fitted shape; shape (N, k)."""
     free = np.concatenate([term.kept & ~term.at_bound for term in fit.terms])
     tangents = []
@@ -130,6 +130,6 @@ def _model_columns(fit: Fit) -> FloatArray:
             continue
         for index in range(len(term.shape)):
             moved = tuple(x * (1.0 + TANGENT_STEP * (i == index)) for i, x in enumerate(term.shape))
-            here, there = fit.dataset.columns_of_shapes(term.effect, [term.shape, moved])
+            here, there = fit.dataset.unchecked_columns(term.effect, [term.shape, moved])
             tangents.append((there - here) @ term.coefficients)
     return np.column_stack([fit.columns[:, free], *tangents])

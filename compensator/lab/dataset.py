@@ -37,6 +37,24 @@ class Processing:
     rows: RowChoice = "sliding"
 
 
+@dataclass(frozen=True, slots=True)
+class Scales:
+    """What all trials of a dataset are measured by, so that the columns of any two of them are alike.
+
+    Attributes:
+        noise: standard deviation of the velocity's noise.
+        slow: speed below which direction is uncertain; fast: 95 % quantile of speed.
+        position_span: range of position.
+        session_span_s: from the first trial's start to the last one's end.
+    """
+
+    noise: float
+    slow: float
+    fast: float
+    position_span: float
+    session_span_s: float
+
+
 @dataclass(frozen=True)
 class Trial:
     """One recording, ready: its motion at the full rate and which of its samples are rows."""
@@ -57,6 +75,7 @@ class Dataset:
         facts: of the joint.
         cutoff_hz: of the final low-pass.
         rows: which regimes count.
+        scales: of all trials.
         crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
     """
 
@@ -65,6 +84,7 @@ class Dataset:
     facts: Facts
     cutoff_hz: float
     rows: RowChoice
+    scales: Scales
     crosses_free_play: bool = False
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
@@ -137,6 +157,10 @@ class Dataset:
             NotApplicableError: as `columns`.
         """
         self.check_applicable(effect)
+        return self.unchecked_columns(effect, shapes)
+
+    def unchecked_columns(self, effect: Effect, shapes: Sequence[Shape]) -> list[FloatArray]:
+        """As `columns_of_shapes`, where it is known that the effect can be judged, or other trials decide that."""
         missing = [shape for shape in shapes if (effect.name, shape) not in self.cache]
         made: dict[Shape, FloatArray] = {}
         if missing:

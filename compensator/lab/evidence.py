@@ -99,7 +99,7 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
     _, labels = np.unique(stretch, return_inverse=True)
     flips = _sign_flips(int(labels.max()) + 1, seed)
     evidence, lowest = [], np.ones(len(flips))
-    inflation = max(_inflation(base.residual) for base in bases)
+    inflation = max(inflation_of(base.residual) for base in bases)
     for block in blocks:
         judged = _judge(bases[block.base], block, labels, flips, inflation)
         if judged is not None:
@@ -114,7 +114,7 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
 
 def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, float]:
     """The greatest noncentrality of each name's blocks on top of the bases; 0 where nothing new is left."""
-    inflation = max(_inflation(base.residual) for base in bases)
+    inflation = max(inflation_of(base.residual) for base in bases)
     kept: dict[str, float] = {}
     for block in blocks:
         base = bases[block.base]
@@ -167,7 +167,7 @@ def _robust_p(by_stretch: FloatArray, signs: FloatArray) -> FloatArray:
     return p_values
 
 
-def _inflation(residual: FloatArray) -> float:
+def inflation_of(residual: FloatArray) -> float:
     """Rows per independent row, from the residual's lag-one correlation (AR(1): (1 + r) / (1 - r))."""
     power = float(residual @ residual)
     if power == 0.0:

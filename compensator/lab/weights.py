@@ -1,13 +1,47 @@
 """Weights of rows: near reversals, and where acceleration and jerk are large, residuals are larger."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from compensator.lab.dataset import Dataset
+from compensator.lab.dataset import Dataset, IntArray
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray, Regime
 
 BINS = 4
 LIMITS = (0.3, 3.0)  # a weight never says that a row is ten times better than another
+
+
+@dataclass(frozen=True)
+class RowWeights:
+    """How much rows of each kind scatter, as learnt from some and applied to any.
+
+    Attributes:
+        edges: between bins of acceleration and of jerk, shape (2, BINS - 1).
+        factor: weight of each bin, shape (2 * BINS * BINS,).
+    """
+
+    edges: FloatArray
+    factor: FloatArray
+
+    @classmethod
+    def learnt(cls, dataset: Dataset, residual: FloatArray, rows: BoolArray) -> "RowWeights":
+        """From the residual (N,) of the chosen rows (N,): the weighted residual has the same variance everywhere."""
+        sizes = _sizes(dataset, rows)
+        edges = np.array([np.quantile(size, np.linspace(0.0, 1.0, BINS + 1)[1:-1]) for size in sizes])
+        bins = _bins(dataset, rows, sizes, edges)
+        chosen = residual[rows]
+        overall = float(np.mean(chosen**2))
+        count = np.bincount(bins, minlength=2 * BINS * BINS)
+        power = np.bincount(bins, weights=chosen**2, minlength=2 * BINS * BINS)
+        variance = (power + 20.0 * overall) / (count + 20.0)  # a bin with few rows is drawn to the overall variance
+        factor = 1.0 / np.sqrt(np.maximum(variance, np.finfo(float).tiny))
+        return cls(edges, np.clip(factor / np.median(factor[bins]), *LIMITS))
+
+    def of(self, dataset: Dataset, rows: BoolArray) -> FloatArray:
+        """Factors for the chosen rows of any dataset, shape (rows.sum(),)."""
+        factors: FloatArray = self.factor[_bins(dataset, rows, _sizes(dataset, rows), self.edges)]
+        return factors
 
 
 def row_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> FloatArray:
@@ -18,21 +52,22 @@ def row_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Floa
         residual: of all rows, shape (N,).
         rows: chosen, shape (N,).
     """
-    bins = np.zeros(int(rows.sum()), dtype=np.int64)
+    return RowWeights.learnt(dataset, residual, rows).of(dataset, rows)
+
+
+def _sizes(dataset: Dataset, rows: BoolArray) -> list[FloatArray]:
+    """Acceleration and jerk of the chosen rows, without their sign."""
     motions = [trial.motion for trial in dataset.trials]
-    for magnified in ([m.acceleration for m in motions], [m.jerk for m in motions]):
-        size = np.abs(dataset.rows_of(magnified))[rows]
-        edges = np.quantile(size, np.linspace(0.0, 1.0, BINS + 1)[1:-1])
-        bins = bins * BINS + np.searchsorted(edges, size)
-    bins = 2 * bins + (dataset.regime[rows] != Regime.SLIDING)
-    chosen = residual[rows]
-    overall = float(np.mean(chosen**2))
-    count = np.bincount(bins, minlength=2 * BINS * BINS)
-    power = np.bincount(bins, weights=chosen**2, minlength=2 * BINS * BINS)
-    variance = (power + 20.0 * overall) / (count + 20.0)  # a bin with few rows is drawn to the overall variance
-    factor = 1.0 / np.sqrt(np.maximum(variance[bins], np.finfo(float).tiny))
-    weights: FloatArray = np.clip(factor / np.median(factor), *LIMITS)
-    return weights
+    stacked = [[m.acceleration for m in motions], [m.jerk for m in motions]]
+    return [np.abs(dataset.rows_of(values))[rows] for values in stacked]
+
+
+def _bins(dataset: Dataset, rows: BoolArray, sizes: list[FloatArray], edges: FloatArray) -> IntArray:
+    bins = np.zeros(int(rows.sum()), dtype=np.int64)
+    for size, between in zip(sizes, edges, strict=True):
+        bins = bins * BINS + np.searchsorted(between, size)
+    found: IntArray = 2 * bins + (dataset.regime[rows] != Regime.SLIDING)
+    return found
 
 
 def regime_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> FloatArray:

@@ -25,6 +25,16 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path):
     assert f"+ {best}" in command("study", "ladder", study).stdout
     dropped = json.loads(command("study", "drop", study, best, "--json").stdout)
     assert best not in dropped["effects"]
+    report = command("study", "report", study, "--html", "study.html", "--no-suggest")
+    assert report.exit_code == 0, report.output
+    assert "What the models leave" in (tmp_path / "study.html").read_text(encoding="utf-8")
+    again = command("study", "report", study, "--html", "study.html", "--no-suggest")
+    assert again.exit_code != 0
+    assert "is there already" in again.stderr
+    refused = command("study", "suggest", study)
+    assert refused.exit_code == 3
+    assert "of another rig than this bench" in refused.stderr
+    assert "no completed trial that study" in command("study", "extend", study).stderr
     refused = command("study", "add", study, "magic")
     assert refused.exit_code == 3
     assert "magic" in refused.stderr

@@ -109,3 +109,28 @@ def test_the_catalogue_is_complete_enough_to_learn_from(service):
         for text in ("title", "physics", "equation", "driver", "excited_by", "source"):
             assert effect[text], (effect["name"], text)
         assert set(effect["confused_with"]) <= set(effects), effect["name"]
+
+
+def test_a_report_to_be_filed(service, study):
+    answer = service.stranger.get(f"/studies/{study['study_id']}/report")
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith("text/html")
+    assert "attachment" in answer.headers["content-disposition"]
+    assert "What the models leave" in answer.text
+
+
+def test_suggestions_and_more_trials(service, study):
+    path = f"/studies/{study['study_id']}"
+    assert service.stranger.post(f"{path}/suggest", json={}).status_code == 401
+    refused = service.client.post(f"{path}/suggest", json={"trials": 1})
+    assert refused.status_code == 422
+    assert "of another rig than this bench" in refused.json()["detail"]
+    assert service.stranger.post(f"{path}/trials", json={}).status_code == 401
+    refused = service.client.post(f"{path}/trials", json={})
+    assert "no completed trial that study" in refused.json()["detail"]
+    zipped = {"content": recording_set_zip(), "headers": {"Content-Type": "application/zip"}}
+    more = service.client.post("/recording-sets?name=again", **zipped).json()["experiment_id"]
+    added = service.client.post(f"{path}/trials", json={"experiment_ids": [more]})
+    assert added.status_code == 201, added.text
+    assert added.json()["trials"] == 12
+    assert len(service.stranger.get(path).json()["trials"]) == 12

@@ -1,0 +1,73 @@
+"""Trials through the ordinary control loop as fast as they go, kept in memory: for joints that are only computed."""
+
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.clock import VirtualClock
+from bench.configuration import BenchConfiguration
+from bench.drive_factory import Equipment
+from bench.errors import ExperimentError
+from bench.experiments.kind import TrialPlan
+from bench.limits import Guard
+from bench.loop import RECORDED, ControlLoop
+from bench.servo import current_servo
+from bench.stop_request import StopRequest
+from compensator.lab.recording import Event, FloatArray, Recording
+
+
+class InMemoryBench:
+    """An open drive, its control loop, and who hangs its loads. Closes the drive at its end.
+
+    Args:
+        configuration: of the bench.
+        equipment: a drive in virtual time, not yet open.
+    """
+
+    def __init__(self, configuration: BenchConfiguration, equipment: Equipment) -> None:
+        self._equipment = equipment
+        period_s = configuration.control.period_s
+        equipment.drive.open(period_s)
+        servo = current_servo(configuration.rig)
+        self._loop = ControlLoop(equipment.drive, VirtualClock(), Guard(configuration.limits), period_s, servo)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._equipment.drive.close()
+
+    def record(self, plan: TrialPlan, kind: str) -> Recording:
+        """Run one trial.
+
+        Raises:
+            ExperimentError: it did not complete; why is told.
+        """
+        self._equipment.technician.hang_load(plan.load_kg, plan.balanced)
+        kept = _Memory()
+        outcome = self._loop.run(plan.procedure(), kept, StopRequest())
+        if outcome.outcome != "completed":
+            raise ExperimentError(f"trial '{plan.name}': {outcome.outcome}: {outcome.reason}")
+        return Recording(plan.name, kind, plan.conditions, kept.channels(), kept.events)
+
+
+@dataclass
+class _Memory:
+    """Rows and events of one trial."""
+
+    blocks: list[NDArray[np.float64]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+
+    def append(self, rows: NDArray[np.float64]) -> None:
+        self.blocks.append(rows)
+
+    def event(self, time_s: float, name: str, detail: str) -> None:
+        self.events.append(Event(time_s, name, detail))
+
+    def channels(self) -> dict[str, FloatArray]:
+        """The channels that were measured."""
+        columns = np.concatenate(self.blocks).T.copy()
+        return {name: column for name, column in zip(RECORDED, columns, strict=True) if not np.isnan(column).all()}

@@ -1,0 +1,59 @@
+"""What /studies/N/suggest and /studies/N/trials answer with."""
+
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+
+class PairOfRivals(BaseModel):
+    """Two effects that may be the missing one; d' from about 6 on tells them apart."""
+
+    true: str = Field(description="taken for the truth")
+    rival: str | None = Field(description="null: that nothing is missing")
+    before: float | None = Field(description="predicted d' on the trials measured")
+    after: float | None = Field(description="with all that are suggested")
+
+
+class SuggestedTrial(BaseModel):
+    """One trial to record, as POST /experiments takes it."""
+
+    kind: str
+    parameters: dict[str, Any]
+    minutes: float = Field(description="of bench time")
+    before: float | None = Field(description="smallest predicted d' of the pairs, with the trials above")
+    after: float | None = Field(description="with this one too")
+    sentence: str = Field(description="why")
+
+
+class Suggested(BaseModel):
+    """Trials to record next, in order."""
+
+    study_id: int
+    model_id: int
+    verdict: str
+    diagnosis: str
+    sentence: str
+    minutes: float
+    note: str = Field(description="to be given to the experiments: by it the study finds their trials")
+    pairs: list[PairOfRivals]
+    hopeless: list[PairOfRivals] = Field(description="pairs that no trial of this bench tells apart")
+    trials: list[SuggestedTrial]
+
+
+class AddedTrial(BaseModel):
+    """A trial that a study was given."""
+
+    trial_id: int
+    name: str
+
+
+class Extended(BaseModel):
+    """The study with more trials; errors are relative (0..1)."""
+
+    study_id: int
+    model_id: int = Field(description="the newest model, fitted to all trials")
+    added: list[AddedTrial]
+    trials: int
+    before: float | None
+    after: float | None
+    sentence: str

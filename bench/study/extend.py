@@ -1,0 +1,91 @@
+"""More trials for a study: recorded because it asked for them, or named by the user."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from bench.rig import Rig
+from bench.store import Store
+from bench.store.records import Trial
+from bench.study.errors import StudyError
+from bench.study.material import Definition, Material, facts_of, material_of, model_of
+from bench.study.models import keep_model
+from bench.study.selection import Criterion
+
+
+def note_for(study_id: int) -> str:
+    """Kept with the record of an experiment that was run for a study: by it the study finds its trials again."""
+    return f"suggested by study {study_id}"
+
+
+def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()) -> dict[str, Any]:
+    """Add trials to a study and refit its newest model to all of them.
+
+    Trials that meet a hold-out criterion of the study judge the model, the others are fitted. Earlier models stay what
+    they were: they are compared and diagnosed on the trials that they were fitted to.
+
+    Args:
+        store: with study and experiments.
+        study_id: which study.
+        experiment_ids: whose trials are added; none: every completed one that was run for the study.
+
+    Raises:
+        NotFoundError: no such study or experiment.
+        StudyError: nothing new is there, or an experiment is of another rig.
+    """
+    row = store.study(study_id)
+    definition = Definition.from_json(row.definition)
+    numbers = list(experiment_ids) or _run_for(store, study_id)
+    trials = [trial for number in numbers for trial in _new_trials(store, number, definition)]
+    if not trials:
+        raise StudyError(
+            f"there is no completed trial that study {study_id} has not yet; run those that `study suggest {study_id}` "
+            "names, or name other experiments"
+        )
+    before = model_of(store, study_id, None)
+    longer = _with(definition, numbers, trials)
+    material = material_of(store, study_id, row.name, longer)
+    fit = material.fit(before.effects)  # before anything is kept
+    store.change_study(study_id, longer.to_json())
+    model_id = keep_model(store, material, before.id, fit)
+    return _answer(material, store, model_id, trials, before.result["held_out"])
+
+
+def _run_for(store: Store, study_id: int) -> list[int]:
+    wanted = note_for(study_id)
+    return sorted(one.id for one in store.experiments(outcome="completed") if one.note == wanted)
+
+
+def _new_trials(store: Store, experiment_id: int, definition: Definition) -> list[Trial]:
+    facts = facts_of(Rig.model_validate(store.experiment(experiment_id).rig))
+    if facts != definition.facts:
+        raise StudyError(f"experiment {experiment_id} is of another rig than the study; make a study of its own for it")
+    found = [trial for trial in store.trials(experiment_id) if trial.outcome == "completed" and trial.rows]
+    return [trial for trial in found if trial.id not in definition.trial_ids]
+
+
+def _with(definition: Definition, experiment_ids: Sequence[int], trials: Sequence[Trial]) -> Definition:
+    criteria = [Criterion.parse(text) for text in definition.hold_out]
+    held = [any(criterion.matches(trial) for criterion in criteria) for trial in trials]
+    return replace(
+        definition,
+        trial_ids=(*definition.trial_ids, *(trial.id for trial in trials)),
+        held_out=(*definition.held_out, *held),
+        experiment_ids=tuple(dict.fromkeys((*definition.experiment_ids, *experiment_ids))),
+    )
+
+
+def _answer(material: Material, store: Store, model_id: int, trials: Sequence[Trial], before: float) -> dict[str, Any]:
+    after = store.model(model_id).result["held_out"]
+    return {
+        "study_id": material.study_id,
+        "model_id": model_id,
+        "added": [{"trial_id": trial.id, "name": trial.name} for trial in trials],
+        "trials": len(material.trials),
+        "before": before,
+        "after": after,
+        "sentence": (
+            f"{len(trials)} trial{'s' * (len(trials) != 1)} added; the same effects, fitted to all, leave a held-out "
+            f"error of {after:.2%} ({before:.2%} on the trials before)."
+        ),
+    }

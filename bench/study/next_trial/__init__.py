@@ -1,0 +1,1 @@
+"""What to record next: trials of the bench, run on the fitted model first, and those that tell most."""

@@ -1,0 +1,78 @@
+"""What each possible trial would show, by the model fitted so far: every one is run on the model's own joint."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+
+from bench.configuration import BenchConfiguration
+from bench.drive_factory import Equipment
+from bench.errors import BenchError
+from bench.in_memory import InMemoryBench
+from bench.study.next_trial.dynamics import dynamics_of
+from bench.study.next_trial.options import Choice
+from bench.study.next_trial.twin import Twin
+from compensator.lab.dataset import Dataset
+from compensator.lab.diagnosis import Diagnosis
+from compensator.lab.effects.effect import SESSION_START
+from compensator.lab.fit import Fit
+from compensator.lab.recording import Condition, Recording
+from compensator.lab.suggestion import Option, Suggestion, suggest
+from drivers.errors import DriveError
+
+
+def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choice]) -> list[Option]:
+    """The options whose trials the model's joint completes.
+
+    Raises:
+        StudyError: the model or the rig does not say how the joint moves.
+    """
+    dynamics = dynamics_of(fit, configuration.rig)
+    twin = Twin(dynamics, configuration.rig, _last_temperature_c(fit.dataset))
+    options = []
+    with InMemoryBench(configuration, Equipment(twin, twin)) as bench:
+        for choice in found:
+            try:
+                recordings = [bench.record(plan, choice.kind) for plan in choice.plans]
+            except (BenchError, DriveError):
+                continue  # it stalls, trips or does not settle
+            whole = tuple(_as_measured(one, fit.dataset) for one in recordings)
+            options.append(Option(choice.name, choice.duration_s / 60.0, whole))
+    return options
+
+
+def choose(
+    fit: Fit, diagnosis: Diagnosis, configuration: BenchConfiguration, found: Sequence[Choice], most: int
+) -> tuple[Suggestion, list[Choice]]:
+    """What separates the rivals of a diagnosis most, and the experiments to start for it, in the same order.
+
+    Args:
+        fit: the diagnosed model.
+        diagnosis: of it.
+        configuration: of the bench.
+        found: experiments that it could run.
+        most: how many are chosen at most.
+
+    Raises:
+        StudyError, LabError: as `predicted` and `suggest`.
+    """
+    suggestion = suggest(fit, diagnosis, predicted(fit, configuration, found), most)
+    by_name = {choice.name: choice for choice in found}
+    return suggestion, [by_name[pick.name] for pick in suggestion.picks]
+
+
+def _as_measured(recording: Recording, dataset: Dataset) -> Recording:
+    """The recording with the channels that the study's trials have, and as late in the session as it would be."""
+    ones = np.ones(len(recording))
+    filled = {name: ones for name in dataset.effort_definition.channels if name not in recording.channels}
+    conditions: dict[str, Condition] = dict(recording.conditions)
+    started = [trial.motion.conditions.get(SESSION_START) for trial in dataset.trials]
+    if all(isinstance(one, int | float) for one in started):
+        conditions[SESSION_START] = max(float(trial.motion.session_s[-1]) for trial in dataset.trials)
+    return replace(recording, channels={**recording.channels, **filled}, conditions=conditions)
+
+
+def _last_temperature_c(dataset: Dataset) -> float:
+    temperature = dataset.trials[-1].motion.temperature_c
+    return float(temperature[-1]) if np.isfinite(temperature).all() else nan

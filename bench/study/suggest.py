@@ -1,0 +1,122 @@
+"""What to record next, as JSON: trials that would separate the rivals of a diagnosis."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from bench.calibration import with_friction
+from bench.configuration import BenchConfiguration
+from bench.drive_factory import is_simulated
+from bench.store import Store
+from bench.study.errors import StudyError, lab_errors
+from bench.study.extend import note_for
+from bench.study.material import Material, facts_of, load_model
+from bench.study.next_trial.options import Choice, choices
+from bench.study.next_trial.predict import choose
+from bench.study.selection import Criterion
+from compensator.lab.catalogue import effect_named
+from compensator.lab.diagnose import diagnose
+from compensator.lab.suggestion import Pair, Pick, Suggestion
+
+MOST_TRIALS = 6
+
+
+def suggest(
+    store: Store,
+    study_id: int,
+    configuration: BenchConfiguration,
+    model_id: int | None = None,
+    trials: int = MOST_TRIALS,
+) -> dict[str, Any]:
+    """The trials that would raise the smallest d' of the leading rivals most, per minute of bench time.
+
+    Every trial that the bench can run inside its limits is run on the joint of the fitted model first.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        configuration: of the bench that would run them.
+        model_id: which model; None takes the newest.
+        trials: how many at most.
+
+    Raises:
+        StudyError: no such model, a study of another rig, or what a trial would show cannot be computed.
+    """
+    material, model = load_model(store, study_id, model_id)
+    if facts_of(configuration.rig) != material.definition.facts:
+        raise StudyError(
+            f"study {study_id} is of another rig than this bench, '{configuration.rig.name}'; name the configuration "
+            "of its bench with --config"
+        )
+    configuration = with_friction(store, configuration)
+    possible = _fitted_ones(material, choices(configuration, not is_simulated(configuration)))
+    with lab_errors():
+        fit = material.fit_of(model)
+        diagnosis = diagnose(fit)
+        found, chosen = choose(fit, diagnosis, configuration, possible, trials)
+    return {
+        "study_id": study_id,
+        "model_id": model.id,
+        "verdict": diagnosis.verdict,
+        "diagnosis": diagnosis.sentence,
+        "sentence": _sentence(found),
+        "minutes": sum(pick.minutes for pick in found.picks),
+        "note": note_for(study_id),
+        "pairs": [_pair(pair) for pair in found.pairs],
+        "hopeless": [_pair(pair) for pair in found.hopeless],
+        "trials": [_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
+    }
+
+
+def _fitted_ones(material: Material, possible: Sequence[Choice]) -> list[Choice]:
+    """Those whose trials the study would fit, not hold out."""
+    criteria = [Criterion.parse(text) for text in material.definition.hold_out]
+    return [
+        choice
+        for choice in possible
+        if not any(
+            criterion.holds({"trial": plan.name, "kind": choice.kind, **plan.conditions})
+            for criterion in criteria
+            for plan in choice.plans
+        )
+    ]
+
+
+def _pair(pair: Pair) -> dict[str, Any]:
+    return {"true": pair.true, "rival": pair.rival, "before": pair.before, "after": pair.after}
+
+
+def _pick(pick: Pick, choice: Choice, found: Suggestion, material: Material) -> dict[str, Any]:
+    unit = material.dataset.effort_definition.unit
+    return {
+        "kind": choice.kind,
+        "parameters": choice.parameters,
+        "minutes": pick.minutes,
+        "before": pick.before,
+        "after": pick.after,
+        "sentence": (
+            f"{_names(*pick.pair)} predict efforts that differ by {pick.difference:.3g} {unit} there; the noise is "
+            f"{found.noise:.3g} {unit}."
+        ),
+    }
+
+
+def _names(true: str, rival: str | None) -> str:
+    return f"{effect_named(true).title} and {'no missing effect' if rival is None else effect_named(rival).title}"
+
+
+def _sentence(found: Suggestion) -> str:
+    if not found.pairs:
+        return "No trial that this bench can run tells the rivals apart. " + _hopeless(found)
+    before, after = (min(getattr(pair, end) for pair in found.pairs) for end in ("before", "after"))
+    if not found.picks:
+        return f"No further trial is needed, or helps: the smallest predicted d' is {before:.1f}. " + _hopeless(found)
+    minutes = sum(pick.minutes for pick in found.picks)
+    return (
+        f"{len(found.picks)} trial{'s' * (len(found.picks) != 1)}, {minutes:.2g} min: the smallest predicted d' rises "
+        f"from {before:.1f} to {after:.1f}; from about 6 on a name is sure. " + _hopeless(found)
+    ).strip()
+
+
+def _hopeless(found: Suggestion) -> str:
+    names = dict.fromkeys(_names(pair.true, pair.rival) for pair in found.hopeless)
+    return f"Not told apart by any trial of this bench: {'; '.join(names)}." if names else ""

@@ -1,0 +1,123 @@
+"""Predicted d', and the trials chosen by it."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from compensator.lab.assembly import make_dataset, more_trials
+from compensator.lab.candidates import gather
+from compensator.lab.catalogue import default_effects
+from compensator.lab.dataset import Processing
+from compensator.lab.diagnose import diagnose
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.fit import fit_model
+from compensator.lab.separation import Separation
+from compensator.lab.suggestion import SURE, Option, suggest
+from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, plans, recordings
+
+BENCH = Bench(duration_s=9.0)
+LIGHT, HEAVY = (0.1, 0.15), (0.0, 0.5)
+
+
+def load_friction(share):
+    def law(x):
+        load = (0.25 + x.load_kg * G_M_S2 * x.arm_m) * np.sin(x.q) + x.load_kg * x.arm_m**2 * x.a
+        return share * np.abs(load) * np.sign(x.v)
+
+    return law
+
+
+def fitted(joint, trials, seed=0):
+    made = recordings(joint, BENCH, trials, seed)
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+
+
+@pytest.fixture(scope="module")
+def fit():
+    return fitted(Joint(extra=load_friction(0.012)), plans(LIGHT))
+
+
+@pytest.fixture(scope="module")
+def diagnosis(fit):
+    return diagnose(fit)
+
+
+def options(loads_kg, minutes=0.5):
+    made = recordings(Joint(), BENCH, plans(loads_kg, seed=7), seed=5)
+    return [Option(one.name, minutes, (one,)) for one in made]
+
+
+def separated(fit, names):
+    found = {one.effect.name: one for one in diagnose(fit).candidates}
+    return Separation(gather(fit), [found[name] for name in names])
+
+
+def test_the_same_trials_again_add_as_much_as_they_told(fit, diagnosis):
+    separation = Separation(gather(fit), diagnosis.candidates[:2])
+    again = separation.of_trials(more_trials(fit.dataset, [t.signals.recording for t in fit.dataset.trials]))
+    np.testing.assert_allclose(again.gram, separation.measured.gram, rtol=1e-6, atol=1e-9 * again.gram.max())
+    for pair in ((0, 1), (1, 0), (0, None)):
+        once, twice = separation.d_prime(again, *pair), separation.d_prime(separation.measured + again, *pair)
+        assert twice == pytest.approx(np.sqrt(2.0) * once, rel=1e-3)
+
+
+def test_what_is_predicted_is_what_a_longer_recording_shows(fit):
+    names = ("load_friction", "load_friction_quadratic")
+    separation = separated(fit, names)
+    planned = options(HEAVY)
+    brings = [separation.of_trials(more_trials(fit.dataset, option.recordings)) for option in planned]
+    predicted = separation.d_prime(sum(brings, separation.measured), 0, 1)
+    joint = Joint(extra=load_friction(0.012))
+    both = recordings(joint, BENCH, plans(LIGHT), 0) + recordings(joint, BENCH, plans(HEAVY, seed=7), 6)
+    longer = fit_model(make_dataset(both, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+    observed = separated(longer, names)
+    assert predicted == pytest.approx(observed.d_prime(observed.measured, 0, 1), rel=0.3)
+    assert predicted > 2.0 * separation.d_prime(separation.measured, 0, 1)
+
+
+def test_a_rival_absorbs_what_looks_like_it(fit):
+    separation = separated(fit, ("load_friction", "load_friction_quadratic"))
+    alone, against = (separation.d_prime(separation.measured, 0, rival) for rival in (None, 1))
+    assert against < 0.6 * alone
+
+
+def test_heavier_loads_are_chosen_where_friction_grows_with_the_load(fit, diagnosis):
+    assert "load_friction" in diagnosis.classes[0]
+    found = suggest(fit, diagnosis, [*options(LIGHT), *options(HEAVY)], most=3)
+    assert found.picks
+    assert all(pick.name.startswith("load-500g") for pick in found.picks)
+    smallest = [min(pair.before for pair in found.pairs), *(pick.after for pick in found.picks)]
+    assert all(after > before for before, after in pairwise(smallest))
+    assert found.picks[-1].after == pytest.approx(min(pair.after for pair in found.pairs))
+    assert found.picks[0].difference > 0.0
+
+
+def test_of_equal_trials_the_shorter_is_chosen(fit, diagnosis):
+    heavy = options(HEAVY)
+    slow = [replace(one, name=f"slow {one.name}", minutes=5.0) for one in heavy]
+    found = suggest(fit, diagnosis, [*slow, *heavy], most=2)
+    assert not any(pick.name.startswith("slow") for pick in found.picks)
+
+
+def test_nothing_is_suggested_once_a_name_is_sure():
+    sure = fitted(Joint(extra=lambda x: 0.05 * np.abs(x.v)), plans())
+    diagnosis = diagnose(sure)
+    found = suggest(sure, diagnosis, options(HEAVY))
+    assert diagnosis.classes[0] == ("viscous_asymmetry",)
+    assert min(pair.before for pair in found.pairs) > SURE
+    assert found.picks == ()
+
+
+def test_rivals_that_no_trial_separates_are_named(fit, diagnosis):
+    tiny = [replace(one, recordings=()) for one in options((0.0,))]
+    found = suggest(fit, diagnosis, [one for one in tiny if one.recordings] or [], most=3)
+    assert found.picks == ()
+    assert all(pair.reachable == pytest.approx(pair.before) for pair in (*found.pairs, *found.hopeless))
+    assert all(pair.before < 2.0 for pair in found.hopeless)
+
+
+def test_without_a_ranking_there_is_nothing_to_separate(fit, diagnosis):
+    with pytest.raises(UnusableDataError, match="ranks no effect"):
+        suggest(fit, replace(diagnosis, candidates=[], classes=[], verdict="nothing"), [])

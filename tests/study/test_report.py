@@ -1,0 +1,69 @@
+"""The report of a study: one file, complete, without a network."""
+
+import re
+
+import pytest
+
+from bench import study
+from bench.configuration import default_configuration
+from bench.study.report import report
+from tests.lab.synthetic import plans
+from tests.study.conftest import imported
+
+
+@pytest.fixture(scope="module")
+def number(store):
+    made = study.create_study(
+        store, "arm <1>", [imported(store, plans((0.0, 0.2), repeats=2))], hold_out=["repeat=2"], cutoff_hz=6.0
+    )
+    study.add_effect(store, made["study_id"], "viscous_asymmetry")
+    return made["study_id"]
+
+
+@pytest.fixture(scope="module")
+def sections(store, number):
+    return {section.title: section for section in report(store, number, default_configuration())[1]}
+
+
+def test_everything_that_a_lab_files_is_in_it(store, number, sections):
+    first, newest = store.models(number)
+    assert list(sections) == [
+        "What was measured",
+        "The ladder",
+        f"Model {newest.id}",
+        "What the models leave",
+        f"What was missing from the first model, {first.id}",
+        f"What is missing from the newest model, {newest.id}",
+        "Trials to record next",
+        "Where it comes from",
+    ]
+    assert "12 trials, of which 6 are held out" in sections["What was measured"].sentences[0]
+    (ladder,) = sections["The ladder"].tables
+    rungs = study.ladder(store, number)["rungs"]
+    assert [row[3] for row in ladder.rows] == [f"{rung['held_out']:.2%}" for rung in rungs]
+    assert ladder.rows[1][1] == "+ viscous_asymmetry"
+    assert "no model of the motion can beat that floor" in sections["The ladder"].sentences[0]
+
+
+def test_evidence_stands_in_words_and_pictures(store, number, sections):
+    missing = sections[f"What was missing from the first model, {store.models(number)[0].id}"]
+    assert missing.sentences[0].startswith("Direction-asymmetric viscous friction is missing")
+    assert missing.figures[0].title.startswith("Direction-asymmetric viscous friction")
+    residual = sections["What the models leave"].figures
+    velocity = next(figure for figure in residual if figure.title == "Residual against velocity")
+    assert len(velocity.drawn) == 4  # two directions, before and after
+
+
+def test_another_rig_leaves_out_what_to_record_next_and_says_why(sections):
+    (sentence,) = sections["Trials to record next"].sentences
+    assert "of another rig than this bench" in sentence
+
+
+def test_the_page_is_whole_and_escaped(store, number):
+    page = study.report_html(store, number)
+    assert page.startswith("<!doctype html>")
+    assert page.rstrip().endswith("</html>")
+    assert "arm &lt;1&gt;" in page
+    assert "Trials to record next" not in page
+    outside = re.findall(r'(?:src|href)="([^"]*)"', page.split("<script>")[0])
+    assert outside == []

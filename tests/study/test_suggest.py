@@ -1,0 +1,130 @@
+"""From a diagnosis to the trials that settle it, on a simulated bench."""
+
+import importlib
+import json
+
+import pytest
+
+from bench import study
+from bench.configuration import default_configuration
+from bench.runner import Runner
+from bench.service.json_numbers import plain
+from bench.service.suggestion_models import Extended, Suggested
+from bench.study.errors import StudyError
+from bench.study.extend import note_for
+from bench.study.next_trial.options import LONGEST_S, choices
+
+SUGGEST = importlib.import_module("bench.study.suggest")  # the package has the function of that name
+MOTIONS = {
+    "loads_kg": [0.0, 0.05], "waveforms": ["slow-sine", "fast-sine"], "duration_s": 5.0, "repeats": 1,
+    "speed_rad_s": 2.0,
+}  # fmt: skip
+
+
+def bench_with(plant):
+    found = default_configuration()
+    return found.model_copy(update={"drive": found.drive.model_copy(update={"plant": plant, "seed": 4})})
+
+
+CONFIGURATION = bench_with({"spring": {"stiffness_n_m_rad": 0.03}})
+
+
+def run(store, kind, parameters, note="", configuration=CONFIGURATION):
+    runner = Runner(configuration, store)
+    number = runner.start(kind, parameters, note=note)
+    assert runner.wait(60.0)
+    runner.close()
+    assert store.experiment(number).outcome == "completed"
+    return number
+
+
+@pytest.fixture(scope="module")
+def made(store):
+    return study.create_study(store, "to be settled", [run(store, "excitation", MOTIONS)])
+
+
+@pytest.fixture(autouse=True)
+def few_options(monkeypatch):
+    """Every fourth option: the whole lot takes seconds."""
+    monkeypatch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::4])
+
+
+@pytest.fixture(scope="module")
+def found(store, made):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::4])
+        return study.suggest(store, made["study_id"], CONFIGURATION, trials=2)
+
+
+def test_every_option_is_one_that_the_bench_may_run():
+    found = choices(CONFIGURATION, hung_by_hand=False)
+    kinds = {one.kind for one in found}
+    assert {"excitation", "steps", "speed-sweep", "load-sweep"} <= kinds
+    assert "commissioning" not in kinds
+    assert len({one.name for one in found}) == len(found)
+    assert all(0.0 < one.duration_s <= LONGEST_S for one in found)
+    by_hand = choices(CONFIGURATION, hung_by_hand=True)
+    assert all(slow.duration_s > quick.duration_s for slow, quick in zip(by_hand, found, strict=True))
+    narrow = CONFIGURATION.limits.model_copy(update={"position_min_rad": -0.5, "position_max_rad": 0.5})
+    inside = choices(CONFIGURATION.model_copy(update={"limits": narrow}), hung_by_hand=False)
+    assert all(one.parameters["amplitude_rad"] < 0.5 for one in inside if one.kind == "excitation")
+    assert "steps" not in {one.kind for one in inside}
+
+
+def test_a_suggestion_can_be_started_as_it_is(store, made, found):
+    Suggested.model_validate(plain(found))
+    json.dumps(plain(found), allow_nan=False)
+    assert found["trials"], found["sentence"]
+    assert f"rises from {found['trials'][0]['before']:.1f} to {found['trials'][-1]['after']:.1f}" in found["sentence"]
+    assert found["note"] == note_for(made["study_id"])
+    assert all("predict efforts that differ by" in one["sentence"] for one in found["trials"])
+    number = run(store, found["trials"][0]["kind"], found["trials"][0]["parameters"], found["note"])
+    before = study.diagnose(store, made["study_id"], made["model_id"])
+    extended = study.extend_study(store, made["study_id"])
+    Extended.model_validate(plain(extended))
+    assert [one["trial_id"] for one in extended["added"]] == [trial.id for trial in store.trials(number)]
+    described = study.describe(store, made["study_id"])
+    assert len(described["trials"]) == len(made["trials"]) + len(extended["added"])
+    assert all(one["role"] == "training" for one in described["trials"])
+    # the first model stays what it was: compared and diagnosed on its own trials
+    assert plain(study.diagnose(store, made["study_id"], made["model_id"])) == plain(before)
+    assert len(study.compare(store, made["study_id"], made["model_id"])["trials"]) == len(made["trials"])
+    assert len(study.compare(store, made["study_id"])["trials"]) == len(described["trials"])
+    rungs = study.ladder(store, made["study_id"])["rungs"]
+    assert [rung["trials"] for rung in rungs] == [len(made["trials"]), len(described["trials"])]
+    assert rungs[1]["effects"] == rungs[0]["effects"]
+    with pytest.raises(StudyError, match="no completed trial that study"):
+        study.extend_study(store, made["study_id"])
+
+
+def test_what_is_held_out_by_condition_is_not_suggested_and_stays_held_out(store, made):
+    number = run(store, "excitation", {**MOTIONS, "repeats": 2})
+    held = study.create_study(store, "held", [number], hold_out=["load_kg=0.05"])
+    found = study.suggest(store, held["study_id"], CONFIGURATION, trials=1)
+    assert all(0.05 not in one["parameters"].get("loads_kg", []) for one in found["trials"])
+    again = run(store, "excitation", MOTIONS)
+    study.extend_study(store, held["study_id"], [again])
+    roles = {
+        one["trial_id"]: (one["role"], one["conditions"]["load_kg"])
+        for one in study.describe(store, held["study_id"])["trials"]
+    }
+    added = [roles[trial.id] for trial in store.trials(again)]
+    assert set(added) == {("held_out", 0.05), ("training", 0.0)}
+
+
+def test_another_rig_is_refused(store, made):
+    rig = CONFIGURATION.rig.model_copy(update={"arm": CONFIGURATION.rig.arm.model_copy(update={"length_m": 0.7})})
+    other = CONFIGURATION.model_copy(update={"rig": rig})
+    with pytest.raises(StudyError, match="of another rig than this bench"):
+        study.suggest(store, made["study_id"], other)
+    number = run(store, "excitation", MOTIONS, configuration=other)
+    with pytest.raises(StudyError, match=f"experiment {number} is of another rig"):
+        study.extend_study(store, made["study_id"], [number])
+
+
+def test_a_model_without_inertia_cannot_tell_what_a_trial_shows(store, made):
+    number = made["trials"][0]["trial_id"]
+    experiment = store.trial(number).experiment_id
+    still = study.create_study(store, "still", [experiment], base=["gravity", "coulomb"])
+    with pytest.raises(StudyError, match="the model's inertia is not known"):
+        study.suggest(store, still["study_id"], CONFIGURATION)
