@@ -20,7 +20,7 @@ from compensator.lab.catalogue import effect_named
 from compensator.lab.dataset import Dataset, IntArray
 from compensator.lab.diagnosis import Candidate
 from compensator.lab.effects.effect import Effect, Shape
-from compensator.lab.evidence import inflation_of
+from compensator.lab.evidence import Block, inflation_of
 from compensator.lab.fit import Fit
 from compensator.lab.nuisance import nuisance_columns
 from compensator.lab.prediction import with_own_prediction
@@ -77,7 +77,9 @@ class Separation:
         self.rivals = [_rival(gathered, candidate) for candidate in candidates]
         left = _left_by_best(gathered, candidates[0])
         self.noise_power = float(np.mean(left**2))
-        self._inflation = inflation_of(left)
+        stretch = gathered.fit.dataset.block_index[gathered.rows]
+        inflation = inflation_of(left)
+        self._inflation = [max(inflation, _between_stretches(gathered, one, left, stretch)) for one in candidates]
         self._nuisance = tuple(nuisance_columns(gathered.fit.dataset, gathered.show_in))
         self._model = model_columns(gathered.fit).shape[1]
         stacked = self._columns(gathered.fit, gathered.weights, gathered.rows)
@@ -101,7 +103,7 @@ class Separation:
     def d_prime(self, equations: Equations, true: int, rival: int | None) -> float:
         """d' of one rival if it is the truth, against another by its index; None: against nothing being missing."""
         remains = self._remains(equations.gram, true, rival)
-        return float(np.sqrt(remains / (self._inflation * self.noise_power)))
+        return float(np.sqrt(remains / (self._inflation[true] * self.noise_power)))
 
     def difference(self, equations: Equations, true: int, rival: int | None) -> float:
         """Root mean square of what remains when the rival is fitted to the effort that the truth predicts."""
@@ -171,14 +173,36 @@ def _rival(gathered: Candidates, candidate: Candidate) -> Rival:
     effect = effect_named(candidate.effect.name)
     shapes = tuple(effect.shapes(gathered.fit.dataset.trials[0].motion))
     shape = candidate.shape
-    block = next(one for one in gathered.named if one.name == effect.name and one.key == shape)
+    block = _block(gathered, candidate)
     base = gathered.bases[block.base]
     projected = block.columns - base.basis @ (base.basis.T @ block.columns)
     coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0].astype(np.float64)
     return Rival(effect, shape, coefficients, shapes if shape in shapes else (*shapes, shape))
 
 
+def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatArray, stretch: IntArray) -> float:
+    """Rows per independent row for an effect, from how its share of the residual differs between stretches.
+
+    What neighbouring rows have in common does not see slow scatter: friction that is another one each time, a mean that
+    drifts. Sums over whole stretches do (Liang, Zeger 1986).
+    """
+    block = _block(gathered, candidate)
+    base = gathered.bases[block.base]
+    projected = block.columns - base.basis @ (base.basis.T @ block.columns)
+    coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
+    own = projected @ coefficients
+    _, labels = np.unique(stretch, return_inverse=True)
+    sums = np.bincount(labels, weights=own * left)
+    count = len(sums)
+    expected = float(np.mean(left**2) * np.sum(own**2))
+    return float(np.sum(sums**2)) * count / max(count - 1, 1) / expected if expected > 0.0 else 1.0
+
+
+def _block(gathered: Candidates, candidate: Candidate) -> Block:
+    return next(one for one in gathered.named if one.name == candidate.effect.name and one.key == candidate.shape)
+
+
 def _left_by_best(gathered: Candidates, candidate: Candidate) -> FloatArray:
     """Weighted residual once the first rival is in the model: what counts as noise."""
-    block = next(one for one in gathered.named if one.name == candidate.effect.name and one.key == candidate.shape)
+    block = _block(gathered, candidate)
     return gathered.bases[block.base].extended(block.columns).residual

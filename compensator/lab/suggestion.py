@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -94,7 +95,7 @@ def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int
         fit: the diagnosed model.
         diagnosis: of it.
         options: trials that could be run.
-        most: how many are chosen at most; fewer where d' reaches `SURE`.
+        most: how many are chosen at most; fewer where something is named and d' reaches `SURE`.
 
     Raises:
         UnusableDataError: the diagnosis ranks no effect.
@@ -107,7 +108,8 @@ def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int
     gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
     known = {(block.name, block.key) for block in gathered.named}
     separation = Separation(gathered, [one for one in rivals if (one.effect.name, one.shape) in known])
-    return _Choice(separation, options, _pairs(separation, diagnosis)).made(most)
+    enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
+    return _Choice(separation, options, _pairs(separation, diagnosis)).made(most, enough)
 
 
 def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
@@ -144,11 +146,11 @@ class _Choice:
         self._hopeless = [pair for pair in pairs if self._reachable[pair] < HOPELESS]
         self._pairs = [pair for pair in pairs if pair not in self._hopeless]
 
-    def made(self, most: int) -> Suggestion:
+    def made(self, most: int, enough: float) -> Suggestion:
         """Pick until enough is separated, or nothing helps."""
         measured = known = self._separation.measured
         picks: list[Pick] = []
-        while self._pairs and len(picks) < most and self._smallest(known) < SURE:
+        while self._pairs and len(picks) < most and self._smallest(known) < enough:
             best = self._best(known)
             if best is None:
                 break
@@ -184,7 +186,7 @@ class _Choice:
 
     def _short(self, equations: Equations) -> float:
         """What the pairs together lack to be sure."""
-        return sum(max(SURE - d_prime, 0.0) for d_prime in self._all(equations))
+        return -sum(min(d_prime, SURE) for d_prime in self._all(equations))
 
     def _pick(self, index: int, known: Equations) -> Pick:
         option, brings = self._options[index], self._brings[index]

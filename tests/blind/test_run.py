@@ -52,8 +52,8 @@ def test_a_run_that_was_ended_goes_on_and_gives_the_same(tmp_path: Path, monkeyp
     again = run_items(items, kept, lambda *done: shown.append(done), workers=0)
     assert asked == [item.key for item in items]
     assert again[:4] == first
-    assert shown[-1] == (9, 9)
-    assert len(kept.read_text().splitlines()) == 9
+    assert shown[-1] == (10, 10)
+    assert len(kept.read_text().splitlines()) == 10
 
 
 @pytest.mark.parametrize("content", ["{", "{}", "[1, 2]"])

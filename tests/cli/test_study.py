@@ -1,5 +1,6 @@
 """`friction-bench study ...` and `effects`."""
 
+import importlib
 import json
 
 from tests.service.recorded_joint import recording_set_zip
@@ -46,3 +47,22 @@ def test_effects(command):
     assert "load_friction" in command("effects").stdout
     assert "Rhoban" in command("effects", "load_friction").stdout
     assert command("effects", "magic").exit_code == 3
+
+
+def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):
+    from bench.study.next_trial.options import choices
+
+    suggest = importlib.import_module("bench.study.suggest")
+    monkeypatch.setattr(suggest, "choices", lambda *args: choices(*args)[:3])
+    motions = ["--waveforms", "slow-sine,multisine", "--loads-kg", "0.05", "--duration-s", 4]
+    assert command("run", "excitation", *motions, "--json").exit_code == 0
+    assert command("study", "new", "arm", "--experiment", 1, "--json").exit_code == 0
+    shown = command("study", "suggest", 1, "--trials", 1)
+    assert shown.exit_code == 0, shown.output
+    assert "Trials to record next" in shown.stdout
+    started = command("study", "suggest", 1, "--trials", 1, "--start", "--json")
+    assert started.exit_code == 0, started.output
+    found = json.loads(started.stdout)
+    assert found["extended"]["trials"] == 4 + len(found["extended"]["added"])
+    assert found["diagnosis"]["model_id"] == found["extended"]["model_id"]
+    assert f"the same, {found['extended']['trials']} trials" in command("study", "ladder", 1).stdout

@@ -122,9 +122,10 @@ def test_another_rig_is_refused(store, made):
         study.extend_study(store, made["study_id"], [number])
 
 
-def test_a_model_without_inertia_cannot_tell_what_a_trial_shows(store, made):
-    number = made["trials"][0]["trial_id"]
-    experiment = store.trial(number).experiment_id
-    still = study.create_study(store, "still", [experiment], base=["gravity", "coulomb"])
-    with pytest.raises(StudyError, match="the model's inertia is not known"):
-        study.suggest(store, still["study_id"], CONFIGURATION)
+def test_without_any_inertia_nobody_can_tell_what_a_trial_shows(store):
+    rig = CONFIGURATION.rig.model_copy(update={"arm": CONFIGURATION.rig.arm.model_copy(update={"inertia_kg_m2": None})})
+    configuration = CONFIGURATION.model_copy(update={"rig": rig})
+    number = run(store, "excitation", MOTIONS, configuration=configuration)
+    still = study.create_study(store, "still", [number], base=["gravity", "coulomb"])
+    with pytest.raises(StudyError, match="neither the model nor the rig tells the inertia"):
+        study.suggest(store, still["study_id"], configuration)

@@ -11,6 +11,8 @@ from bench.study.errors import StudyError
 from compensator.lab.facts import STANDARD_GRAVITY_M_S2
 from compensator.lab.fit import Fit
 
+LEAST_INERTIA = 0.3  # of what the rig says; less was lost to effects that motion does not tell apart from it
+
 
 @dataclass(frozen=True, slots=True)
 class Drive:
@@ -75,15 +77,11 @@ def dynamics_of(fit: Fit, rig: Rig) -> Dynamics:
     """The equation of motion of a fitted model.
 
     Raises:
-        StudyError: the model has no inertia, or the rig does not say what a current is worth.
+        StudyError: neither model nor rig tells the inertia, or the rig does not say what a current is worth.
     """
     found = {term.effect.name: term for term in fit.terms}
-    inertia = found.get("inertia")
-    if inertia is None or not inertia.coefficients[0] > 0.0:
-        raise StudyError(
-            "what a trial would show cannot be computed: the model's inertia is not known; let it have the effect "
-            "inertia, and record motion that accelerates"
-        )
+    drive = _drive(fit, rig)
+    own, of_load = _inertia(fit, rig, drive)
     gravity, stribeck = found.get("gravity"), found.get("stribeck")
 
     def first(name: str) -> float:
@@ -91,9 +89,9 @@ def dynamics_of(fit: Fit, rig: Rig) -> Dynamics:
 
     speed, exponent = (1.0, 1.0) if stribeck is None else stribeck.shape
     return Dynamics(
-        drive=_drive(fit, rig),
-        inertia=float(inertia.coefficients[0]),
-        load_inertia=float(inertia.coefficients[1]),
+        drive=drive,
+        inertia=own,
+        load_inertia=of_load,
         gravity=0.0 if gravity is None else float(gravity.coefficients[0]),
         load_gravity=0.0 if gravity is None else float(gravity.coefficients[1]),
         offset=first("offset"),
@@ -104,6 +102,30 @@ def dynamics_of(fit: Fit, rig: Rig) -> Dynamics:
         exponent=exponent,
         arm_m=rig.arm.length_m or 0.0,
     )
+
+
+def _inertia(fit: Fit, rig: Rig, drive: Drive) -> tuple[float, float]:
+    """Effort per acceleration, and per acceleration and kg m2 of the load; the rig's where the trials tell less."""
+    term = next((term for term in fit.terms if term.effect.name == "inertia"), None)
+    fitted = (0.0, 0.0) if term is None else (float(term.coefficients[0]), float(term.coefficients[1]))
+    told = _rig_inertia(rig, drive)
+    if fitted[0] > LEAST_INERTIA * told[0]:
+        return fitted
+    if told[0] > 0.0:
+        return told
+    raise StudyError(
+        "what a trial would show cannot be computed: neither the model nor the rig tells the inertia; let the model "
+        "have the effect inertia and record motion that accelerates, or add arm.inertia_kg_m2 to the rig"
+    )
+
+
+def _rig_inertia(rig: Rig, drive: Drive) -> tuple[float, float]:
+    """The same from rotor, gear and arm; zero where the rig leaves out what is needed."""
+    constant, ratio, arm = rig.motor.torque_constant_n_m_a, rig.gear.ratio, rig.arm.inertia_kg_m2
+    if constant is None or ratio is None or arm is None:
+        return 0.0, 0.0
+    per_n_m = drive.per_a / (constant * ratio)
+    return per_n_m * (arm + (rig.motor.rotor_inertia_kg_m2 or 0.0) * ratio**2), per_n_m
 
 
 def _drive(fit: Fit, rig: Rig) -> Drive:

@@ -7,7 +7,7 @@ from math import nan
 import numpy as np
 
 from bench.configuration import BenchConfiguration
-from bench.drive_factory import Equipment
+from bench.drive_factory import Equipment, is_simulated
 from bench.errors import BenchError
 from bench.in_memory import InMemoryBench
 from bench.study.next_trial.dynamics import dynamics_of
@@ -29,7 +29,8 @@ def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choic
         StudyError: the model or the rig does not say how the joint moves.
     """
     dynamics = dynamics_of(fit, configuration.rig)
-    twin = Twin(dynamics, configuration.rig, _last_temperature_c(fit.dataset))
+    cold = is_simulated(configuration)  # a simulated joint is made anew for each experiment
+    twin = Twin(dynamics, configuration.rig, _temperature_c(fit.dataset, cold))
     options = []
     with InMemoryBench(configuration, Equipment(twin, twin)) as bench:
         for choice in found:
@@ -37,7 +38,7 @@ def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choic
                 recordings = [bench.record(plan, choice.kind) for plan in choice.plans]
             except (BenchError, DriveError):
                 continue  # it stalls, trips or does not settle
-            whole = tuple(_as_measured(one, fit.dataset) for one in recordings)
+            whole = tuple(_as_measured(one, fit.dataset, cold) for one in recordings)
             options.append(Option(choice.name, choice.duration_s / 60.0, whole))
     return options
 
@@ -62,17 +63,20 @@ def choose(
     return suggestion, [by_name[pick.name] for pick in suggestion.picks]
 
 
-def _as_measured(recording: Recording, dataset: Dataset) -> Recording:
+def _as_measured(recording: Recording, dataset: Dataset, cold: bool) -> Recording:
     """The recording with the channels that the study's trials have, and as late in the session as it would be."""
     ones = np.ones(len(recording))
     filled = {name: ones for name in dataset.effort_definition.channels if name not in recording.channels}
     conditions: dict[str, Condition] = dict(recording.conditions)
     started = [trial.motion.conditions.get(SESSION_START) for trial in dataset.trials]
     if all(isinstance(one, int | float) for one in started):
-        conditions[SESSION_START] = max(float(trial.motion.session_s[-1]) for trial in dataset.trials)
+        conditions[SESSION_START] = 0.0 if cold else max(float(t.motion.session_s[-1]) for t in dataset.trials)
     return replace(recording, channels={**recording.channels, **filled}, conditions=conditions)
 
 
-def _last_temperature_c(dataset: Dataset) -> float:
-    temperature = dataset.trials[-1].motion.temperature_c
-    return float(temperature[-1]) if np.isfinite(temperature).all() else nan
+def _temperature_c(dataset: Dataset, cold: bool) -> float:
+    """At the start of the first trial, or at the end of the last one; NaN where it is not measured."""
+    temperatures = [trial.motion.temperature_c for trial in dataset.trials]
+    if not all(np.isfinite(one).all() for one in temperatures):
+        return nan
+    return float(temperatures[0][0] if cold else temperatures[-1][-1])
