@@ -107,6 +107,8 @@ def _value(value: object) -> str:
 def extended(found: Found) -> None:
     """What was added to a study."""
     say(found["sentence"])
+    if found["left_out"]:
+        say(f"left out, too short for the study's filter or without its effort: {', '.join(found['left_out'])}")
     table("Added", ["id#", "name"], [(one["trial_id"], one["name"]) for one in found["added"]])
 
 

@@ -53,6 +53,7 @@ class Extended(BaseModel):
     study_id: int
     model_id: int = Field(description="the newest model, fitted to all trials")
     added: list[AddedTrial]
+    left_out: list[str] = Field(description="trials too short for the study's filter, or without its effort")
     trials: int
     before: float | None
     after: float | None

@@ -8,9 +8,10 @@ from bench.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError
-from bench.study.material import Definition, Material, facts_of, material_of, model_of
+from bench.study.material import Definition, Material, facts_of, load, material_of, model_of
 from bench.study.models import keep_model
 from bench.study.selection import Criterion
+from compensator.lab.assembly import usable
 
 
 def note_for(study_id: int) -> str:
@@ -36,11 +37,13 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     row = store.study(study_id)
     definition = Definition.from_json(row.definition)
     numbers = list(experiment_ids) or _run_for(store, study_id)
-    trials = [trial for number in numbers for trial in _new_trials(store, number, definition)]
+    dataset = load(store, study_id).dataset
+    new = [trial for number in numbers for trial in _new_trials(store, number, definition)]
+    trials = [trial for trial in new if usable(dataset, [store.recording(trial.id)])]
     if not trials:
         raise StudyError(
-            f"there is no completed trial that study {study_id} has not yet; run those that `study suggest {study_id}` "
-            "names, or name other experiments"
+            f"there is no completed trial that study {study_id} can use and has not yet; run those that "
+            f"`study suggest {study_id}` names, or name other experiments"
         )
     before = model_of(store, study_id, None)
     longer = _with(definition, numbers, trials)
@@ -48,7 +51,8 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     fit = material.fit(before.effects)  # before anything is kept
     store.change_study(study_id, longer.to_json())
     model_id = keep_model(store, material, before.id, fit)
-    return _answer(material, store, model_id, trials, before.result["held_out"])
+    left_out = [trial.name for trial in new if trial not in trials]
+    return _answer(material, store, model_id, trials, before.result["held_out"]) | {"left_out": left_out}
 
 
 def _run_for(store: Store, study_id: int) -> list[int]:

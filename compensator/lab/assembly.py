@@ -81,6 +81,18 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
     return replace(dataset, trials=trials if dataset.crosses_free_play else _on_one_flank(trials), cache={})
 
 
+def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]:
+    """Those recordings that the dataset could be given: others are too short for its filter, or lack a channel."""
+    found = []
+    for recording in recordings:
+        try:
+            make_signals(recording, dataset.effort_definition, dataset.facts, dataset.cutoff_hz)
+        except UnusableDataError:
+            continue
+        found.append(recording)
+    return found
+
+
 def _session_span_s(signals: Sequence[Signals]) -> float:
     """From the start of the first trial to the end of the last, as far as the trials tell when they began."""
     starts = [float(s.recording.conditions.get(SESSION_START, 0.0)) for s in signals]

@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from compensator.lab.assembly import more_trials
+from compensator.lab.assembly import more_trials, usable
 from compensator.lab.candidates import gather
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import Effect, EffectRows
@@ -138,9 +138,11 @@ class _Choice:
     """Greedy choice among options."""
 
     def __init__(self, separation: Separation, options: Sequence[Option], pairs: list[tuple[int, int | None]]) -> None:
-        self._separation, self._options = separation, options
+        self._separation = separation
         dataset = separation.dataset
-        self._brings = [separation.of_trials(more_trials(dataset, option.recordings)) for option in options]
+        found = [(option, usable(dataset, option.recordings)) for option in options]
+        self._options = [option for option, recordings in found if recordings]
+        self._brings = [separation.of_trials(more_trials(dataset, recordings)) for _, recordings in found if recordings]
         everything = sum(self._brings, separation.measured)
         self._reachable = {pair: separation.d_prime(everything, *pair) for pair in pairs}
         self._hopeless = [pair for pair in pairs if self._reachable[pair] < HOPELESS]

@@ -45,14 +45,14 @@ def made(store):
 
 @pytest.fixture(autouse=True)
 def few_options(monkeypatch):
-    """Every fourth option: the whole lot takes seconds."""
-    monkeypatch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::4])
+    """Every ninth option: the whole lot takes seconds."""
+    monkeypatch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::9])
 
 
 @pytest.fixture(scope="module")
 def found(store, made):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::4])
+        patch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::9])
         return study.suggest(store, made["study_id"], CONFIGURATION, trials=2)
 
 
