@@ -61,9 +61,12 @@ class CanLink(canopen.Network):
         Raises:
             DriveConnectionError: the port is gone, the bus is off, or the transmit buffer stays full.
         """
+        self.send_prepared(prepare(can_id, data, remote))
+
+    def send_prepared(self, message: can.Message) -> None:
+        """Send a frame that was made before; as `send_message`."""
         if self.bus is None:
             raise DriveConnectionError(self._device, "the bus is closed; open the drive first")
-        message = can.Message(arbitration_id=can_id, data=data, is_extended_id=False, is_remote_frame=remote)
         deadline_s = 0.0
         while True:
             try:
@@ -130,6 +133,11 @@ class CanLink(canopen.Network):
         return DriveConnectionError(
             self._device, f"{doing} failed: {what}; check cable, adapter and bit rate, then open the drive again"
         )
+
+
+def prepare(can_id: int, data: bytes, remote: bool = False) -> can.Message:
+    """A frame for `CanLink.send_prepared`, which may be sent often."""
+    return can.Message(arbitration_id=can_id, data=data, is_extended_id=False, is_remote_frame=remote)
 
 
 def _buffer_full(error: Exception) -> bool:

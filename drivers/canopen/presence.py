@@ -24,9 +24,9 @@ def check_presence(
         DriveConnectionError: it is silent for too long, or has restarted.
         DriveFault: it has left OPERATIONAL.
     """
-    device, silence_s = settings.device, cycle.silence_s
+    silence_s = cycle.silence_s
     if silence_s > settings.answer_s:
-        state = monitor.state
+        device, state = settings.device, monitor.state
         if state is not None and state is not NmtState.OPERATIONAL:
             raise DriveFault(device, f"has left OPERATIONAL, it is {state.name}: {fault_name()}; clear the fault")
         raise DriveConnectionError(
@@ -37,4 +37,4 @@ def check_presence(
     mute_s = monitor.silence_s(now_s)
     if monitor.restarted or mute_s > monitor.timeout_s:
         what = "has restarted" if monitor.restarted else f"has sent no heartbeat for {mute_s:.3g} s"
-        raise DriveConnectionError(device, f"{what}; check supply and cable, then open it again")
+        raise DriveConnectionError(settings.device, f"{what}; check supply and cable, then open it again")

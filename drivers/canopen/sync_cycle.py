@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
 
-from drivers.canopen.link import CanLink
+from drivers.canopen.link import CanLink, prepare
 from drivers.canopen.pdo import Pdo
 
 SYNC_COB_ID: Final = 0x80
+_SYNC: Final = prepare(SYNC_COB_ID, b"")
 _PAUSE_S: Final = 0.1  # after that long, take in what has come meanwhile before anything is asked
 
 
@@ -80,7 +81,7 @@ class SyncCycle:
         self._missing = set(self._places)
         self._arrived.clear()
         link.send_message(cob_id, payload)
-        link.send_message(SYNC_COB_ID, b"")
+        link.send_prepared(_SYNC)
         self._sent_s = perf_counter()
         self._unanswered_s = self._unanswered_s or self._sent_s
         counts.sent += 1

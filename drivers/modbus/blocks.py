@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from drivers.modbus.register import Register, Space
+from drivers.modbus.register import Register, Space, as_bytes
 
 LONGEST_READ = 125  # words in one request (Modbus Application Protocol V1.1b3, 6.3)
 LONGEST_WRITE = 121  # of function 23 (6.17)
@@ -27,10 +27,9 @@ class Block:
 
     def decode(self, words: Sequence[int]) -> dict[str, float]:
         """Scaled values by name."""
-        start = self.address
+        data, start = as_bytes(words), self.address
         return {
-            register.name: register.decode(words[register.address - start : register.end - start])
-            for register in self.registers
+            register.name: register.decode_bytes(data, 2 * (register.address - start)) for register in self.registers
         }
 
     def encode(self, values: Mapping[str, float]) -> list[int]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from math import isfinite
-from struct import Struct
+from struct import Struct, pack
 
 WORD_BITS = 16
 
@@ -27,18 +27,17 @@ class Number(Enum):
     LOW_INT16 = ">xxh"  # two words of which the more significant one is without meaning
     LOW_UINT16 = ">xxH"
 
-    @property
-    def words(self) -> int:
-        """Registers that it takes."""
-        return Struct(self.value).size * 8 // WORD_BITS
+    layout: Struct
+    words: int  # registers that it takes
+    bounds: tuple[float, float] | None  # smallest and largest whole number; None for floats
 
-    @property
-    def bounds(self) -> tuple[float, float] | None:
-        """Smallest and largest whole number; None for floats."""
-        if self is Number.FLOAT32:
-            return None
-        bits = int(self.name[-2:])
-        return (0, 2**bits - 1) if "UINT" in self.name else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+    def __init__(self, layout: str) -> None:
+        self.layout = Struct(layout)
+        self.words = self.layout.size * 8 // WORD_BITS
+        bits, kind = 16 if "x" in layout else self.layout.size * 8, layout[-1]
+        signed = kind.islower()
+        whole = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+        self.bounds = None if kind == "f" else whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +76,14 @@ class Register:
 
     def decode(self, words: Sequence[int]) -> float:
         """The scaled value of its words."""
-        ordered = reversed(words) if self.low_word_first else words
-        data = b"".join(word.to_bytes(2, "big") for word in ordered)
-        return float(Struct(self.number.value).unpack(data)[0]) * self.scale + self.offset
+        return self.decode_bytes(as_bytes(words), 0)
+
+    def decode_bytes(self, data: bytes, start: int) -> float:
+        """The scaled value of its words, which begin at a place in the bytes of some."""
+        number = self.number
+        if self.low_word_first and number.words > 1:
+            data, start = data[start + 2 : start + 4] + data[start : start + 2], 0
+        return float(number.layout.unpack_from(data, start)[0]) * self.scale + self.offset
 
     def encode(self, value: float) -> list[int]:
         """The words of a scaled value.
@@ -96,8 +100,8 @@ class Register:
             if not bounds[0] <= steps <= bounds[1]:
                 low, high = (bound * self.scale + self.offset for bound in bounds)
                 raise ValueError(f"{self.name} is {value:g} {self.unit}; its register holds {low:g} .. {high:g}")
-        data = Struct(self.number.value).pack(steps)
-        words = [int.from_bytes(data[place : place + 2], "big") for place in range(0, len(data), 2)]
+        data = self.number.layout.pack(steps)
+        words = [data[place] << 8 | data[place + 1] for place in range(0, len(data), 2)]
         return words[::-1] if self.low_word_first else words
 
 
@@ -117,5 +121,9 @@ class Text:
 
     def decode(self, words: Sequence[int]) -> str:
         """The characters."""
-        data = b"".join(word.to_bytes(2, "big") for word in words)
-        return data.rstrip(b"\0").decode("ascii", "replace").strip()
+        return as_bytes(words).rstrip(b"\0").decode("ascii", "replace").strip()
+
+
+def as_bytes(words: Sequence[int]) -> bytes:
+    """Words as bytes, the more significant byte of each first."""
+    return pack(f">{len(words)}H", *words)

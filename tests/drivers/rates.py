@@ -2,14 +2,23 @@
 
     python -m tests.drivers.rates [SECONDS]
 
-SECONDS is how long the rates are to be kept, 60 where it is left out.
+SECONDS is how long the rates are to be kept, 60 where it is left out. Host and devices ask for real-time turns of the
+processor, where the system grants them: see `tests.devices.turns`. A pseudo-terminal goes through the kernel's ordinary
+threads all the same; on a busy machine its rows show that.
 """
 
+import os
 import sys
 
+from tests.devices.turns import turns
 from tests.drivers import serial_rates
 from tests.drivers.canopen import rates as canopen
+from tests.drivers.rate_rows import heading
 
 if __name__ == "__main__":
-    serial_rates.report()
-    canopen.report(float(sys.argv[1]) if len(sys.argv) > 1 else 60.0)
+    with turns():
+        print(f"load of the machine before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        print(heading())
+        serial_rates.report()
+        canopen.report(float(sys.argv[1]) if len(sys.argv) > 1 else 60.0)
+        print(f"load of the machine after: {os.getloadavg()[0]:.1f}, the benchmark's own included")

@@ -4,9 +4,10 @@ Each row is a ratio within one run, against one simulated device in a process of
 of the driver's in turn, the quickest round of each.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from time import perf_counter
-from typing import Any
+from typing import Any, Final, Literal
 
 import serial
 from pymodbus import FramerType
@@ -21,6 +22,7 @@ from drivers.modbus.settings import ModbusSettings
 from drivers.roboclaw.drive import RoboclawDrive
 from drivers.roboclaw.settings import RoboclawSettings
 from tests.devices.device_process import device_process
+from tests.drivers.rate_rows import ratio_row, row
 from tests.drivers.roboclaw_answers import crc
 
 CYCLES, ROUNDS = 60, 25  # short rounds, some of which a busy machine leaves in peace
@@ -29,6 +31,10 @@ BAUD_RATE = 115200
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
 OFF = Command(Mode.OFF)
 NEVER = 1_000_000
+LEAST_SHARE = 0.9  # of what the line carries, one way after the other
+
+Questions = Literal["in turn", "together"]
+QUESTIONS: Final[tuple[Questions, ...]] = ("in turn", "together")
 
 # of a cycle, in bytes there and back: duty, encoder, speed, applied PWM, currents
 ROBOCLAW_CYCLE = ((6, 1), (2, 7), (2, 7), (2, 6), (2, 6))
@@ -37,36 +43,65 @@ Cycle = Callable[[], object]
 
 def report() -> None:
     """Print the rows."""
-    print("a cycle of each driver beside the same exchange written barely with the library")
-    for row in (roboclaw_row, modbus_tcp_row, modbus_rtu_row):
-        print(row(), flush=True)
-    print(line_row(), flush=True)
+    for rows in (roboclaw_rows, modbus_tcp_rows, modbus_rtu_rows, line_rows):
+        for one in rows():
+            print(one, flush=True)
 
 
-def roboclaw_row() -> str:
+def roboclaw_rows() -> Iterator[str]:
     """Over a pty without pace."""
     with device_process("roboclaw", "--baud", "0") as device:
-        settings = RoboclawSettings(device.port, answer_timeout_s=5.0, slow_every=NEVER)
+        for questions in QUESTIONS:
+            yield _ratio_row(
+                f"RoboClaw {questions} / pyserial in turn, pty",
+                partial(_bare_roboclaw, device.port),
+                partial(_opened_roboclaw, device.port, questions),
+            )
 
-        def bare() -> tuple[Cycle, Cycle]:
-            port = serial.Serial(device.port, BAUD_RATE, timeout=1.0, exclusive=True)
-            duty = b"\x80\x20\x00\x00"
-            questions = [(duty + crc(duty), 1)] + [(bytes((0x80, number)), size) for number, size in _READS]
 
-            def cycle() -> None:
-                for packet, size in questions:
-                    port.write(packet)
-                    port.read(size)
+def line_rows() -> Iterator[str]:
+    """A RoboClaw paced as 115200 baud: how much of the line is used, and by a bare script that asks in turn."""
+    line_s = sum(there + back for there, back in ROBOCLAW_CYCLE) * 10 / BAUD_RATE
+    ways: dict[str, Callable[[str], tuple[Cycle, Cycle]]] = {
+        "pyserial in turn": _bare_roboclaw,
+        **{f"RoboClaw {questions}": partial(_opened_roboclaw, questions=questions) for questions in QUESTIONS},
+    }
+    for name, make in ways.items():
+        with device_process("roboclaw", "--baud", str(BAUD_RATE)) as device:
+            cycle, close = make(device.port)
+            cycle_s = min(_round(cycle, 50) for _ in range(ROUNDS))
+            close()
+        share, is_asked = line_s / cycle_s, name == "RoboClaw together"
+        yield row(
+            f"{name}, line paced as {BAUD_RATE} baud",
+            f">= {100.0 * LEAST_SHARE:.0f} %" if is_asked else "",
+            f"{100.0 * share:.1f} % ({1.0 / cycle_s:.0f} of {1.0 / line_s:.0f} cycles/s)",
+            share >= LEAST_SHARE if is_asked else None,
+        )
 
-            return cycle, port.close
 
-        return _row("RoboClaw, pty, pyserial", bare, lambda: _opened(RoboclawDrive(settings, JOINT)))
+def _bare_roboclaw(path: str) -> tuple[Cycle, Cycle]:
+    port = serial.Serial(path, BAUD_RATE, timeout=1.0, exclusive=True)
+    duty = b"\x80\x20\x00\x00"
+    questions = [(duty + crc(duty), 1)] + [(bytes((0x80, number)), size) for number, size in _READS]
+
+    def cycle() -> None:
+        for packet, size in questions:
+            port.write(packet)
+            port.read(size)
+
+    return cycle, port.close
 
 
 _READS = ((16, 7), (18, 7), (48, 6), (49, 6))
 
 
-def modbus_tcp_row() -> str:
+def _opened_roboclaw(path: str, questions: Questions) -> tuple[Cycle, Cycle]:
+    settings = RoboclawSettings(path, answer_timeout_s=5.0, slow_every=NEVER, questions=questions)
+    return _opened(RoboclawDrive(settings, JOINT))
+
+
+def modbus_tcp_rows() -> Iterator[str]:
     """Function 23 over loopback."""
     with device_process("modbus", "--transport", "tcp") as device:
         settings = _modbus_settings(device.drive)
@@ -76,10 +111,10 @@ def modbus_tcp_row() -> str:
             client.connect()
             return _read_write(client), client.close
 
-        return _row("Modbus TCP, pymodbus", bare, lambda: _opened(ModbusDrive(settings, load_map(settings.map), JOINT)))
+        yield _ratio_row("Modbus TCP / pymodbus", bare, partial(_opened_modbus, settings))
 
 
-def modbus_rtu_row() -> str:
+def modbus_rtu_rows() -> Iterator[str]:
     """Function 23 over a pty without pace; beside pymodbus' own client and beside the quicker one of `link.py`."""
     with device_process("modbus", "--transport", "rtu", "--baud", "0") as device:
         settings = _modbus_settings(device.drive)
@@ -89,26 +124,13 @@ def modbus_rtu_row() -> str:
             client.connect()
             return _read_write(client), client.close
 
-        def driver() -> tuple[Cycle, Cycle]:
-            return _opened(ModbusDrive(settings, load_map(settings.map), JOINT))
-
-        own = _row("Modbus RTU, pty, pymodbus", lambda: bare(ModbusSerialClient), driver)
-        return f"{own}\n{_row('Modbus RTU, pty, its client without polling', lambda: bare(QuickSerialClient), driver)}"
+        driver = partial(_opened_modbus, settings)
+        yield _ratio_row("Modbus RTU / pymodbus, pty", partial(bare, ModbusSerialClient), driver)
+        yield _ratio_row("Modbus RTU / its client without polling, pty", partial(bare, QuickSerialClient), driver)
 
 
-def line_row() -> str:
-    """A RoboClaw paced as 115200 baud: how much of the line is used."""
-    with device_process("roboclaw", "--baud", str(BAUD_RATE)) as device:
-        settings = RoboclawSettings(device.port, answer_timeout_s=5.0, slow_every=NEVER)
-        cycle, close = _opened(RoboclawDrive(settings, JOINT))
-        cycle_s = min(_round(cycle, 50) for _ in range(ROUNDS))
-        close()
-    line_s = sum(there + back for there, back in ROBOCLAW_CYCLE) * 10 / BAUD_RATE
-    share = 100.0 * line_s / cycle_s
-    return (
-        f"RoboClaw paced as {BAUD_RATE} baud: {1.0 / cycle_s:.0f} cycles/s of the {1.0 / line_s:.0f} that the line "
-        f"allows, {share:.1f} %"
-    )
+def _opened_modbus(settings: ModbusSettings) -> tuple[Cycle, Cycle]:
+    return _opened(ModbusDrive(settings, load_map(settings.map), JOINT))
 
 
 def _modbus_settings(drive: dict[str, Any]) -> ModbusSettings:
@@ -128,15 +150,14 @@ def _opened(drive: Drive) -> tuple[Cycle, Cycle]:
     return lambda: drive.exchange(OFF), drive.close
 
 
-def _row(name: str, bare: Callable[[], tuple[Cycle, Cycle]], driver: Callable[[], tuple[Cycle, Cycle]]) -> str:
+def _ratio_row(name: str, bare: Callable[[], tuple[Cycle, Cycle]], driver: Callable[[], tuple[Cycle, Cycle]]) -> str:
     found: dict[str, list[float]] = {"bare": [], "driver": []}
     for _ in range(ROUNDS):
         for kind, make in (("bare", bare), ("driver", driver)):
             cycle, close = make()  # one at a time: ports are exclusive
             found[kind].append(_round(cycle, CYCLES))
             close()
-    bare_s, driver_s = (min(found[kind]) for kind in ("bare", "driver"))
-    return f"{name:<44} bare {1e6 * bare_s:7.0f} us   driver {1e6 * driver_s:7.0f} us   ratio {driver_s / bare_s:.2f}"
+    return ratio_row(name, min(found["bare"]), min(found["driver"]))
 
 
 def _round(cycle: Cycle, count: int) -> float:

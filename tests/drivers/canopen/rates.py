@@ -18,6 +18,7 @@ from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
 from drivers.contract import Command, Mode
 from drivers.errors import DriveError
 from tests.drivers.canopen.conversation import JOINT, bus_of, started
+from tests.drivers.rate_rows import ratio_row, row
 
 ROUNDS, CYCLES = 12, 200
 WATCHDOG_S, ANSWER_S = 1.0, 0.5
@@ -41,9 +42,9 @@ def over(interface: str) -> Iterator[BusSettings]:
 
 
 PLACES: dict[str, Callable[[], object]] = {
-    "virtual bus, one process": in_one_process,
-    "slcan on a pseudo-terminal, two processes": lambda: over("slcan"),
-    "socketcand over TCP, two processes": lambda: over("socketcand"),
+    "virtual, one process": in_one_process,
+    "slcan on a pty, two processes": lambda: over("slcan"),
+    "socketcand on TCP, two processes": lambda: over("socketcand"),
 }
 
 
@@ -92,28 +93,31 @@ def side_by_side(bus: BusSettings) -> tuple[float, float]:
     return driver_s, bare_s
 
 
-def endurance(bus: BusSettings, rate_hz: float, duration_s: float) -> str:
+def endurance_row(bus: BusSettings, place: str, rate_hz: float, duration_s: float) -> str:
     """Cycle with the power on and no current for a time; a late cycle starts at once, and none is left out."""
     drive, cycles = drive_on(bus), round(rate_hz * duration_s)
     drive.open(1.0 / rate_hz)
     drive.enable(Mode.CURRENT)
-    late_s: list[float] = []
-    ending = "to the end"
+    before, late_s, ending = replace(drive.counts), [], ""
     began_s = perf_counter()
     try:
         for number in range(cycles):
             late_s.append(_wait_until(began_s + number / rate_hz))
             drive.exchange(Command(Mode.CURRENT, 0.0))
     except DriveError as error:
-        ending = str(error)
-    took_s, counts = perf_counter() - began_s, replace(drive.counts)
+        ending = f"; {error}"
+    took_s, after = perf_counter() - began_s, replace(drive.counts)
     drive.close()
     late_s.sort()
-    p50_s, p99_s = late_s[len(late_s) // 2], late_s[len(late_s) * 99 // 100]
-    return (
-        f"{len(late_s)} of {cycles} cycles in {took_s:.2f} s, {ending}; since opening {counts.sent} SYNC, "
-        f"{counts.answered} answered in time, {counts.late} after 10 ms, {counts.missed} never, {counts.surplus} TPDO "
-        f"too many; lateness p50 {p50_s * 1e3:.2f} ms, p99 {p99_s * 1e3:.2f} ms, max {late_s[-1] * 1e3:.1f} ms"
+    sent, lost = after.sent - before.sent, after.missed - before.missed
+    surplus, late = after.surplus - before.surplus, after.late - before.late
+    p99_ms, max_ms = 1e3 * late_s[len(late_s) * 99 // 100], 1e3 * late_s[-1]
+    return row(
+        f"{rate_hz:.0f} Hz for {duration_s:g} s, {place}",
+        "0 cycles lost",
+        f"{lost} lost of {sent} SYNC in {took_s:.1f} s, {late} answered late, {surplus} TPDO too many; cycle's start "
+        f"late by p99 {p99_ms:.2f} ms, max {max_ms:.1f} ms{ending}",
+        sent == cycles and lost == surplus == 0,
     )
 
 
@@ -130,10 +134,7 @@ def report(duration_s: float) -> None:
     for place, start in PLACES.items():
         with start() as bus:  # type: ignore[attr-defined]
             driver_s, bare_s = side_by_side(bus)
-            print(
-                f"CANopen, {place}: {driver_s * 1e6:.0f} us a cycle, barely {bare_s * 1e6:.0f} us; "
-                f"ratio {driver_s / bare_s:.2f} (at most 1.25)"
-            )
+            print(ratio_row(f"CANopen / python-can, {place}", bare_s, driver_s), flush=True)
             rate_hz = {"virtual": 1000.0, "slcan": 500.0}.get(bus.interface)
             if rate_hz is not None:
-                print(f"  {rate_hz:.0f} Hz for {duration_s:g} s: {endurance(bus, rate_hz, duration_s)}")
+                print(endurance_row(bus, place, rate_hz, duration_s), flush=True)
