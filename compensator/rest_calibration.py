@@ -31,6 +31,7 @@ from compensator.interval import Interval
 BAND = 1.959964
 FLOOR_A = 1e-6  # least scatter, where a joint shows none
 LEAST_POINTS = 6
+FREE_SHARE = 0.5  # of what is left of eq. (9), where the teeth may be free
 
 
 class RestPoint(NamedTuple):
@@ -106,13 +107,16 @@ class RestCalibration:
         # less than that, and friction behind the teeth explains it: they may be free
         touches = 1.0 if abs(free_a) > 2.0 * self.step_a else 0.0
         half_a = self._half_a(found, touches, abs(free_a))
-        load_a = self._load_a(mean_a, half_a) if touches else free_a / 2.0 / self.gain
+        load_a = self._load_a(mean_a, half_a) if touches else FREE_SHARE * free_a / self.gain
         friction_a = max(half_a - self.slope * abs(load_a) - self.offset_a * touches, 0.0)
         # as many one way as the other: mean and half difference are equally sure
         noise_a = self.scatter_a(half_a) / sqrt(found.breakaways)
         gradient = np.array([load_a, copysign(touches, load_a), friction_a])
         known_a2 = float(gradient @ np.array(self.covariance) @ gradient)
-        width_a = BAND * sqrt((1.0 + self.asymmetry**2) * noise_a**2 + known_a2) / self.gain
+        # of teeth that may be free, everything from 0 to `free_a` may be load: half of it is taken, evenly spread round
+        share, unsure_a = (1.0, 0.0) if touches else (FREE_SHARE, free_a / sqrt(12.0))
+        told_a2 = (1.0 + self.asymmetry**2) * noise_a**2 + known_a2
+        width_a = BAND * sqrt(share**2 * told_a2 + unsure_a**2) / self.gain
         friction_width_a = BAND * sqrt(1.0 + self.slope**2) * noise_a
         return RestEstimate(
             Interval(load_a, load_a - width_a, load_a + width_a),
