@@ -15,6 +15,8 @@ from bench.runner import Runner
 from bench.store import CalibrationRow, Experiment, Store
 from bench.store.errors import NotFoundError
 
+WALL_RAD = 0.8
+WALL_REACH_S = 3.0  # gently: an arm that hits a wall wedges its gear
 Conduct = Callable[[Runner], None]
 """Waits for the end of what a runner has started, and shows it or not."""
 
@@ -52,6 +54,9 @@ class Plan:
         speeds_rad_s: of the joint (Fig. 11).
         periods: of the sinusoid.
         speed_sweep: further parameters of the speed sweep.
+        reaches_rad, wall_reaches_rad: angles that the operator of the master reaches for: with a weight on the slave,
+            and with a wall in its way.
+        largest_force_scale: that is tried at rest.
     """
 
     loads_kg: tuple[float, ...] = tuple(round(0.01 * step, 2) for step in range(11))
@@ -61,6 +66,10 @@ class Plan:
     periods: int = 4
     # what has not saturated after four strokes still counts: its inertia is taken off
     speed_sweep: tuple[tuple[str, Any], ...] = (("duties", (0.1, 0.2, 0.3)), ("strokes", 4))
+
+    reaches_rad: tuple[float, ...] = (1.2, 0.6, 1.5, -0.8)
+    wall_reaches_rad: tuple[float, ...] = (0.83, 0.4, 0.85)
+    largest_force_scale: float = 4.0
 
     @property
     def middle_kg(self) -> float:
@@ -84,6 +93,24 @@ class Plan:
                 "steady-speeds", {"load_kg": self.middle_kg, "speeds_rad_s": self.speeds_rad_s}
             ),
             "sinusoid": Measurement("sinusoid", {"load_kg": self.middle_kg, "periods": self.periods}),
+            "teleoperation": Measurement(
+                "teleoperation",
+                {
+                    "load_kg": self.loads_kg[-1],
+                    "angles_rad": self.reaches_rad,
+                    "find_margin": True,
+                    "largest_force_scale": self.largest_force_scale,
+                },
+            ),
+            "wall": Measurement(
+                "teleoperation",
+                {
+                    "load_kg": self.middle_kg,
+                    "angles_rad": self.wall_reaches_rad,
+                    "wall_rad": WALL_RAD,
+                    "reach_s": WALL_REACH_S,
+                },
+            ),
         }
 
 

@@ -11,6 +11,7 @@ from bench.paper.measurements import Conduct, Plan, calibration_of, measure, qui
 from bench.paper.reflection import grams_per_ma
 from bench.paper.row import Row
 from bench.paper.steady_speeds import fig_11
+from bench.paper.teleoperation import teleoperation
 from bench.report import Section, Table
 from bench.store import Experiment, Store
 
@@ -82,4 +83,6 @@ def reproduce(
     again = experiment("trials")
     add([repeated_steps.fig_10(again, store.trials(again.id), per_ma_g)])
     add([fig_11(store, experiment("steady-speeds")), accelerated(store, experiment("sinusoid"))])
+    if configuration.master is not None:
+        add([teleoperation(store, experiment("teleoperation"), experiment("wall"))])
     return rows

@@ -11,9 +11,10 @@ Number = float | int | None
 FIGURES = {
     "fig-2": "Fig. 2", "fig-3": "Fig. 3", "fig-4": "Fig. 4", "fig-7": "Fig. 7", "table-1": "Table 1, Fig. 8",
     "fig-9": "Fig. 9", "fig-10": "Fig. 10", "fig-11": "Fig. 11", "accelerated": "future work",
+    "teleoperation": "master and slave",
 }  # fmt: skip
 """The rows by name, as the paper calls them."""
-_UNITS = {"ma": "mA", "g": "g", "rpm": "rpm"}
+_UNITS = {"ma": "mA", "g": "g", "rpm": "rpm", "ms": "ms"}
 
 
 @dataclass(frozen=True)

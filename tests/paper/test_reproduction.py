@@ -16,7 +16,15 @@ from bench.store.errors import NotFoundError
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 SWEEP = {"currents_a": (0.3,), "duties": (0.2,), "speeds_rad_s": (0.03, 0.1, 0.3, 0.6, 1.5), "strokes": 3}
 SMALL = Plan(
-    loads_kg=(0.0, 0.05, 0.1), steps=4, trials=2, speeds_rad_s=(1.0, 3.0), periods=1, speed_sweep=tuple(SWEEP.items())
+    loads_kg=(0.0, 0.05, 0.1),
+    steps=4,
+    trials=2,
+    speeds_rad_s=(1.0, 3.0),
+    periods=1,
+    speed_sweep=tuple(SWEEP.items()),
+    reaches_rad=(1.2,),
+    wall_reaches_rad=(0.83,),
+    largest_force_scale=0.5,
 )
 CONFIGURATION = default_configuration()
 
@@ -74,6 +82,12 @@ def test_compensation_does_what_the_paper_says(rows):
         < 0.3 * ours(rows, "fig-11")["uncompensated_max_mean_error_g"]
     )
     assert ours(rows, "accelerated")["rms_ratio"] < 0.25
+    assert ours(rows, "teleoperation")["error_ratio"] < 0.25
+    assert ours(rows, "teleoperation")["calm_up_to_force_scale"] == 0.5
+    assert (
+        ours(rows, "teleoperation")["wall_compensated_error_rms_g"]
+        < 0.7 * ours(rows, "teleoperation")["wall_uncompensated_error_rms_g"]
+    )
 
 
 def test_the_loads_of_table_1_were_not_those_of_the_calibration(store, rows):
