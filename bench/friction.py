@@ -33,11 +33,33 @@ class FrictionCurve(Section):
         return KineticFriction(**{name: getattr(self, name) for name in names})
 
 
+class StudiedEffect(Section):
+    """One effect of a study's model, the effort as joint torque [N m]."""
+
+    effect: str = Field(description="Name in the catalogue")
+    shape: tuple[float, ...] = Field(description="Its nonlinear shape values")
+    coefficients: tuple[float, ...] = Field(description="One per parameter")
+
+
+class StudiedModel(Section):
+    """A study's model: what the joint takes in motion, in place of the curves."""
+
+    study_id: int = Field(description="Study in the store that it comes from")
+    model_id: int = Field(description="Which of its models")
+    effects: tuple[StudiedEffect, ...] = Field(min_length=1, description="Of the model, those that work online")
+    slow_rad_s: float = quantity(..., "rad/s", "Speed below which direction was uncertain", gt=0)
+    fast_rad_s: float = quantity(..., "rad/s", "95 % quantile of speed", gt=0)
+    position_span_rad: float = quantity(..., "rad", "Range of position", gt=0)
+    inertia_n_m_s2_rad: float = quantity(..., "N m s2/rad", "Of motor and arm", ge=0)
+    load_inertia_scale: float = quantity(1.0, "", "Of the load, over that of a point at the tip", ge=0)
+
+
 class FrictionSettings(Section):
     """The curves that a bench compensates with."""
 
     calibration_id: int | None = Field(default=None, description="Calibration in the store that they come from")
     curves: tuple[FrictionCurve, ...] = Field(min_length=2, description="One for each load")
+    study: StudiedModel | None = Field(default=None, description="What a study found; in motion it counts, not curves")
 
     def over_load(self, margin: float = MARGIN) -> FrictionLookup:
         """Looked up by the load [kg]. Raises `CalibrationError` where the loads are not different."""

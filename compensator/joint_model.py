@@ -3,6 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, sin
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from compensator.errors import ModelParameterError
 from compensator.friction_lookup import FrictionLookup
@@ -10,6 +14,17 @@ from compensator.gear_loss import GearLoss
 from compensator.kinetic_friction import KineticFriction
 
 NO_LOSS = GearLoss()
+FloatArray = NDArray[np.float64]
+
+
+class MotionFriction(Protocol):
+    """What a joint in motion takes beyond inertia and load, where more is known of it than friction curves."""
+
+    def current_a(
+        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, gravity_a: float,
+        temperature_c: float,
+    ) -> FloatArray:  # fmt: skip
+        """Current [A] at each of some moments in one direction, shape (n,); the load's gear losses are in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +39,7 @@ class JointUnderLoad:
         gravity_a: current that the load takes at 90 degrees.
         gear_loss: of the teeth under load.
         friction_scatter: standard deviation of friction about its curve, as a share of it.
+        studied: takes the place of the curves and of the gear loss in motion; None: there is nothing better.
     """
 
     ratio: float
@@ -36,6 +52,7 @@ class JointUnderLoad:
     gravity_a: float
     gear_loss: GearLoss
     friction_scatter: float
+    studied: MotionFriction | None = None
 
     def friction_a(self, joint_speed_rad_s: float, direction: float) -> float:
         """s F(v) [A]: friction of the balanced joint in a direction, at a speed of the joint or next to 0."""
@@ -62,6 +79,7 @@ class JointModel:
             Between the moment that an estimate in motion belongs to and now, the load is taken to change by that.
         gear_loss: of the teeth under load.
         friction_scatter: standard deviation of friction about its curve, as a share of it.
+        studied: takes the place of the curves and of the gear loss in motion; None: there is nothing better.
     """
 
     friction: FrictionLookup
@@ -72,6 +90,7 @@ class JointModel:
     gravity_a: tuple[float, ...] = ()
     gear_loss: GearLoss = NO_LOSS
     friction_scatter: float = 0.03
+    studied: MotionFriction | None = None
 
     def __post_init__(self) -> None:
         wanted = len(self.friction.selectors)
@@ -109,6 +128,7 @@ class JointModel:
             at(self.gravity_a),
             self.gear_loss,
             self.friction_scatter,
+            self.studied,
         )
 
 

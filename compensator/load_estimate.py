@@ -74,6 +74,7 @@ class Observation(NamedTuple):
         target_rad: the servo's set point; NaN where there is none, and nothing is called stuck.
         searching: a zero-speed search moves the joint.
         rest: what it found, in the cycle in which it ended.
+        temperature_c: of the drive; NaN where it is not measured.
     """
 
     position_rad: float
@@ -81,6 +82,7 @@ class Observation(NamedTuple):
     target_rad: float = nan
     searching: bool = False
     rest: RestResult | None = None
+    temperature_c: float = nan
 
 
 class LoadEstimate(NamedTuple):

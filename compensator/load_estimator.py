@@ -15,7 +15,9 @@ between the two dies away with `blend_s`; until then it is part of the band.
 
 from math import copysign, exp, hypot, inf, isnan, nan, sin, sqrt
 
-from compensator.joint_model import JointModel, JointUnderLoad
+import numpy as np
+
+from compensator.joint_model import JointModel, JointUnderLoad, MotionFriction
 from compensator.load_estimate import (
     Branch,
     EstimatorSettings,
@@ -33,6 +35,7 @@ __all__ = [
 
 BAND = 1.96  # standard deviations in half of a 95 % interval
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
+TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
 
@@ -180,6 +183,8 @@ def _moving(
     """What the window's mean current is more than the modelled load explains, and that load now."""
     averages = window(settings.window, settings.period_s)
     motion = averages.motion(state.positions_rad)
+    if joint.studied is not None:
+        return _studied(joint, joint.studied, settings, state, observation)
     way, loss = state.direction, joint.gear_loss
     friction_a = joint.friction_a(motion.speed_rad_s, way)
     # the teeth carry the load and what accelerates the arm, but not what accelerates the rotor
@@ -194,6 +199,33 @@ def _moving(
     spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
     now_a = joint.gravity_at(observation.position_rad)
     return LoadEstimate(known_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
+
+
+def _studied(
+    joint: JointUnderLoad,
+    studied: MotionFriction,
+    settings: EstimatorSettings,
+    state: EstimatorState,
+    observation: Observation,
+) -> LoadEstimate:
+    """The same with what a study found: friction wherever the window has been; the gear's loss is in it."""
+    averages = window(settings.window, settings.period_s)
+    motion, way = averages.motion(state.positions_rad), state.direction
+    positions = np.array(state.positions_rad)
+    ages_s = settings.period_s * (np.arange(len(positions)) - (len(positions) - 1) / 2.0)
+    speeds = way * np.maximum(way * (motion.speed_rad_s + motion.acceleration_rad_s2 * ages_s), 0.0)
+    friction = studied.current_a(
+        positions, np.where(speeds == 0.0, way * TINY_RAD_S, speeds), motion.acceleration_rad_s2, joint.gravity_a,
+        observation.temperature_c,
+    )  # fmt: skip
+    friction_a = averages.mean(friction.tolist())
+    inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
+    weight_a = averages.mean((joint.gravity_a * np.sin(positions)).tolist())
+    more_a = averages.mean_held(state.currents_a) - inertia * motion.acceleration_rad_s2 - friction_a - weight_a
+    noise_a = inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
+    spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
+    now_a = joint.gravity_at(observation.position_rad)
+    return LoadEstimate(more_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
 
 
 def _expected_a(joint: JointUnderLoad, averages: Window, state: EstimatorState, arm_a: float) -> float:

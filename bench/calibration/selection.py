@@ -4,7 +4,7 @@ from typing import Any
 
 from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
-from bench.friction import FrictionCurve, FrictionSettings
+from bench.friction import FrictionCurve, FrictionSettings, StudiedModel
 from bench.rest import RestSettings
 from bench.store import CalibrationRow, Experiment, Store
 
@@ -71,7 +71,9 @@ def friction_of(row: CalibrationRow) -> FrictionSettings:
     """The curves of a calibration."""
     names = FrictionCurve.model_fields
     curves = tuple(FrictionCurve(**{name: one[name] for name in names}) for one in row.result["curves"])
-    return FrictionSettings(calibration_id=row.id, curves=curves)
+    studied = row.result.get("study")
+    study = None if studied is None else StudiedModel.model_validate(studied)
+    return FrictionSettings(calibration_id=row.id, curves=curves, study=study)
 
 
 def drive_of_experiment(experiment: Experiment) -> dict[str, Any]:

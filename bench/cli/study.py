@@ -21,6 +21,7 @@ _HOLD_OUT = (
 )
 _WHERE = "Use only trials of which this holds; repeatable."
 _START = "Run them one after the other: the joint moves. Then add them to the study, and diagnose again."
+_BENCH = "Move the joint once with each model not tried yet: the error of the reflected load, in grams."
 _EXTEND = "Experiment whose trials are added; repeatable. Without it, those that were run for the study."
 _BASE = "Effect of the first model; repeatable. Without it, the rigid joint with General Kinetic Friction."
 
@@ -134,6 +135,15 @@ def extend(
     _show(context, as_json, tables.extended, "extend_study", study, experiment or [])
 
 
+@app.command("use")
+def use(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """Hand a model to the online compensator: the load in motion is estimated with it from now on."""
+    from bench.cli.study_bench import use_model
+
+    found = use_model(session_of(context), study, model)
+    print_json(found) if as_json else say(found["sentence"])
+
+
 @app.command("report")
 def report(
     context: typer.Context,
@@ -152,8 +162,17 @@ def report(
 
 
 @app.command("ladder")
-def ladder(context: typer.Context, study: StudyId, as_json: Json = False) -> None:
-    """The error from model to model, training and held-out, down towards the floor."""
+def ladder(
+    context: typer.Context,
+    study: StudyId,
+    bench: Annotated[bool, typer.Option("--bench", help=_BENCH)] = False,
+    as_json: Json = False,
+) -> None:
+    """The error from model to model, training and held-out, down towards the floor; and in grams on the bench."""
+    if bench:
+        from bench.cli.study_bench import measure_models
+
+        measure_models(session_of(context), study, quiet=as_json)
     _show(context, as_json, tables.ladder, "ladder", study)
 
 

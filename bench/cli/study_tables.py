@@ -130,10 +130,12 @@ def ladder(found: Found) -> None:
             _change(one),
             percent(one["training"]),
             share_interval(one["held_out"], one["held_out_low"], one["held_out_high"]),
+            one["reflected_error_g"],
         )
         for one in found["rungs"]
     ]
-    table(f"Ladder of study {found['study_id']}", ["model#", "change", "training error#", "held-out error#"], rows)
+    columns = ["model#", "change", "training error#", "held-out error#", "reflected load, error [g]#"]
+    table(f"Ladder of study {found['study_id']}", columns, rows)
     floor = found["floor"]
     if floor is not None:
         say(f"floor, from repeated trials: {percent(floor['relative'] if isinstance(floor, dict) else floor)}")

@@ -6,7 +6,7 @@ from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
 from bench.experiments.resolution import resolution_rad
 from bench.experiments.rest_estimate import RestFinding
-from bench.friction import FrictionCurve
+from bench.friction import FrictionCurve, StudiedModel
 from bench.loop import Reading
 from bench.reflected_load import load_current_a, torque_n_m_a
 from bench.rest import RestSettings
@@ -48,7 +48,12 @@ class LoadFollower:
 
     def observe(self, reading: Reading, target_rad: float = nan, searching: bool = False) -> LoadEstimate:
         """One control cycle."""
-        return self._advance(Observation(reading.sample.position_rad, reading.current_a, target_rad, searching))
+        sample = reading.sample
+        return self._advance(
+            Observation(
+                sample.position_rad, reading.current_a, target_rad, searching, temperature_c=sample.temperature_c
+            )
+        )
 
     def take(self, reading: Reading, target_rad: float, found: RestFinding) -> LoadEstimate:
         """What a zero-speed search found, in the cycle in which it ended."""
@@ -75,6 +80,9 @@ def joint_model(configuration: BenchConfiguration) -> JointModel:
     rotor = _rotor_inertia_a_s2_rad(rig)
     rest = RestSettings() if configuration.rest is None else configuration.rest
     try:
+        studied = configuration.friction.study
+        if studied is not None:
+            return _of_study(configuration, studied, curves, max(rest.scatter, LEAST_SCATTER))
         return JointModel(
             friction=configuration.friction.over_friction(),
             ratio=rig.gear.ratio or 1.0,
@@ -87,6 +95,29 @@ def joint_model(configuration: BenchConfiguration) -> JointModel:
         )
     except CompensatorError as error:
         raise ConfigurationError(f"the friction curves cannot be looked up by F_load: {error}") from error
+
+
+def _of_study(
+    configuration: BenchConfiguration, studied: StudiedModel, curves: list[FrictionCurve], scatter: float
+) -> JointModel:
+    """The joint as a study found it in motion; what hangs on it is still selected by the curves."""
+    from bench.experiments.studied import online_friction  # the lab is loaded where a study is used
+
+    rig, rest = configuration.rig, configuration.rest or RestSettings()
+    per_a, length_m = torque_n_m_a(rig), rig.arm.length_m or 0.0
+    friction = configuration.friction
+    assert friction is not None  # its curves were given
+    return JointModel(
+        friction=friction.over_friction(),
+        ratio=rig.gear.ratio or 1.0,
+        rotor_inertia_a_s2_rad=studied.inertia_n_m_s2_rad / per_a,
+        arm_inertia_a_s2_rad=tuple(studied.load_inertia_scale * one.load_kg * length_m**2 / per_a for one in curves),
+        offsets_a=tuple(one.offset_a for one in curves),
+        gravity_a=tuple(load_current_a(one.load_kg, RIGHT_ANGLE_RAD, rig) for one in curves),
+        gear_loss=rest.calibration().gear_loss(),
+        friction_scatter=scatter,
+        studied=online_friction(studied, rig),
+    )
 
 
 def estimator_settings(configuration: BenchConfiguration) -> EstimatorSettings:

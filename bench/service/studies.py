@@ -13,7 +13,7 @@ from bench.service.json_numbers import plain
 from bench.service.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Studies, Study, StudyName
-from bench.service.suggestion_models import Extended, Suggested
+from bench.service.suggestion_models import Extended, Suggested, Used
 from bench.store import Store
 from bench.store.errors import NotFoundError
 
@@ -87,6 +87,13 @@ class MoreTrials(BaseModel):
     experiment_ids: list[int] = Field(
         default=[], max_length=1000, description="none: every completed one with the note that the suggestion names"
     )
+
+
+class UseModel(BaseModel):
+    """Which model."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"model_id": 7}]})
+    model_id: int | None = Field(default=None, ge=1, description="null: the newest of the study")
 
 
 async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
@@ -214,6 +221,18 @@ async def suggest(
 async def extend(request: Request, store: StoreOf, study_id: StudyId, body: MoreTrials) -> Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
     return Extended.model_validate(await _lab(request, "extend_study", store, study_id, body.experiment_ids))
+
+
+@router.post(
+    "/{study_id}/use",
+    status_code=201,
+    summary="Hand a model to the online compensator",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def use(request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
+    """Kept as a calibration, which the bench uses from the next experiment on."""
+    return Used.model_validate(await _lab(request, "use", store, study_id, runner.configuration, body.model_id))
 
 
 @router.delete(

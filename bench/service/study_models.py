@@ -257,6 +257,9 @@ class Rung(BaseModel):
     held_out_low: float | None
     held_out_high: float | None
     held_out_kind: str = Field(description="hold-out, leave-one-trial-out or leave-one-block-out")
+    reflected_error_g: float | None = Field(
+        description="error of the reflected load in motion with the model at work on the bench, rms; null: not tried"
+    )
     trials: int | None = Field(description="of the study when the model was fitted; null: in models of older versions")
 
 

@@ -1,4 +1,4 @@
-"""What /studies/N/suggest and /studies/N/trials answer with."""
+"""What /studies/N/suggest, /studies/N/trials and /studies/N/use answer with."""
 
 from typing import Any
 
@@ -57,4 +57,15 @@ class Extended(BaseModel):
     trials: int
     before: float | None
     after: float | None
+    sentence: str
+
+
+class Used(BaseModel):
+    """The calibration that a model was kept as."""
+
+    calibration_id: int
+    study_id: int
+    model_id: int
+    effects: list[str] = Field(description="of the model, those at work")
+    left_out: list[str] = Field(description="effects that need more than the motion of the moment")
     sentence: str

@@ -78,6 +78,16 @@ def get_model(connection: Connection, model_id: int) -> ModelRow:
     return ModelRow(**row._asdict())
 
 
+def change_model(connection: Connection, model_id: int, result: dict[str, Any]) -> None:
+    """Replace what came out of a model.
+
+    Raises:
+        NotFoundError: no such model.
+    """
+    get_model(connection, model_id)
+    connection.execute(update(MODEL).where(MODEL.c.id == model_id).values(result=result))
+
+
 def models(connection: Connection, study_id: int) -> list[ModelRow]:
     """The models of a study, oldest first.
 

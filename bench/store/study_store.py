@@ -43,6 +43,11 @@ class StudyStore:
         with self._database.reading() as connection:
             return studies.get_model(connection, model_id)
 
+    def change_model(self, model_id: int, result: dict[str, Any]) -> None:
+        """Replace what came out of a model, or `NotFoundError`."""
+        with self._database.writing() as connection:
+            studies.change_model(connection, model_id, result)
+
     def models(self, study_id: int) -> list[ModelRow]:
         """The models of a study, oldest first, or `NotFoundError`."""
         with self._database.reading() as connection:

@@ -11,12 +11,15 @@ from bench.study.effects import effect_example, effects_catalogue
 from bench.study.error_map import error_map, moments
 from bench.study.extend import extend_study
 from bench.study.ladder import ladder
+from bench.study.on_bench import bench_configurations, keep_bench_error
 from bench.study.report import report_html
 from bench.study.search import search
 from bench.study.suggest import suggest
+from bench.study.use import use
 
 __all__ = [
     "add_effect",
+    "bench_configurations",
     "compare",
     "create_study",
     "describe",
@@ -26,10 +29,12 @@ __all__ = [
     "effects_catalogue",
     "error_map",
     "extend_study",
+    "keep_bench_error",
     "ladder",
     "list_studies",
     "moments",
     "report_html",
     "search",
     "suggest",
+    "use",
 ]

@@ -41,9 +41,11 @@ def ladder_section(found: Found) -> Section:
             _percent(rung["held_out"]),
             f"{_percent(rung['held_out_low'])} .. {_percent(rung['held_out_high'])}",
             rung["held_out_kind"],
+            rung["reflected_error_g"],
         )
         for rung in rungs
     ]
+    columns = ["model#", "change", "training#", "held out#", "90 % interval", "how", "reflected load [g]#"]
     floor = found["floor"]
     names = [f"{rung['model_id']}: {change_of(rung)}" for rung in rungs]
     held = [100.0 * rung["held_out"] for rung in rungs]
@@ -58,7 +60,7 @@ def ladder_section(found: Found) -> Section:
                 else f"Repeated trials differ by {floor:.2%}: no model of the motion can beat that floor."
             )
         ],
-        [Table("Models", ["model#", "change", "training#", "held out#", "90 % interval", "how"], rows)],
+        [Table("Models", columns, rows)],
         [
             Figure(
                 "Error from model to model",

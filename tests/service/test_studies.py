@@ -134,3 +134,11 @@ def test_suggestions_and_more_trials(service, study):
     assert added.status_code == 201, added.text
     assert added.json()["trials"] == 12
     assert len(service.stranger.get(path).json()["trials"]) == 12
+
+
+def test_a_model_of_another_rig_cannot_be_used(service, study):
+    path = f"/studies/{study['study_id']}/use"
+    assert service.stranger.post(path, json={}).status_code == 401
+    refused = service.client.post(path, json={})
+    assert refused.status_code == 422
+    assert "of another rig than this bench" in refused.json()["detail"]

@@ -1,0 +1,97 @@
+"""A study's model handed to the online compensator: kept as a calibration that the bench can choose."""
+
+from typing import Any
+
+from bench import calibration
+from bench.calibration.selection import in_use
+from bench.configuration import BenchConfiguration
+from bench.friction import StudiedEffect, StudiedModel
+from bench.provenance import software
+from bench.rig import Rig
+from bench.store import Store
+from bench.study.errors import StudyError
+from bench.study.material import Material, facts_of, load_model
+from compensator.lab.fit import Fit
+from compensator.lab.online import left_out, works_online
+
+
+def use(store: Store, study_id: int, configuration: BenchConfiguration, model_id: int | None = None) -> dict[str, Any]:
+    """Keep a model as a calibration, and choose it: from now on the load in motion is estimated with it.
+
+    At rest, and to select what hangs on the arm, the calibration in use so far stays: a study of motion tells neither.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        configuration: of the bench.
+        model_id: which model; None takes the newest.
+
+    Raises:
+        StudyError: no such model, one of another rig, no calibration to begin with, or an effort that is no torque.
+    """
+    studied, names = studied_model(store, study_id, configuration, model_id)
+    base = in_use(store, configuration)
+    if base is None:
+        raise StudyError(
+            f"this bench has no calibration: a study of motion does not tell what hangs on the arm at rest. Run "
+            f"`friction-bench calibrate run`, then `friction-bench study use {study_id}` again"
+        )
+    note = f"model {studied.model_id} of study {study_id}, on calibration {base.id}"
+    kept = store.calibrations.add(
+        note=note, source=base.source, rig=base.rig, drive=base.drive, provenance={"software": software()},
+        experiment_ids=base.experiment_ids, trial_ids=base.trial_ids,
+        result={**base.result, "study": studied.model_dump(mode="json")},
+    )  # fmt: skip
+    calibration.use(store, configuration, kept)
+    left = f" Left out, as they need more than the motion of the moment: {', '.join(names)}." if names else ""
+    return {
+        "calibration_id": kept,
+        "study_id": study_id,
+        "model_id": studied.model_id,
+        "effects": [one.effect for one in studied.effects],
+        "left_out": names,
+        "sentence": f"Calibration {kept} is in use: {note}.{left}",
+    }
+
+
+def studied_model(
+    store: Store, study_id: int, configuration: BenchConfiguration, model_id: int | None = None
+) -> tuple[StudiedModel, list[str]]:
+    """A study's model as part of a configuration, and the effects that cannot be. Errors as `use`."""
+    material, model = load_model(store, study_id, model_id)
+    if facts_of(configuration.rig) != material.definition.facts:
+        raise StudyError(
+            f"study {study_id} is of another rig than this bench, '{configuration.rig.name}'; name the configuration "
+            "of its bench with --config"
+        )
+    _check_effort(material, configuration.rig)
+    fit = material.fit_of(model)
+    return _studied(study_id, model.id, fit), left_out(fit.effects)
+
+
+def _check_effort(material: Material, rig: Rig) -> None:
+    effort = material.dataset.effort_definition
+    if effort.unit != "N m" or rig.joint != "rotary":
+        raise StudyError(
+            f"study {material.study_id} predicts {effort.title} [{effort.unit}]; the compensator takes joint torque of "
+            "a rotary joint: add motor.torque_constant_n_m_a and gear.ratio to the rig, and study current or torque"
+        )
+
+
+def _studied(study_id: int, model_id: int, fit: Fit) -> StudiedModel:
+    scales = fit.dataset.scales
+    inertia = next((term.coefficients for term in fit.terms if term.effect.name == "inertia"), (0.0, 1.0))
+    return StudiedModel(
+        study_id=study_id,
+        model_id=model_id,
+        effects=tuple(
+            StudiedEffect(effect=term.effect.name, shape=term.shape, coefficients=tuple(term.coefficients.tolist()))
+            for term in fit.terms
+            if works_online(term.effect)
+        ),
+        slow_rad_s=scales.slow,
+        fast_rad_s=scales.fast,
+        position_span_rad=scales.position_span,
+        inertia_n_m_s2_rad=float(inertia[0]),
+        load_inertia_scale=float(inertia[1]),
+    )

@@ -1,0 +1,118 @@
+"""A study's model back on the bench: the reflected load's error falls with the study's."""
+
+import numpy as np
+import pytest
+
+from bench import study
+from bench.calibration import in_use, with_friction
+from bench.service.json_numbers import plain
+from bench.service.study_models import Ladder
+from bench.service.suggestion_models import Used
+from bench.study.errors import StudyError
+from bench.study.use import studied_model
+from compensator.lab.catalogue import effect_named
+from compensator.lab.online import works_online
+from tests.bench.calibrated import CURVES, REST, calibrated_configuration
+from tests.study.test_suggest import run
+
+BASE = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction")
+MOTIONS = {"repeats": 1, "duration_s": 5.0, "loads_kg": [0.0, 0.05, 0.1]}
+
+
+def bench_with(plant, seed=5):
+    found = calibrated_configuration(seed)
+    return found.model_copy(update={"drive": found.drive.model_copy(update={"plant": plant})})
+
+
+CONFIGURATION = bench_with({"viscous_asymmetry": {"fraction": 0.5}})
+
+
+@pytest.fixture(scope="module")
+def number(store):
+    made = study.create_study(
+        store, "with a hidden effect", [run(store, "excitation", MOTIONS, configuration=CONFIGURATION)], base=BASE
+    )
+    study.add_effect(store, made["study_id"], "viscous_asymmetry")
+    return made["study_id"]
+
+
+def test_the_reflected_load_is_nearer_with_each_rung(store, number):
+    for model_id, configuration in study.bench_configurations(store, number, CONFIGURATION):
+        study.keep_bench_error(store, model_id, run(store, "sinusoid", {}, configuration=configuration))
+    found = study.ladder(store, number)
+    Ladder.model_validate(plain(found))
+    first, second = found["rungs"]
+    assert second["held_out"] < first["held_out"]
+    assert second["reflected_error_g"] < 0.8 * first["reflected_error_g"]
+    assert not list(study.bench_configurations(store, number, CONFIGURATION))
+
+
+def test_a_model_is_chosen_like_a_calibration(store, number):
+    bare = CONFIGURATION.model_copy(update={"friction": None, "rest": None})
+    with pytest.raises(StudyError, match="this bench has no calibration"):
+        study.use(store, number, bare)
+    base = store.calibrations.add(
+        note="", source="simulated", rig=bare.rig.model_dump(mode="json", exclude_none=True),
+        drive={**bare.drive.model_dump(mode="json", exclude_none=True, exclude={"seed", "faults"})}, provenance={},
+        experiment_ids=[], trial_ids=[],
+        result={"curves": [one.model_dump() for one in CURVES], "rest": REST.model_dump()},
+    )  # fmt: skip
+    used = study.use(store, number, bare)
+    Used.model_validate(plain(used))
+    chosen = in_use(store, bare)
+    assert chosen is not None
+    assert chosen.id == used["calibration_id"] != base
+    told = with_friction(store, bare).friction
+    assert told.study == studied_model(store, number, bare)[0]
+    assert "viscous_asymmetry" in [one.effect for one in told.study.effects]
+    assert told.curves == CURVES
+
+
+def test_the_model_at_work_is_the_model_of_the_study(store, number):
+    """Friction by the estimator's own way is what the fitted columns say, at moments of the study's own trials."""
+    from bench.experiments.studied import online_friction
+    from bench.study.material import load_model
+
+    studied, left = studied_model(store, number, CONFIGURATION)
+    assert left == []
+    online = online_friction(studied, CONFIGURATION.rig)
+    material, model = load_model(store, number, None)
+    fit = material.fit_of(model)
+    index = next(i for i, trial in enumerate(material.trials) if trial.conditions["load_kg"] == 0.05)
+    motion = fit.dataset.trials[index].motion
+    rows = np.flatnonzero(np.abs(motion.velocity) > 3.0 * motion.slow)[::50]
+    per_a = online.torque_n_m_a
+    gravity_a = (0.05 * 9.80665 * motion.arm_m + online.own_n_m) / per_a
+    for row in rows:
+        wanted = sum(
+            float((term.coefficients @ term.effect.columns(motion, term.shape))[row])
+            for term in fit.terms
+            if term.effect.name not in ("inertia", "load_friction")
+        )
+        one = slice(row, row + 1)
+        without = type(online)(
+            tuple(term for term in online.terms if term.effect.name != "load_friction"),
+            online.facts, online.scales, per_a, online.own_n_m,
+        )  # fmt: skip
+        found = without.current_a(motion.position[one], motion.velocity[one], 0.0, gravity_a, 25.0)[0]
+        assert found + gravity_a * np.sin(motion.position[row]) == pytest.approx(wanted / per_a, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "works"),
+    [("viscous_asymmetry", True), ("spring", True), ("viscous_temperature", True), ("pre_sliding", False),
+     ("measurement_delay", False), ("warm_up", False), ("inertia", False)],
+)  # fmt: skip
+def test_what_needs_the_past_is_left_out(name, works):
+    assert works_online(effect_named(name)) is works
+
+
+def test_a_study_in_ampere_cannot_be_used(store):
+    rig = CONFIGURATION.rig.model_copy(
+        update={"motor": CONFIGURATION.rig.motor.model_copy(update={"torque_constant_n_m_a": None})}
+    )
+    bare = CONFIGURATION.model_copy(update={"rig": rig, "friction": None, "rest": None})
+    experiment = run(store, "excitation", {**MOTIONS, "loads_kg": [0.0]}, configuration=bare)
+    made = study.create_study(store, "in ampere", [experiment])
+    with pytest.raises(StudyError, match="the compensator takes joint torque"):
+        study.use(store, made["study_id"], bare)
