@@ -1,7 +1,9 @@
 """One experiment under way: its trials one after the other, in a thread of its own, and how it ended."""
 
+import threading
+import time
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +20,23 @@ from bench.stop_request import StopRequest
 from bench.store import Store
 from bench.store.space import SpaceNeed
 
+PAUSE_POLL_S = 0.05
+Pausing = Literal["", "asked", "paused"]
+
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What a user asked for."""
+    """What a user asked for.
+
+    Attributes:
+        hung: load_kg, and whether balanced, of what hangs on the arm already; None: somebody is asked.
+    """
 
     kind: str
     parameters: dict[str, Any]
     operator: str = ""
     note: str = ""
+    hung: tuple[float, bool] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +61,7 @@ class ExperimentRun:
         experiment_id: of its record, once there is one.
         outcome, reason: "running" until the record is closed.
         trial_index: the trial that runs, from 0.
+        paused: whether it stands between two trials, with the power off, until it may go on.
     """
 
     request: Request
@@ -58,7 +69,9 @@ class ExperimentRun:
     outcome: OutcomeName = "running"
     reason: str = ""
     trial_index: int = 0
+    paused: bool = False
     _stop: StopRequest = field(default_factory=StopRequest)
+    _pause: threading.Event = field(default_factory=threading.Event)
     _prepared: Prepared | None = None
     _finished: list[FinishedTrial] = field(default_factory=list)
 
@@ -69,6 +82,21 @@ class ExperimentRun:
     def is_stopped(self) -> bool:
         """Whether it has been asked to stop."""
         return self._stop.is_set()
+
+    def pause(self) -> None:
+        """Stand still before the next trial."""
+        self._pause.set()
+
+    def resume(self) -> None:
+        """Go on."""
+        self._pause.clear()
+
+    @property
+    def pausing(self) -> Pausing:
+        """Whether it stands still, or is going to."""
+        if self.paused:
+            return "paused"
+        return "asked" if self._pause.is_set() else ""
 
     def end(self, outcome: OutcomeName, reason: str) -> None:
         """Say how it ended; the outcome last, so that who sees it sees the reason too."""
@@ -84,6 +112,11 @@ class ExperimentRun:
     def trial_count(self) -> int:
         """Trials of the experiment."""
         return len(self._prepared.plans) if self._prepared is not None else 0
+
+    @property
+    def duration_s(self) -> float:
+        """Estimate of the whole; 0 where it is not known yet."""
+        return self._prepared.duration_s if self._prepared is not None else 0.0
 
     @property
     def progress(self) -> float:
@@ -119,6 +152,7 @@ class ExperimentRun:
     def _run_trials(self, prepared: Prepared, store: Store, live: LiveBuffer) -> tuple[OutcomeName, str]:
         for index, plan in enumerate(prepared.plans):
             self.trial_index = index
+            self._wait_while_paused()
             try:
                 if not self._prepare_arm(plan, prepared.station):
                     return "stopped", self._stop.reason
@@ -129,6 +163,12 @@ class ExperimentRun:
             if outcome.outcome != "completed":
                 return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
         return "completed", ""
+
+    def _wait_while_paused(self) -> None:
+        while self._pause.is_set() and not self.is_stopped():
+            self.paused = True
+            time.sleep(PAUSE_POLL_S)  # a stop wakes nobody: a signal handler may take no lock
+        self.paused = False
 
     def _prepare_arm(self, plan: TrialPlan, station: Station) -> bool:
         """Have the load hung, with the power off; False where a stop came before it hung."""

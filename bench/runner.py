@@ -10,7 +10,7 @@ from bench.clock import VirtualClock, WallClock
 from bench.configuration import BenchConfiguration
 from bench.drive_factory import has_hardware, is_simulated, seed_of
 from bench.errors import BenchError, BusyError, ParameterError
-from bench.experiment_run import ExperimentRun, Prepared, Request
+from bench.experiment_run import ExperimentRun, Pausing, Prepared, Request
 from bench.experiments.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
 from bench.limits import Limits
@@ -46,6 +46,8 @@ class RunnerStatus:
         description: the drive, once it has been opened.
         limits: of the bench.
         prompt: what the person at the bench is asked to do before it goes on; the power is off meanwhile.
+        pausing: "asked": it will stand still after the trial that runs; "paused": it does, with the power off.
+        duration_s: estimate of the whole, in the joint's time.
     """
 
     experiment_id: int | None
@@ -59,6 +61,13 @@ class RunnerStatus:
     description: Description | None
     limits: Limits
     prompt: Prompt | None = None
+    pausing: Pausing = ""
+    duration_s: float = 0.0
+
+    @property
+    def left_s(self) -> float:
+        """Estimate of what is left, in the joint's time; 0 where nothing runs."""
+        return (1.0 - self.progress) * self.duration_s if self.outcome == "running" else 0.0
 
 
 class Runner:
@@ -81,7 +90,13 @@ class Runner:
         self._closed = False
 
     def start(
-        self, kind: str, parameters: dict[str, Any], operator: str = "", note: str = "", pace: Pace | None = None
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        operator: str = "",
+        note: str = "",
+        pace: Pace | None = None,
+        hung: tuple[float, bool] | None = None,
     ) -> int:
         """Start an experiment; it moves the joint.
 
@@ -91,6 +106,8 @@ class Runner:
             operator: who stands at the bench.
             note: kept with the record.
             pace: "real-time", or "fast" as a simulated drive allows and then has by default.
+            hung: load_kg, and whether balanced, of what the experiment before left on the arm; None: not known,
+                somebody is asked.
 
         Returns:
             The id of its record.
@@ -104,7 +121,7 @@ class Runner:
         found = find_kind(kind)
         with self._starting:
             self._refuse_when_busy()
-            run = ExperimentRun(Request(kind, parameters, operator, note))
+            run = ExperimentRun(Request(kind, parameters, operator, note, hung))
             self._run = run  # from here on `stop` reaches it
             try:
                 return self._launch(run, found, pace)
@@ -123,6 +140,7 @@ class Runner:
         return RunnerStatus(
             run.experiment_id, run.request.kind, outcome, reason if outcome != "running" else "", run.trial_index,
             run.trial_count, run.progress, run.reading, description, limits, self._desk.pending,
+            run.pausing if outcome == "running" else "", run.duration_s,
         )  # fmt: skip
 
     def answer(self, prompt_number: int) -> None:
@@ -145,6 +163,18 @@ class Runner:
         run = self._run
         if run is not None and run.outcome == "running":
             run.stop(reason)
+
+    def pause(self) -> None:
+        """Let what runs stand still after its present trial, with the power off; nothing where nothing runs."""
+        run = self._run
+        if run is not None:
+            run.pause()
+
+    def resume(self) -> None:
+        """Let what was paused go on: the joint moves."""
+        run = self._run
+        if run is not None:
+            run.resume()
 
     def wait(self, timeout_s: float | None = None) -> bool:
         """Wait until nothing runs; False where that takes longer than `timeout_s`."""
@@ -206,6 +236,8 @@ class Runner:
         station = make_station(
             configuration, kind.pair, clock, lambda sentence: self._desk.ask(sentence, run.is_stopped)
         )
+        if run.request.hung is not None:
+            station.assume(*run.request.hung)
         self._descriptions = ()
         try:
             station.open()

@@ -15,6 +15,7 @@ from bench.pair.loop import PairLoop
 from bench.recorder import Sink
 from bench.servo import check_modes, current_servo
 from bench.stop_request import StopRequest
+from bench.technician import PersonTechnician
 from bench.timing import check_pair_timing, check_timing
 from drivers.contract import Drive
 
@@ -53,6 +54,9 @@ class Station(Protocol):
             ConfigurationError: one does not fit the configuration.
         """
 
+    def assume(self, load_kg: float, balanced: bool) -> None:
+        """What hangs there already: nobody is asked for it."""
+
     def prepare(self, plan: TrialPlan) -> None:
         """Put on the arm what a trial wants there, with the power off.
 
@@ -89,6 +93,11 @@ class SingleStation:
             drive, self._clock, Guard(configuration.limits), configuration.control.period_s,
             current_servo(configuration.rig),
         )  # fmt: skip
+
+    def assume(self, load_kg: float, balanced: bool) -> None:
+        """Ask no person for a load that hangs already."""
+        if isinstance(self._technician, PersonTechnician):
+            self._technician.assume(load_kg, balanced)
 
     def prepare(self, plan: TrialPlan) -> None:
         """Hang the load."""
@@ -131,6 +140,9 @@ class PairStation:
         period_s = self._benches[0].control.period_s
         check_pair_timing([drive.describe() for drive in self.drives], period_s)
         self.loop = PairLoop(slave, master, self._clock, period_s, self._pair.truth, self._pair.operate)
+
+    def assume(self, load_kg: float, balanced: bool) -> None:
+        """Who works with two arms is asked each time."""
 
     def prepare(self, plan: TrialPlan) -> None:
         """Hang the slave's load, put its wall, and have the operator take hold of the master."""

@@ -1,17 +1,19 @@
 """Rows of the table of experiments. Each function works inside the caller's transaction."""
 
+from collections.abc import Iterable
 from dataclasses import fields
 from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Connection, Table, insert, select, update
 
+from bench.store import tags
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.provenance_columns import facts_of
 from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment
 from bench.store.schema import EXPERIMENT, TRIAL
 
-COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment))
+COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment) if field.name != "tags")
 
 
 def now() -> datetime:
@@ -78,7 +80,7 @@ def get(connection: Connection, experiment_id: int) -> Experiment:
     row = connection.execute(query).one_or_none()
     if row is None:
         raise NotFoundError(f"experiment {experiment_id} is not in the store; list the experiments to see which are")
-    return Experiment(**row._asdict())
+    return Experiment(**row._asdict(), tags=tags.of_experiments(connection, [experiment_id]).get(experiment_id, ()))
 
 
 def find(
@@ -86,6 +88,7 @@ def find(
     kind: str | None,
     outcome: str | None,
     source: str | None,
+    tag: str | None,
     limit: int | None,
     offset: int,
 ) -> list[Experiment]:
@@ -101,7 +104,25 @@ def find(
     for name, value in wanted.items():
         if value is not None:
             query = query.where(EXPERIMENT.c[name] == value)
-    return [Experiment(**row._asdict()) for row in connection.execute(query)]
+    if tag is not None:
+        query = query.where(tags.with_tag(tag))
+    rows = connection.execute(query).all()
+    known = tags.of_experiments(connection, [row.id for row in rows])
+    return [Experiment(**row._asdict(), tags=known.get(row.id, ())) for row in rows]
+
+
+def annotate(connection: Connection, experiment_id: int, note: str | None, new_tags: Iterable[str] | None) -> None:
+    """Change note and tags, also of one that has ended; None leaves as it is.
+
+    Raises:
+        NotFoundError: no such experiment.
+        StoreValueError: a tag that cannot be kept.
+    """
+    get(connection, experiment_id)
+    if note is not None:
+        connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(note=note))
+    if new_tags is not None:
+        tags.write(connection, experiment_id, new_tags)
 
 
 def check_outcome(outcome: str) -> None:

@@ -36,6 +36,7 @@ class Experiment:
         outcome: one of `OUTCOMES`; `reason` says why.
         rig: the rig as in `rig.toml`.
         results: JSON-able, units in the names; empty while it runs.
+        tags: free words that it is found by.
     """
 
     id: int
@@ -51,6 +52,7 @@ class Experiment:
     outcome: str
     reason: str
     results: dict[str, Any]
+    tags: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

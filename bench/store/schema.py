@@ -244,3 +244,57 @@ START_KEY = Table(
     UniqueConstraint("token", "key"),
     Index(None, "created_utc"),
 )
+
+CAMPAIGN = Table(
+    "campaign",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("name", PlainText, nullable=False),
+    Column("definition", JSON, nullable=False),
+    Column("operator", PlainText, nullable=False),
+    Column("note", PlainText, nullable=False),
+    Column("tags", JSON, nullable=False),
+    Column("created_utc", UtcDateTime, nullable=False),
+)
+
+# its experiment is named, not referred to: the queue remembers what it ran, also where that was removed
+QUEUE_ITEM = Table(
+    "queue_item",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("bench", PlainText, nullable=False),
+    _parent("campaign", "campaign_id", nullable=True),
+    Column("place", Integer, nullable=False),  # order within the bench
+    Column("kind", PlainText, nullable=False),
+    Column("parameters", JSON, nullable=False),
+    Column("operator", PlainText, nullable=False),
+    Column("note", PlainText, nullable=False),
+    Column("tags", JSON, nullable=False),
+    Column("pace", PlainText, nullable=True),
+    Column("duration_s", Float, nullable=False),
+    Column("loads", JSON, nullable=False),
+    Column("state", PlainText, nullable=False),  # waiting, running, or the outcome of its experiment
+    Column("reason", PlainText, nullable=False),
+    Column("experiment_id", Integer, nullable=True),
+    Column("created_utc", UtcDateTime, nullable=False),
+    Column("finished_utc", UtcDateTime, nullable=True),
+    Index(None, "bench", "state", "place"),
+    Index(None, "campaign_id"),
+)
+
+QUEUE_STATE = Table(
+    "queue_state",
+    METADATA,
+    Column("bench", PlainText, primary_key=True),
+    Column("held", Boolean, nullable=False),
+    Column("reason", PlainText, nullable=False),
+    Column("changed_utc", UtcDateTime, nullable=False),
+)
+
+EXPERIMENT_TAG = Table(
+    "experiment_tag",
+    METADATA,
+    _parent("experiment", "experiment_id", primary_key=True),
+    Column("tag", PlainText, primary_key=True),
+    Index(None, "tag", "experiment_id"),
+)

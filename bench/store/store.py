@@ -15,6 +15,7 @@ from bench.store.errors import StoreError, StoreValueError
 from bench.store.importing import Import
 from bench.store.migration import migrate
 from bench.store.overview import GROUP_ROWS
+from bench.store.queue import QueueTable
 from bench.store.records import Condition, Event, Experiment, Trial
 from bench.store.reduction import MIN_POINTS, rows_to_keep
 from bench.store.retention import Retention
@@ -150,13 +151,28 @@ class Store(StudyStore):
         kind: str | None = None,
         outcome: str | None = None,
         source: str | None = None,
+        tag: str | None = None,
         limit: int | None = None,
         offset: int = 0,
     ) -> list[Experiment]:
         """Experiments, newest first; all of them without a limit."""
         with self._database.reading() as connection:
-            found = experiments.find(connection, kind, outcome, source, limit, offset)
+            found = experiments.find(connection, kind, outcome, source, tag, limit, offset)
         return list(map(self._custody.as_ended, found))
+
+    def annotate(self, experiment_id: int, note: str | None = None, tags: Iterable[str] | None = None) -> None:
+        """Change the note and the tags of an experiment, also of one that has ended; None leaves as it is.
+
+        Raises:
+            NotFoundError: no such experiment.
+            StoreValueError: a tag that cannot be kept.
+        """
+        with self._database.writing() as connection:
+            experiments.annotate(connection, experiment_id, note, tags)
+
+    def queue(self, bench: str) -> QueueTable:
+        """The queue of a bench."""
+        return QueueTable(self._database, bench)
 
     def add_imported(
         self,
