@@ -10,6 +10,7 @@ from bench.cli import (
     audit,
     blind,
     calibrate,
+    campaign,
     challenge,
     demo,
     doctor,
@@ -17,6 +18,7 @@ from bench.cli import (
     experiments,
     figures,
     paper,
+    queue,
     recordings,
     rivals,
     run,
@@ -40,6 +42,8 @@ _ORDER = (
     "serve",
     "doctor",
     "run",
+    "queue",
+    "campaign",
     "status",
     "stop",
     "experiments",
@@ -112,6 +116,8 @@ def options(
 app.command("serve")(serve.serve)
 app.command("doctor")(doctor.doctor)
 app.add_typer(run.app, name="run")
+app.add_typer(queue.app, name="queue")
+app.add_typer(campaign.app, name="campaign")
 app.command("status")(service.status)
 app.command("stop")(service.stop)
 app.command("experiments")(experiments.experiments)

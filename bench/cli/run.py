@@ -29,6 +29,7 @@ class Pace(Enum):
 _COMMON = {
     "operator": Annotated[str | None, typer.Option(help="Who stands at the bench; kept with the record.")],
     "note": Annotated[str | None, typer.Option(help="Kept with the record.")],
+    "tags": Annotated[str | None, typer.Option(metavar="A,B,...", help="Words to find it by.")],
     "pace": Annotated[
         Pace | None,
         typer.Option(help="fast: as fast as the computer can; default on a simulated drive, and only there."),
@@ -69,14 +70,22 @@ def _run(
     options: dict[str, str | None],
     operator: str | None,
     note: str | None,
+    tags: str | None,
     pace: Pace | None,
     as_json: bool,
 ) -> None:
     from bench.cli.parameters import given
+    from bench.store.tags import checked
 
+    session = session_of(context)
+    words = checked(word.strip() for word in tags.split(",")) if tags else []
     found, signal_code = carry_out(
-        session_of(context), kind.name, given(kind, options), operator or "", note or "", pace, quiet=as_json
+        session, kind.name, given(kind, options), operator or "", note or "", pace, quiet=as_json
     )
+    if words:
+        with session.open_store() as store:
+            store.annotate(found.id, tags=words)
+        found = replace(found, tags=tuple(words))
     _report(found, as_json)
     if signal_code is not None:
         raise typer.Exit(signal_code)

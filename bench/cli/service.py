@@ -19,23 +19,32 @@ DEFAULT_URL = "http://127.0.0.1:8000"
 
 def status(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
     """Show what a running service's bench is doing."""
-    found = _ask(session_of(context), "GET", url, "/bench")
+    found = ask(session_of(context), "GET", url, "/bench")
     if as_json:
         print_json(found)
         return
     run = found["run"] or {}
     facts = {"bench": found["name"], "drive": "simulated" if found["simulated"] else "real", "state": found["state"]}
-    facts |= {name: run[name] for name in ("kind", "experiment_id", "outcome", "reason", "progress") if name in run}
+    facts |= {
+        name: run[name]
+        for name in ("kind", "experiment_id", "outcome", "reason", "progress", "left_s", "pausing")
+        if name in run
+    }
     table(url, ["what", "value"], facts.items())
 
 
 def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
     """Stop the joint of a running service and power it off."""
-    found = _ask(session_of(context), "POST", url, "/stop", {"reason": "friction-bench stop"})
+    found = ask(session_of(context), "POST", url, "/stop", {"reason": "friction-bench stop"})
     print_json(found) if as_json else say(found["detail"])
 
 
-def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
+def ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
+    """What a service answers; None where it answers nothing.
+
+    Raises:
+        ServiceError: it cannot be reached, refuses, or says no.
+    """
     import httpx  # here: its import takes longer than most commands
 
     token = token_for(session, url)
@@ -46,7 +55,7 @@ def _ask(session: BenchSession, method: str, url: str, path: str, body: dict[str
         raise ServiceError(f"{url} does not answer ({error}); is 'friction-bench serve' running there?") from error
     if answer.is_error:
         raise ServiceError(f"{url} answered {answer.status_code}: {_detail(answer)}")
-    return answer.json()
+    return answer.json() if answer.content else None
 
 
 def token_for(session: BenchSession, url: str) -> str | None:

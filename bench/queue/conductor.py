@@ -58,9 +58,13 @@ class Conductor:
         self._thread.start()
         self._wake.set()
 
-    def close(self) -> None:
-        """Start nothing more; what runs is the runner's to end."""
+    def end(self) -> None:
+        """Start nothing more; what runs is the runner's to end. Takes no lock: safe in a signal handler."""
         self._closed = True
+
+    def close(self) -> None:
+        """Start nothing more, and wait for the end of what runs."""
+        self.end()
         self._wake.set()
         if self._thread.is_alive():
             self._thread.join()
@@ -166,8 +170,8 @@ class Conductor:
 
     def _follow(self, item: QueueItem, experiment_id: int) -> None:
         """To the end of its experiment, whatever that is."""
-        if self._stop is not None:
-            self._runner.stop(self._stop)
+        if self._stop is not None or self._closed:
+            self._runner.stop(self._stop or "the bench was closed")
         elif self._held is not None:
             self._runner.pause()
         try:

@@ -9,6 +9,7 @@ import anyio.to_thread
 from fastapi import APIRouter, FastAPI
 
 from bench.lease import Lease
+from bench.queue import Conductor
 from bench.runner import Runner
 from bench.service import (
     audit,
@@ -22,6 +23,7 @@ from bench.service import (
     live,
     page,
     problems,
+    queue,
     recording_sets,
     studies,
     trials,
@@ -59,6 +61,12 @@ Friction curves, calibrated and used:
     POST /api/v1/calibrations       {"experiment_ids": [1, 2]}
     GET  /api/v1/calibrations/1/picture
 
+Many experiments, one after the other; what goes wrong holds the queue:
+
+    POST /api/v1/queue              {"items": [{"kind": "steps"}, {"kind": "coast-down"}]}
+    POST /api/v1/campaigns/plan     {"name": "loads", "kind": "reversals", "grid": {"load_kg": [0, 0.1]}}
+    POST /api/v1/queue/pause        after the trial that runs; POST /api/v1/queue/resume goes on
+
 A missing effect, found and added:
 
     POST /api/v1/studies            {"name": "arm", "experiment_ids": [1], "hold_out": ["load_kg=0.1"]}
@@ -73,6 +81,7 @@ _ROOMS = (
     bench_state,
     leases,
     experiments,
+    queue,
     live,
     trials,
     recording_sets,
@@ -94,14 +103,19 @@ def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
         access: tokens, hosts, and whether reading is open.
     """
     trail = AuditWriter(store.access.audit.add)
+    lease = Lease(lambda: _running(runner))
+    conductor = Conductor(runner, store, lease.starting)
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         trail.start()
+        conductor.begin()
         looking = asyncio.create_task(_look_again(access))
         yield
         looking.cancel()
+        conductor.end()
         runner.close()
+        conductor.close()
         trail.close()
 
     app = FastAPI(
@@ -116,7 +130,8 @@ def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
     )
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
-    app.state.lease = Lease(lambda: _running(runner))
+    app.state.lease = lease
+    app.state.conductor = conductor
     problems.install(app)
     api = APIRouter(prefix=PREFIX)
     for module in _ROOMS:

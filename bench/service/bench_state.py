@@ -19,7 +19,7 @@ from bench.service.audit_trail import note
 from bench.service.json_numbers import plain
 from bench.service.leases import LeaseOf, lease_now, require_lease
 from bench.service.problems import problems
-from bench.service.services import RunnerOf
+from bench.service.services import ConductorOf, RunnerOf
 from bench.service.status import Status, status_of
 from drivers.contract import Description
 
@@ -121,14 +121,17 @@ def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
     responses=problems(401, 403),
     openapi_extra={"requestBody": {"content": {"application/json": {"schema": Stop.model_json_schema()}}}},
 )
-async def stop(runner: RunnerOf, request: Request) -> Stopped:
+async def stop(runner: RunnerOf, conductor: ConductorOf, request: Request) -> Stopped:
     """With any token, always, whoever has the bench. The control loop honours it within one cycle; it is on record.
+
+    The queue is held, too: nothing more is started until somebody resumes.
 
     The body may be left out. One that cannot be read stops the joint all the same.
     """
     found = runner.status()
     was_running = found.outcome == "running"
     reason = await _reason(request)
+    conductor.stop(reason)
     runner.stop(reason)
     note(request, f"stopped experiment {found.experiment_id}: {reason}" if was_running else "nothing was running")
     detail = (

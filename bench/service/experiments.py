@@ -1,6 +1,7 @@
 """/experiment-kinds and /experiments: what can be started, starting it, and what has been run."""
 
 import tempfile
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path as FilePath
 from typing import Annotated, Any, Literal
@@ -13,14 +14,17 @@ from starlette.background import BackgroundTask
 from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
 from bench.recording_set import export_experiment, export_parquet
-from bench.service.access import Operator, allow_read
+from bench.service.access import Operator, allow_read, require_operator
 from bench.service.audit_trail import note
 from bench.service.json_numbers import plain
 from bench.service.leases import LeaseOf
 from bench.service.problems import FieldProblem, InvalidFieldsError, field_problems, problems
+from bench.service.queue_models import Note, Tags
 from bench.service.services import RunnerOf, StoreOf
 from bench.service.trials import PARQUET, PARQUET_ANSWER
+from bench.store.errors import StoreError
 from bench.store.records import Experiment as StoredExperiment
+from bench.store.tags import LONGEST_TAG
 
 router = APIRouter(tags=["experiments"], dependencies=[Depends(allow_read)])
 ExperimentId = Annotated[int, Path(ge=1, description="number of the experiment")]
@@ -54,9 +58,18 @@ class NewExperiment(BaseModel):
     parameters: dict[str, Any] = Field(default={}, description="what differs from the defaults, SI")
     operator: str = Field(default="", max_length=200)
     note: str = Field(default="", max_length=2000)
+    tags: Tags = []
     pace: Literal["real-time", "fast"] | None = Field(
         default=None, description="fast: as fast as the computer can, simulated drive only, and the default there"
     )
+
+
+class Annotation(BaseModel):
+    """What is changed of an experiment; what is left out stays."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"tags": ["winter", "new grease"]}]})
+    tags: Tags | None = None
+    note: Note | None = None
 
 
 class Started(BaseModel):
@@ -75,6 +88,7 @@ class Experiment(BaseModel):
     source: str = Field(description="simulated, real or imported")
     operator: str
     note: str
+    tags: list[str]
     provenance: dict[str, Any] = Field(description="software version and commit, configuration, drive, seed")
     rig: dict[str, Any]
     started_utc: datetime
@@ -117,7 +131,13 @@ def kinds() -> Kinds:
     responses=problems(401, 403, 404, 409, 422, 502),
 )
 def start(
-    runner: RunnerOf, lease: LeaseOf, caller: Operator, request: Request, response: Response, body: NewExperiment
+    runner: RunnerOf,
+    store: StoreOf,
+    lease: LeaseOf,
+    caller: Operator,
+    request: Request,
+    response: Response,
+    body: NewExperiment,
 ) -> Started:
     """Refused before any motion (422, with value, limit and unit) where it would leave the limits.
 
@@ -128,6 +148,9 @@ def start(
             experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
     except ParameterError as error:
         raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
+    if body.tags:
+        with suppress(StoreError):  # it runs all the same; PATCH can tell them again
+            store.annotate(experiment_id, tags=body.tags)
     note(request, f"started experiment {experiment_id} ({body.kind})")
     response.headers["Location"] = f"{request.url.path}/{experiment_id}"
     return Started(experiment_id=experiment_id, kind=body.kind)
@@ -147,11 +170,12 @@ def experiments(
     store: StoreOf,
     kind: Annotated[str, Query(max_length=100)] = "",
     outcome: Annotated[str, Query(max_length=20)] = "",
+    tag: Annotated[str, Query(max_length=LONGEST_TAG, description="only those with this tag")] = "",
     limit: Annotated[int, Query(ge=1, le=1000)] = 100,
     offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
 ) -> Experiments:
     """Newest first, failed starts included."""
-    found = store.experiments(kind=kind or None, outcome=outcome or None, limit=limit + 1, offset=offset)
+    found = store.experiments(kind or None, outcome or None, tag=tag or None, limit=limit + 1, offset=offset)
     more = offset + limit if len(found) > limit else None
     return Experiments(items=[represent(one) for one in found[:limit]], limit=limit, offset=offset, next_offset=more)
 
@@ -159,6 +183,19 @@ def experiments(
 @router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404))
 def experiment(store: StoreOf, experiment_id: ExperimentId) -> Experiment:
     """Parameters, provenance, outcome and why, results."""
+    return represent(store.experiment(experiment_id))
+
+
+@router.patch(
+    "/experiments/{experiment_id}",
+    summary="Change tags and note of an experiment",
+    dependencies=[Depends(require_operator)],
+    responses=problems(401, 403, 404, 422),
+)
+def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body: Annotation) -> Experiment:
+    """Also of one that has ended; what was measured stays as it is."""
+    store.annotate(experiment_id, body.note, body.tags)
+    note(request, f"changed tags or note of experiment {experiment_id}")
     return represent(store.experiment(experiment_id))
 
 

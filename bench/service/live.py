@@ -91,7 +91,9 @@ async def _events(request: Request, runner: Runner, lease: Lease, after_row: int
             yield _event("rows", rows_of(found).model_dump_json(), after_row)
         status = status_of(runner.status(), simulated, lease_now(lease.current()))
         run, holder = status["run"], status["lease"]
-        key = json.dumps([status["state"], status["prompt"], run and run | {"progress": 0}, holder and holder["token"]])
+        key = json.dumps(
+            [status["state"], status["prompt"], run and run | {"progress": 0, "left_s": 0}, holder and holder["token"]]
+        )
         if key != shown or period % STATUS_EVERY == 0:
             shown = key
             yield _event("status", json.dumps(status))

@@ -65,6 +65,7 @@ class BenchServer(uvicorn.Server):
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002  uvicorn's signature
         """Stop the joint, end the live streams, then the server; a second signal does not wait for connections."""
+        self._app.state.conductor.end()
         self._runner.stop("the service was ended")
         self.end_streams()
         self.force_exit = self.should_exit

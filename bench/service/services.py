@@ -4,6 +4,7 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from bench.queue import Conductor
 from bench.runner import Runner
 from bench.store import Store
 
@@ -16,5 +17,10 @@ async def _runner(request: Request) -> Runner:
     return cast(Runner, request.app.state.runner)
 
 
+async def _conductor(request: Request) -> Conductor:
+    return cast(Conductor, request.app.state.conductor)
+
+
 StoreOf = Annotated[Store, Depends(_store)]
 RunnerOf = Annotated[Runner, Depends(_runner)]
+ConductorOf = Annotated[Conductor, Depends(_conductor)]

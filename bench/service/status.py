@@ -20,6 +20,9 @@ class Run(BaseModel):
     trial_index: int = Field(description="trial that runs, from 0")
     trial_count: int
     progress: float = Field(ge=0, le=1, description="share of the experiment that is done, 0..1")
+    duration_s: float = Field(description="estimate of the whole, in the joint's time; a simulated one may be faster")
+    left_s: float = Field(description="what is left of it")
+    pausing: str = Field(description="asked: it stands still after the trial that runs; paused: it does; else empty")
 
 
 class ReadingNow(BaseModel):
@@ -58,7 +61,10 @@ def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> d
     running = found.outcome == "running"
     run = None
     if found.kind:
-        names = ("experiment_id", "kind", "outcome", "reason", "trial_index", "trial_count", "progress")
+        names = (
+            "experiment_id", "kind", "outcome", "reason", "trial_index", "trial_count", "progress",
+            "duration_s", "left_s", "pausing",
+        )  # fmt: skip
         run = {name: getattr(found, name) for name in names}
     reading = None if found.reading is None else _reading(found.reading)
     prompt = None if found.prompt is None else {"number": found.prompt.number, "sentence": found.prompt.sentence}

@@ -1,0 +1,76 @@
+"""`friction-bench queue` and `campaign`, against a service and without one."""
+
+import json
+from collections.abc import Callable
+
+import pytest
+
+from tests.queue.waiting import wait_for
+from tests.service.running_service import TOKEN, running_service
+
+CAMPAIGN = 'kind = "coast-down"\npace = "fast"\n[parameters]\nspeeds_rad_s = [1.0]\n[grid]\nload_kg = [0.05, 0.0]\n'
+
+
+@pytest.fixture
+def asked(command, monkeypatch, tmp_path) -> Callable[..., dict]:
+    """A command to a service that runs; its answer."""
+    (tmp_path / "served").mkdir()
+    with running_service(tmp_path / "served") as service:
+        monkeypatch.setenv("FRICTION_BENCH_URL", service.url)
+        monkeypatch.setenv("FRICTION_BENCH_TOKEN", TOKEN)
+
+        def run(*words: str) -> dict:
+            done = command(*words)
+            assert done.exit_code == 0, done.output
+            return json.loads(done.stdout) if "--json" in words else {"said": done.stdout}
+
+        yield run
+
+
+def test_from_add_to_the_end(asked, tmp_path):
+    assert asked("queue", "pause", "--json")["state"] == "held"
+    added = [asked("queue", "add", "steps", "repeats=1", "load-kg=0.05", "--tags", "a,b", "--json") for _ in range(3)]
+    first, second, third = (one["item_ids"][0] for one in added)
+    asked("queue", "move", third, 1)
+    asked("queue", "remove", second)
+    found = asked("queue", "list", "--json")
+    assert [item["item_id"] for item in found["waiting"]] == [third, first]
+    assert found["waiting"][0]["parameters"] == {"repeats": "1", "load_kg": "0.05"}
+    assert "steps" in asked("queue", "list")["said"]
+    assert "2 removed" in asked("queue", "clear")["said"]
+    (tmp_path / "loads.toml").write_text(CAMPAIGN, encoding="utf-8")
+    assert len(asked("campaign", "start", tmp_path / "loads.toml", "--json")["item_ids"]) == 2
+    asked("queue", "resume")
+    wait_for(lambda: asked("queue", "list", "--json")["state"] == "idle")
+    ended = asked("queue", "list", "--json")["ended"]
+    assert [(item["kind"], item["state"]) for item in ended] == [("coast-down", "completed")] * 2
+
+
+def test_a_plan_needs_no_service(command, tmp_path):
+    file = tmp_path / "loads.toml"
+    file.write_text(CAMPAIGN, encoding="utf-8")
+    shown = command("campaign", "plan", file)
+    assert shown.exit_code == 0, shown.output
+    assert "2 experiments, about" in shown.output
+    plan = json.loads(command("campaign", "plan", file, "--json").stdout)
+    assert (plan["name"], plan["load_changes"]) == ("loads", 2)
+    file.write_text(CAMPAIGN.replace("0.05", "5.0"), encoding="utf-8")
+    refused = command("campaign", "plan", file)
+    assert refused.exit_code == 3
+    assert "load_kg is 5 kg" in refused.output
+
+
+def test_a_wrong_parameter_is_named(command):
+    wrong = command("queue", "add", "steps", "repeat=3")
+    assert wrong.exit_code == 2
+    assert "NAME=VALUE" in wrong.output
+
+
+def test_tags_of_a_run_are_found_again(command):
+    ran = command("run", "steps", "--repeats", 1, "--tags", "winter, new grease", "--json")
+    assert ran.exit_code == 0, ran.output
+    assert json.loads(ran.stdout)["tags"] == ["new grease", "winter"]
+    assert [one["tags"] for one in json.loads(command("experiments", "--tag", "winter", "--json").stdout)] == [
+        ["new grease", "winter"]
+    ]
+    assert json.loads(command("experiments", "--tag", "summer", "--json").stdout) == []

@@ -1,0 +1,95 @@
+"""The queue and tags in either database: order, states, several benches in one store."""
+
+import pytest
+
+from bench.store import Store
+from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
+from bench.store.queue import NewItem
+
+
+def items(count):
+    return [NewItem("steps", {"repeats": number}, loads=[[0.1, False]]) for number in range(count)]
+
+
+def order(table):
+    return [item.parameters["repeats"] for item in table.items("waiting")]
+
+
+def test_items_keep_their_order_and_are_moved(store: Store) -> None:
+    table = store.queue("mine")
+    ids = table.add(items(4))
+    table.move(ids[3], 1)
+    assert order(table) == [0, 3, 1, 2]
+    table.begin(ids[0])
+    table.move(ids[2], 0)
+    assert order(table) == [2, 3, 1]
+    table.add(items(1))
+    assert order(table) == [2, 3, 1, 0]
+    assert table.next().id == ids[2]
+
+
+def test_a_queue_is_that_of_its_bench(store: Store) -> None:
+    mine, theirs = store.queue("mine"), store.queue("theirs")
+    [item_id] = mine.add(items(1))
+    mine.hold("coffee")
+    assert theirs.items() == []
+    assert (mine.held(), theirs.held()) == ("coffee", None)
+    with pytest.raises(NotFoundError):
+        theirs.remove(item_id)
+    assert (theirs.clear(), mine.clear()) == (0, 1)
+
+
+def test_states_follow_one_another(store: Store) -> None:
+    table = store.queue("mine")
+    first, second = table.add(items(2))
+    table.begin(first)
+    with pytest.raises(StoreStateError, match="is running"):
+        table.begin(first)
+    table.began(first, 7)
+    table.finish(first, "tripped", "speed is 9 rad/s")
+    found = table.item(first)
+    assert (found.state, found.reason, found.experiment_id) == ("tripped", "speed is 9 rad/s", 7)
+    assert [item.id for item in table.ended(5)] == [first]
+    table.begin(second)
+    table.give_back(second)
+    assert table.next().id == second
+    table.hold(None)
+    assert table.held() is None
+
+
+def test_a_campaign_is_kept_with_its_items(store: Store) -> None:
+    table = store.queue("mine")
+    campaign = {"name": "c", "definition": {"kind": "steps"}, "operator": "Ada", "note": "", "tags": ["x"]}
+    table.add(items(1))
+    ids = table.add(items(2), campaign)
+    [kept] = table.campaigns()
+    assert (kept.name, kept.definition, kept.tags) == ("c", {"kind": "steps"}, ["x"])
+    assert [item.id for item in table.items(campaign_id=kept.id)] == ids
+
+
+def test_tags_are_found_and_go_with_their_experiment(store: Store) -> None:
+    first, second = (store.begin_experiment("steps", {}, "simulated", {}, {}) for _ in range(2))
+    store.annotate(first, note="loose", tags=["b", "a", "b"])
+    store.annotate(second, tags=["b"])
+    assert (store.experiment(first).tags, store.experiment(first).note) == (("a", "b"), "loose")
+    assert [one.id for one in store.experiments(tag="b")] == [second, first]
+    assert [one.id for one in store.experiments(tag="a")] == [first]
+    store.annotate(first, tags=[])
+    assert store.experiment(first).tags == ()
+    store.finish_experiment(second, "completed")
+    store.retention.remove([second])
+    assert store.experiments(tag="b") == []
+
+
+@pytest.mark.parametrize("tags", [[""], [" a"], ["x" * 101], [str(number) for number in range(51)]])
+def test_tags_that_cannot_be_kept_are_named(store: Store, tags) -> None:
+    experiment_id = store.begin_experiment("steps", {}, "simulated", {}, {})
+    store.annotate(experiment_id, tags=["old"])
+    with pytest.raises(StoreValueError, match="wanted"):
+        store.annotate(experiment_id, tags=tags)
+    assert store.experiment(experiment_id).tags == ("old",)
+
+
+def test_an_experiment_that_is_not_there_has_no_tags(store: Store) -> None:
+    with pytest.raises(NotFoundError):
+        store.annotate(99, tags=["a"])
