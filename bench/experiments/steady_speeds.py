@@ -33,7 +33,7 @@ class SteadySpeedsParameters(Parameters):
         PAPER_SPEEDS_RAD_S, "rad/s", "Speeds of the joint, one trial each", min_length=1
     )
     reach_rad: float = quantity(2.0, "rad", "Ends of the travel, either way of straight down", gt=0)
-    run_up_rad: float = quantity(0.9, "rad", "Way to run up; gently, or the teeth rattle", gt=0)
+    run_up_rad: float = quantity(1.5, "rad", "Way to run up; gently, or the teeth rattle", gt=0)
     brake_rad: float = quantity(0.5, "rad", "Way to brake", gt=0)
 
     @model_validator(mode="after")
@@ -74,21 +74,41 @@ def carry_at_speed(
 def _stroke(parameters: SteadySpeedsParameters, way: float, speed_rad_s: float, period_s: float) -> list[SetPoint]:
     """From one end to the other: a long run-up, the way at speed, a short braking."""
     run_up_rad, brake_rad, reach_rad = parameters.run_up_rad, parameters.brake_rad, parameters.reach_rad
-    gain, loss = speed_rad_s**2 / (2.0 * run_up_rad), speed_rad_s**2 / (2.0 * brake_rad)
-    at_speed_s = 2.0 * run_up_rad / speed_rad_s
+    loss = speed_rad_s**2 / (2.0 * brake_rad)
+    at_speed_s = run_up_s(run_up_rad, speed_rad_s)
     braking_s = at_speed_s + (2.0 * reach_rad - run_up_rad - brake_rad) / speed_rad_s
     end_s = braking_s + 2.0 * brake_rad / speed_rad_s
     points = []
     for cycle in range(1, ceil(end_s / period_s) + 1):
         time_s, left_s = cycle * period_s, max(end_s - cycle * period_s, 0.0)
         if time_s < at_speed_s:
-            gone_rad, speed = 0.5 * gain * time_s**2, gain * time_s
+            gone_rad, speed = run_up(run_up_rad, speed_rad_s, time_s)
         elif time_s < braking_s:
             gone_rad, speed = run_up_rad + speed_rad_s * (time_s - at_speed_s), speed_rad_s
         else:
             gone_rad, speed = 2.0 * reach_rad - 0.5 * loss * left_s**2, loss * left_s
         points.append(SetPoint(way * (gone_rad - reach_rad), way * speed))
     return points
+
+
+def run_up_s(way_rad: float, speed_rad_s: float) -> float:
+    """Time that a run-up takes [s]: half of it with one acceleration a, in the other half this fades to 0, linearly.
+
+    An acceleration that ends at once lets the arm fall through the free play, and rattle there all the way.
+
+        v = 1.5 a T,  s = 11/6 a T^2  after two times T,  so  2 T = 18/11 s / v
+    """
+    return 18.0 / 11.0 * way_rad / speed_rad_s
+
+
+def run_up(way_rad: float, speed_rad_s: float, time_s: float) -> tuple[float, float]:
+    """How far [rad] and how fast [rad/s] a run-up has come after a time [s]."""
+    half_s = run_up_s(way_rad, speed_rad_s) / 2.0
+    gain = speed_rad_s / (1.5 * half_s)
+    early_s, late_s = min(time_s, half_s), max(time_s - half_s, 0.0)
+    speed = gain * (early_s + late_s - late_s**2 / (2.0 * half_s))
+    gone_rad = gain * (0.5 * early_s**2 + early_s * late_s + 0.5 * late_s**2 - late_s**3 / (6.0 * half_s))
+    return gone_rad, speed
 
 
 def _steady(followed: list[Followed], stroke: list[SetPoint], speed_rad_s: float) -> list[Followed]:

@@ -7,6 +7,7 @@ from bench.configuration import default_configuration
 from bench.errors import ConfigurationError, LimitError, ParameterError
 from bench.experiments.load_follower import joint_model
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.experiments.steady_speeds import run_up, run_up_s
 from tests.bench.bench_run import Ran
 from tests.bench.calibrated import calibrated_configuration
 
@@ -104,3 +105,14 @@ def test_without_known_loads_the_model_has_no_gear_loss():
     plain = calibrated_configuration()
     assert joint_model(plain).gear_loss.driving > 0.2
     assert joint_model(plain.model_copy(update={"rest": None})).gear_loss.driving == 0.0
+
+
+def test_a_run_up_ends_at_speed_without_acceleration():
+    way_rad, speed_rad_s = 1.5, 6.0
+    times_s = np.linspace(0.0, run_up_s(way_rad, speed_rad_s), 2001)
+    gone_rad, speed = np.array([run_up(way_rad, speed_rad_s, time_s) for time_s in times_s]).T
+    assert (gone_rad[-1], speed[-1]) == pytest.approx((way_rad, speed_rad_s))
+    np.testing.assert_allclose(np.gradient(gone_rad, times_s)[1:-1], speed[1:-1], atol=1e-4)
+    acceleration = np.gradient(speed, times_s)
+    assert acceleration[-2] < 0.01 * acceleration[0]
+    assert np.max(acceleration) == pytest.approx(acceleration[0])
