@@ -50,6 +50,7 @@ class Prepared:
     station: Station
     space: SpaceNeed
     session: Session
+    real_time: bool
 
 
 @dataclass(slots=True)
@@ -62,6 +63,7 @@ class ExperimentRun:
         outcome, reason: "running" until the record is closed.
         trial_index: the trial that runs, from 0.
         paused: whether it stands between two trials, with the power off, until it may go on.
+        stop_request: the wish that it ends.
     """
 
     request: Request
@@ -70,18 +72,18 @@ class ExperimentRun:
     reason: str = ""
     trial_index: int = 0
     paused: bool = False
-    _stop: StopRequest = field(default_factory=StopRequest)
+    stop_request: StopRequest = field(default_factory=StopRequest)
     _pause: threading.Event = field(default_factory=threading.Event)
     _prepared: Prepared | None = None
     _finished: list[FinishedTrial] = field(default_factory=list)
 
     def stop(self, reason: str) -> None:
         """Stop within one control cycle; also an experiment that is only about to begin."""
-        self._stop.ask(reason)
+        self.stop_request.ask(reason)
 
     def is_stopped(self) -> bool:
         """Whether it has been asked to stop."""
-        return self._stop.is_set()
+        return self.stop_request.is_set()
 
     def pause(self) -> None:
         """Stand still before the next trial."""
@@ -155,7 +157,7 @@ class ExperimentRun:
             self._wait_while_paused()
             try:
                 if not self._prepare_arm(plan, prepared.station):
-                    return "stopped", self._stop.reason
+                    return "stopped", self.stop_request.reason
                 store.require_space(prepared.space, trials=1)
                 outcome = self._run_trial(plan, prepared, store, live)
             except Exception as error:
@@ -185,7 +187,7 @@ class ExperimentRun:
         loop = prepared.station.loop
         writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, loop.channels)
         live.begin_trial(loop.channels)
-        outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self._stop)
+        outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self.stop_request)
         prepared.session.passed(loop.last_reading.time_s if loop.last_reading else 0.0)
         self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}

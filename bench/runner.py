@@ -23,6 +23,7 @@ from bench.session import session_of
 from bench.station import Station, make_station
 from bench.store import Store
 from bench.store.space import SpaceNeed
+from bench.surroundings import Surroundings
 from drivers.contract import Description
 from drivers.errors import DriveError
 
@@ -76,11 +77,15 @@ class Runner:
     Args:
         configuration: of the bench.
         store: where trials are kept. Rows are written to it from a thread of the control loop's own.
+        surroundings: what it takes from the process that it runs in.
     """
 
-    def __init__(self, configuration: BenchConfiguration, store: Store) -> None:
+    def __init__(
+        self, configuration: BenchConfiguration, store: Store, surroundings: Surroundings | None = None
+    ) -> None:
         self.configuration = configuration
         self._store = store
+        self._surroundings = surroundings or Surroundings()
         self._starting = threading.Lock()
         self._thread: threading.Thread | None = None
         self._run: ExperimentRun | None = None
@@ -121,7 +126,8 @@ class Runner:
         found = find_kind(kind)
         with self._starting:
             self._refuse_when_busy()
-            run = ExperimentRun(Request(kind, parameters, operator, note, hung))
+            request = Request(kind, parameters, operator, note, hung)
+            run = ExperimentRun(request, stop_request=self._surroundings.new_stop())
             self._run = run  # from here on `stop` reaches it
             try:
                 return self._launch(run, found, pace)
@@ -212,17 +218,21 @@ class Runner:
         except BaseException:
             prepared.station.close()
             raise
-        self._thread = threading.Thread(
-            target=run.carry_out, args=(prepared, self._store, self._live), name=f"experiment {run.experiment_id}"
-        )
-        self._thread.start()
+        thread = threading.Thread(target=self._carry_out, args=(run, prepared), name=f"experiment {run.experiment_id}")
+        thread.start()
+        self._thread = thread
         return run.experiment_id
+
+    def _carry_out(self, run: ExperimentRun, prepared: Prepared) -> None:
+        with self._surroundings.during_run(prepared.real_time):
+            run.carry_out(prepared, self._store, self._live)
 
     def _prepare(
         self, configuration: BenchConfiguration, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None
     ) -> Prepared:
         """Check everything that can be checked before motion, and open the drive."""
-        clock = WallClock() if self._is_real_time(pace) else VirtualClock()
+        real_time = self._is_real_time(pace)
+        clock = WallClock() if real_time else VirtualClock()
         parameters = parse_parameters(kind, run.request.parameters)
         kind.refuse(parameters, configuration)
         plans = kind.plan(parameters, configuration)
@@ -248,7 +258,7 @@ class Runner:
         except BaseException:
             station.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, station, space, session)
+        return Prepared(kind, parameters, plans, duration_s, station, space, session, real_time)
 
     def _require_commissioned(self, configuration: BenchConfiguration, station: Station) -> None:
         """Refuse a real drive that has not passed the commissioning move."""
@@ -280,7 +290,8 @@ class Runner:
                 drives[0] if drives else None,
                 seed_of(configuration),
                 drives[1] if len(drives) > 1 else None,
-            ),
+            )
+            | dict(self._surroundings.facts),
             configuration.rig.model_dump(mode="json", exclude_none=True),
             request.operator,
             request.note,

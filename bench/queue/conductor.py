@@ -5,10 +5,11 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import cast
 
+from bench.bench_control import BenchControl
 from bench.errors import BenchError, BusyError
 from bench.lease import LeaseHeldError
 from bench.queue.items import Order, checked_item
-from bench.runner import Pace, Runner
+from bench.runner import Pace
 from bench.store import Store
 from bench.store.errors import StoreError
 from bench.store.queue import WAITING, NewItem, QueueItem, QueueTable
@@ -33,7 +34,7 @@ class Conductor:
         starting: entered round each start.
     """
 
-    def __init__(self, runner: Runner, store: Store, starting: Starting = lambda _name: nullcontext()) -> None:
+    def __init__(self, runner: BenchControl, store: Store, starting: Starting = lambda _name: nullcontext()) -> None:
         self.table: QueueTable = store.queue(runner.configuration.name)
         self.running: QueueItem | None = None
         self._runner, self._store, self._starting = runner, store, starting

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from bench.bench_control import BenchControl
 from bench.drive_factory import has_hardware
 from bench.queue.conductor import Conductor
 from bench.queue.load_order import HANG_S, load_changes
-from bench.runner import Runner
 from bench.store.queue import WAITING, QueueItem
 
 State = Literal["idle", "running", "pausing", "paused", "held"]
@@ -36,7 +36,7 @@ class QueueState:
     load_changes: int
 
 
-def queue_state(conductor: Conductor, runner: Runner) -> QueueState:
+def queue_state(conductor: Conductor, runner: BenchControl) -> QueueState:
     """The queue of a bench, now."""
     running, waiting, status = conductor.running, conductor.table.items(WAITING), runner.status()
     changes = load_changes([*([running] if running else []), *waiting]) - (len(running.loads[:1]) if running else 0)

@@ -8,9 +8,9 @@ from importlib.metadata import version
 import anyio.to_thread
 from fastapi import APIRouter, FastAPI
 
+from bench.bench_control import BenchControl
 from bench.lease import Lease
 from bench.queue import Conductor
-from bench.runner import Runner
 from bench.service import (
     audit,
     bench_state,
@@ -94,7 +94,7 @@ _ROOMS = (
 )
 
 
-def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
+def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
     """The service.
 
     Args:
@@ -143,7 +143,7 @@ def create_app(store: Store, runner: Runner, access: Access) -> FastAPI:
     return app
 
 
-def _running(runner: Runner) -> int | None:
+def _running(runner: BenchControl) -> int | None:
     """The experiment that runs, 0 while it has no number yet; None where none does."""
     found = runner.status()
     return (found.experiment_id or 0) if found.outcome == "running" else None

@@ -9,10 +9,10 @@ from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 
+from bench.bench_control import BenchControl
 from bench.drive_factory import is_simulated
 from bench.lease import Lease
 from bench.live import LiveRows
-from bench.runner import Runner
 from bench.service.access import allow_read
 from bench.service.json_numbers import column
 from bench.service.leases import LeaseOf, lease_now
@@ -80,7 +80,7 @@ async def live(
     )
 
 
-async def _events(request: Request, runner: Runner, lease: Lease, after_row: int, limit: int) -> AsyncIterator[str]:
+async def _events(request: Request, runner: BenchControl, lease: Lease, after_row: int, limit: int) -> AsyncIterator[str]:
     simulated = is_simulated(runner.configuration)
     shown = ""
     period = 0

@@ -3,15 +3,17 @@
 import signal
 import socket
 from collections.abc import Callable
+from contextlib import closing
 from types import FrameType
 from typing import NamedTuple
 
 import uvicorn
 from fastapi import FastAPI
 
+from bench.bench_control import BenchControl
+from bench.bench_process import RemoteRunner
 from bench.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
-from bench.runner import Runner
 from bench.service.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
 from bench.service.app import create_app
 from bench.service.first_token import first_token, has_valid_token
@@ -47,7 +49,7 @@ class BenchServer(uvicorn.Server):
         tls: certificate and key; None: plain HTTP.
     """
 
-    def __init__(self, app: FastAPI, runner: Runner, tls: Certificate | None = None) -> None:
+    def __init__(self, app: FastAPI, runner: BenchControl, tls: Certificate | None = None) -> None:
         super().__init__(
             uvicorn.Config(
                 app,
@@ -105,11 +107,11 @@ def serve_bench(
                 register = TokenRegister(fixed, store.access.tokens.find)
                 register.refresh()
                 names = LOOPBACK_NAMES | {address.host, *address.names}
-                runner = Runner(configuration, store)
-                app = create_app(store, runner, Access(register, is_loopback(address.host), names))
-                for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
-                    say(line)
-                _serve(BenchServer(app, runner, tls), listener)
+                with closing(RemoteRunner(configuration, store)) as runner:
+                    app = create_app(store, runner, Access(register, is_loopback(address.host), names))
+                    for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
+                        say(line)
+                    _serve(BenchServer(app, runner, tls), listener)
 
 
 def _serve(server: BenchServer, listener: socket.socket) -> None:

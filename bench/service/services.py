@@ -4,8 +4,8 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from bench.bench_control import BenchControl
 from bench.queue import Conductor
-from bench.runner import Runner
 from bench.store import Store
 
 
@@ -13,8 +13,8 @@ async def _store(request: Request) -> Store:
     return cast(Store, request.app.state.store)
 
 
-async def _runner(request: Request) -> Runner:
-    return cast(Runner, request.app.state.runner)
+async def _runner(request: Request) -> BenchControl:
+    return cast(BenchControl, request.app.state.runner)
 
 
 async def _conductor(request: Request) -> Conductor:
@@ -22,5 +22,5 @@ async def _conductor(request: Request) -> Conductor:
 
 
 StoreOf = Annotated[Store, Depends(_store)]
-RunnerOf = Annotated[Runner, Depends(_runner)]
+RunnerOf = Annotated[BenchControl, Depends(_runner)]
 ConductorOf = Annotated[Conductor, Depends(_conductor)]

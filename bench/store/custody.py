@@ -70,10 +70,14 @@ class Custody:
             del self._unwritten[experiment_id]
             self._note_all()
 
-    def settle(self) -> None:
-        """End what dead processes left running, as they noted it or as interrupted; remove their half imports."""
+    def settle(self, reason: str = LEFT_RUNNING) -> None:
+        """End what dead processes left running, as they noted it or as interrupted; remove their half imports.
+
+        Args:
+            reason: of those that were interrupted.
+        """
         backend = self._database.backend
-        self._settle({token for token in self._tokens() if not backend.lives(token)}, LEFT_RUNNING)
+        self._settle({token for token in self._tokens() if not backend.lives(token)}, reason)
 
     def close(self) -> None:
         """End what this store left running, and let go of the claim. Safe to call twice."""

@@ -40,7 +40,7 @@ class Store(StudyStore):
         self._database = database
         self.calibrations = Calibrations(database)
         self.access = AccessRecords(database)
-        self._custody = Custody(database)
+        self.custody = Custody(database)
 
     @classmethod
     def open(cls, url: str, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Self:
@@ -58,7 +58,7 @@ class Store(StudyStore):
         store = cls(Database(url, busy_timeout_s))
         try:
             migrate(store._database)
-            store._custody.settle()
+            store.custody.settle()
         except BaseException:
             store.close()
             raise
@@ -66,7 +66,7 @@ class Store(StudyStore):
 
     def close(self) -> None:
         """Close the database. What this store left running is marked interrupted. Safe to call twice."""
-        self._custody.close()
+        self.custody.close()
         self._database.close()
 
     def require_space(self, need: SpaceNeed, trials: int) -> None:
@@ -120,10 +120,10 @@ class Store(StudyStore):
             "operator": operator,
             "note": note,
         }
-        self._custody.write_noted()
-        self._custody.settle()
+        self.custody.write_noted()
+        self.custody.settle()
         with self._database.writing() as connection:
-            return experiments.add(connection, self._custody.token(), values)
+            return experiments.add(connection, self.custody.token(), values)
 
     def finish_experiment(
         self, experiment_id: int, outcome: str, reason: str = "", results: dict[str, Any] | None = None
@@ -138,13 +138,13 @@ class Store(StudyStore):
             with self._database.writing() as connection:
                 experiments.finish(connection, experiment_id, outcome, reason, results or {})
         except UNWRITTEN:
-            self._custody.note(experiment_id, outcome, reason)
+            self.custody.note(experiment_id, outcome, reason)
             raise
 
     def experiment(self, experiment_id: int) -> Experiment:
         """One experiment, or `NotFoundError`."""
         with self._database.reading() as connection:
-            return self._custody.as_ended(experiments.get(connection, experiment_id))
+            return self.custody.as_ended(experiments.get(connection, experiment_id))
 
     def experiments(
         self,
@@ -158,7 +158,7 @@ class Store(StudyStore):
         """Experiments, newest first; all of them without a limit."""
         with self._database.reading() as connection:
             found = experiments.find(connection, kind, outcome, source, tag, limit, offset)
-        return list(map(self._custody.as_ended, found))
+        return list(map(self.custody.as_ended, found))
 
     def annotate(self, experiment_id: int, note: str | None = None, tags: Iterable[str] | None = None) -> None:
         """Change the note and the tags of an experiment, also of one that has ended; None leaves as it is.
@@ -188,7 +188,7 @@ class Store(StudyStore):
         """
         values = {"kind": kind, "parameters": parameters, "provenance": provenance, "rig": rig}
         with self._database.writing():
-            token = self._custody.token()
+            token = self.custody.token()
         found = Import(self._database, token, values)
         try:
             for recording, outcome, reason in recordings:
@@ -230,7 +230,7 @@ class Store(StudyStore):
     def trial(self, trial_id: int) -> Trial:
         """One trial, or `NotFoundError`."""
         with self._database.reading() as connection:
-            return self._custody.as_ended(trials.get(connection, trial_id))
+            return self.custody.as_ended(trials.get(connection, trial_id))
 
     def trials(
         self,
@@ -249,7 +249,7 @@ class Store(StudyStore):
         with self._database.reading() as connection:
             wanted = conditions or {}
             found = trials.find(connection, experiment_id, kind, outcome, source, wanted, limit, offset)
-        return list(map(self._custody.as_ended, found))
+        return list(map(self.custody.as_ended, found))
 
     def events(self, trial_id: int) -> list[Event]:
         """The events of a trial, in order of time, or `NotFoundError`."""

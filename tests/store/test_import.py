@@ -20,7 +20,7 @@ def recording(name: str, count: int = 10) -> Recording:
 def begin_import(store: Store) -> Import:
     values = {"kind": "import", "parameters": {}, "provenance": {}, "rig": {}}
     with store._database.writing():
-        token = store._custody.token()
+        token = store.custody.token()
     return Import(store._database, token, values)
 
 
@@ -79,8 +79,8 @@ def test_what_a_dead_import_left_is_removed_by_the_next_to_open(store_url: str, 
     found = begin_import(store)
     found.add(recording("a", 20_000), "completed", "")
     if dies == "was killed":  # nothing of the store's own end happens
-        assert store._custody._claim is not None
-        store._custody._claim.release()
+        assert store.custody._claim is not None
+        store.custody._claim.release()
         store._database.close()
     else:
         store.close()

@@ -55,8 +55,8 @@ def test_the_next_to_open_the_store_writes_it(store_url: str, monkeypatch: pytes
         with pytest.raises(StoreFullError):
             store.finish_experiment(experiment_id, "failed", REASON)
         if dies:
-            assert store._custody._claim is not None
-            store._custody._claim._file.close()  # type: ignore[attr-defined]  # as the operating system does
+            assert store.custody._claim is not None
+            store.custody._claim._file.close()  # type: ignore[attr-defined]  # as the operating system does
             store._database.close()
         else:
             store.close()
@@ -82,7 +82,7 @@ def test_an_end_under_a_lock_of_another_program_is_written_after_it(store_url: s
 def test_a_note_that_was_cut_off_counts_as_none(store_url: str) -> None:
     store = Store.open(store_url)
     experiment_id = begin(store)
-    claim = store._custody._claim
+    claim = store.custody._claim
     assert claim is not None
     claim.note({experiment_id: ("failed", REASON)})
     path = claim._path  # type: ignore[attr-defined]

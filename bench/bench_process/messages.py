@@ -1,0 +1,93 @@
+"""What a service and its bench process say to each other, and the version of it.
+
+They are the same software, on one machine, parent and child: messages are pickled, over a socket pair that nobody
+else can reach. STOP is no message: it goes by the stop line, past everything here.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from bench.configuration import BenchConfiguration
+from bench.live import LiveRows
+from bench.runner import RunnerStatus
+
+VERSION = b"friction-bench bench process, 1"
+"""First on the line from both ends, as bytes. A service outlives an update of its files: then these differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hello:
+    """The service, first: what bench it is."""
+
+    configuration: BenchConfiguration
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """The service: call a method of the runner.
+
+    Attributes:
+        number: comes back with the reply.
+        method: one of `CALLS`.
+        arguments: by name.
+        stops: how often STOP had been asked for before the call.
+    """
+
+    number: int
+    method: str
+    arguments: dict[str, Any]
+    stops: int
+
+
+@dataclass(frozen=True, slots=True)
+class Close:
+    """The service, last: stop what runs, close the drive and the store, and end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The bench process: what a call returned."""
+
+    number: int
+    value: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The bench process: what a call raised.
+
+    Attributes:
+        number: of the call; 0: the bench process cannot begin, and ends.
+        kind: class of the error.
+        text: what it says.
+        attributes: of the error; those that can be sent.
+        trace: where it was raised, for the log.
+    """
+
+    number: int
+    kind: type[BaseException]
+    text: str
+    attributes: dict[str, Any]
+    trace: str
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """The bench process, many times a second while it runs something.
+
+    Attributes:
+        status: of the runner.
+        busy: whether something runs; it goes on for a moment after the outcome is known.
+        rows: recorded since the message before.
+    """
+
+    status: RunnerStatus
+    busy: bool
+    rows: LiveRows
+
+
+CALLS = ("start", "answer")
+"""Methods of the runner that a service calls; the others it answers from what it has seen."""
+
+SLOW_CALLS = ("start",)
+"""Those that wait for a drive or a disk; they take turns, and the others do not wait for them."""

@@ -1,0 +1,53 @@
+"""What a service knows of its bench process: as it was told last."""
+
+import threading
+from dataclasses import replace
+
+from bench.bench_process.messages import Seen
+from bench.cycle import RECORDED
+from bench.limits import Limits
+from bench.live import LiveBuffer
+from bench.runner import RunnerStatus
+
+
+class Mirror:
+    """Status and live rows, at most a publisher's period old.
+
+    Attributes:
+        status: of the runner.
+        live: rows of the running trial.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self.status = RunnerStatus(None, "", "", "", 0, 0, 0.0, None, None, limits)
+        self.live = LiveBuffer(RECORDED)
+        self._busy = False
+        self._new_process = True
+        self._changed = threading.Condition()
+
+    def take_in(self, seen: Seen) -> None:
+        """The news."""
+        if seen.rows.restarted or (self._new_process and len(seen.rows.rows)):
+            self._new_process = False
+            self.live.begin_trial()
+        if len(seen.rows.rows):
+            self.live.append(seen.rows.rows)
+        self._change(seen.status, seen.busy)
+
+    def lose(self, reason: str) -> bool:
+        """The process has ended; True where that has interrupted an experiment."""
+        running = self.status.outcome == "running"
+        self._new_process = True
+        ended = replace(self.status, outcome="interrupted", reason=reason, prompt=None) if running else self.status
+        self._change(ended, busy=False)
+        return running
+
+    def wait(self, timeout_s: float | None) -> bool:
+        """Wait until nothing runs; False where that takes longer than `timeout_s`."""
+        with self._changed:
+            return self._changed.wait_for(lambda: not self._busy, timeout_s)
+
+    def _change(self, status: RunnerStatus, busy: bool) -> None:
+        with self._changed:
+            self.status, self._busy = status, busy
+            self._changed.notify_all()
