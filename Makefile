@@ -5,7 +5,7 @@ VM_KERNEL ?= out/vm/kernel
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo paper serve test test-vm benchmark check format clean help
+.PHONY: demo paper serve test test-vm benchmark kills check format clean help
 
 help:            ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
@@ -42,7 +42,7 @@ benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo,
 	$(BIN)/python -m tests.store.rates
 	$(BIN)/python -m tests.drivers.rates
 
-kills: $(STAMP)  ## 200 runs ended at random moments, in every way: what is left of each
+kills: $(STAMP)  ## 200 runs ended at random moments, in every way, on a drive in a process of its own: what is left of each
 	$(BIN)/python -m tests.stopping.kills --kills 200
 
 check: $(STAMP)  ## style, types and walls

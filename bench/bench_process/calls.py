@@ -1,10 +1,10 @@
 """Calls to the bench process whose replies are waited for."""
 
 import threading
-from concurrent.futures import Future, InvalidStateError
-from contextlib import suppress
+from concurrent.futures import Future
 from typing import Any
 
+from bench.bench_process.errors import BenchProcessError, NotBegunError
 from bench.bench_process.failures import error_of
 from bench.bench_process.messages import Failure, Reply
 
@@ -14,6 +14,7 @@ class Calls:
 
     def __init__(self) -> None:
         self._open: dict[int, Future[Any]] = {}
+        self._accepted: set[int] = set()
         self._number = 0
         self._lock = threading.Lock()
 
@@ -24,10 +25,14 @@ class Calls:
             found = self._open[self._number] = Future()
             return self._number, found
 
+    def accept(self, number: int) -> None:
+        """One has been begun."""
+        with self._lock:
+            self._accepted.add(number)
+
     def close(self, reply: Reply | Failure) -> None:
         """What came of one."""
-        with self._lock:
-            found = self._open.pop(reply.number, None)
+        found = self._pop(reply.number)
         if found is None:
             return
         if isinstance(reply, Failure):
@@ -37,14 +42,23 @@ class Calls:
 
     def forget(self, number: int) -> None:
         """Nobody waits for it any more."""
-        with self._lock:
-            self._open.pop(number, None)
+        self._pop(number)
 
-    def fail(self, error: BaseException) -> None:
-        """No more replies will come."""
+    def fail(self, said: BaseException | None, reason: str) -> None:
+        """No more replies will come: the process has ended.
+
+        Args:
+            said: what it said of that, if anything.
+            reason: how it ended.
+        """
         with self._lock:
-            left = list(self._open.values())
-            self._open.clear()
-        for one in left:
-            with suppress(InvalidStateError):
-                one.set_exception(error)
+            left, accepted = dict(self._open), set(self._accepted)
+        for number in left:
+            if (found := self._pop(number)) is not None:
+                kind = BenchProcessError if number in accepted else NotBegunError
+                found.set_exception(said or kind(reason))
+
+    def _pop(self, number: int) -> "Future[Any] | None":
+        with self._lock:
+            self._accepted.discard(number)
+            return self._open.pop(number, None)

@@ -7,7 +7,7 @@ import sys
 import threading
 from multiprocessing.connection import Connection
 
-from bench.bench_process.errors import BenchProcessError
+from bench.bench_process.errors import BenchProcessError, NotBegunError
 from bench.bench_process.messages import VERSION, Close, Hello
 
 MODULE = "bench.bench_process.process"
@@ -54,7 +54,7 @@ class Child:
         """Send a message.
 
         Raises:
-            BenchProcessError: the process has ended.
+            NotBegunError: the process has ended.
         """
         self._send(message)
 
@@ -110,7 +110,7 @@ class Child:
                     else:
                         self._connection.send(message)
         except (OSError, ValueError) as error:
-            raise BenchProcessError("the bench process has ended; the next start starts it again") from error
+            raise NotBegunError("the bench process has ended; the next start starts it again") from error
 
 
 def _signal_name(number: int) -> str:

@@ -9,3 +9,7 @@ class BenchProcessError(BenchError, ConnectionError):
     - it was killed, or crashed; the next start of an experiment starts it again
     - its software is of another version than the service: files were updated under a running service
     """
+
+
+class NotBegunError(BenchProcessError):
+    """Raised when the process has ended before it accepted a call: another one may be asked the same."""

@@ -45,6 +45,13 @@ class Close:
 
 
 @dataclass(frozen=True, slots=True)
+class Accepted:
+    """The bench process: a call has come, and is made. One that was not accepted was never begun."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
 class Reply:
     """The bench process: what a call returned."""
 

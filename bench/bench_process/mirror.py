@@ -29,7 +29,7 @@ class Mirror:
         """The news."""
         if seen.rows.restarted or (self._new_process and len(seen.rows.rows)):
             self._new_process = False
-            self.live.begin_trial()
+            self.live.begin_trial(seen.rows.channels)
         if len(seen.rows.rows):
             self.live.append(seen.rows.rows)
         self._change(seen.status, seen.busy)

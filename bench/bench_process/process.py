@@ -46,6 +46,7 @@ class BenchProcess:
         self, connection: "Connection", line: StopLine, configuration: BenchConfiguration, store: Store
     ) -> None:
         self._connection = connection
+        self._store = store
         self._before = line.asked()
         facts = {"control_loop": {"process": "its own", "scheduling": scheduling.describe()}}
         surroundings = Surroundings(lambda: LineStop(line, self._before), scheduling.undisturbed, facts)
@@ -60,8 +61,8 @@ class BenchProcess:
         """Until the service closes it or is gone, or a signal has come; the joint is off then."""
         while not self.ended:
             message = self._receive()
-            if isinstance(message, Call):
-                self._publisher.begin_call()
+            if isinstance(message, Call) and not self.ended:
+                self._publisher.begin_call(message.number)
                 self._slow_calls.put(message) if message.method in SLOW_CALLS else self._make(message)
         last = threading.Timer(LAST_S, os._exit, (1,))
         last.daemon = True
@@ -91,7 +92,12 @@ class BenchProcess:
 
     def _make_slow_calls(self) -> None:
         while True:
-            call = self._slow_calls.get()
+            try:
+                call = self._slow_calls.get(timeout=LOOK_S)
+            except queue.Empty:
+                if self._runner.wait(0.0):
+                    self._store.custody.write_noted()  # of a run that ended on a full or locked database
+                continue
             self._before = call.stops
             self._make(call)
 

@@ -3,7 +3,7 @@
 import threading
 from multiprocessing.connection import Connection
 
-from bench.bench_process.messages import Seen
+from bench.bench_process.messages import Accepted, Seen
 from bench.runner import Runner
 
 PERIOD_S = 0.05
@@ -31,8 +31,9 @@ class Publisher:
         self._told: object = None
         threading.Thread(target=self._run, name="publisher", daemon=True).start()
 
-    def begin_call(self) -> None:
-        """Something is about to change."""
+    def begin_call(self, number: int) -> None:
+        """Say that a call has come: something is about to change."""
+        self.tell(Accepted(number))
         self._calls += 1
         self._woken.set()
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from bench.bench_process.calls import Calls
 from bench.bench_process.child import MODULE, Child
+from bench.bench_process.errors import NotBegunError
 from bench.bench_process.messages import Call, Hello
 from bench.bench_process.mirror import Mirror
 from bench.bench_process.stop_line import StopLine
@@ -15,6 +16,8 @@ from bench.live import LiveRows
 from bench.runner import Pace, RunnerStatus
 from bench.store import Store
 from bench.store.errors import StoreError
+
+TRIES = 3  # processes that are asked, where one after the other ends before it has begun
 
 
 class RemoteRunner:
@@ -87,6 +90,12 @@ class RemoteRunner:
 
     def _call(self, method: str, arguments: dict[str, Any]) -> Any:
         stops = self._line.settled()  # what is asked for from here on counts
+        for _ in range(TRIES - 1):
+            with suppress(NotBegunError):  # it was just ending: another process is there next time
+                return self._call_once(method, arguments, stops)
+        return self._call_once(method, arguments, stops)
+
+    def _call_once(self, method: str, arguments: dict[str, Any], stops: int) -> Any:
         child = self._supervisor.child()
         number, answer = self._calls.open()
         try:

@@ -7,7 +7,7 @@ from bench.bench_process.calls import Calls
 from bench.bench_process.child import Child
 from bench.bench_process.errors import BenchProcessError
 from bench.bench_process.failures import error_of
-from bench.bench_process.messages import Failure, Reply, Seen
+from bench.bench_process.messages import Accepted, Failure, Reply, Seen
 from bench.bench_process.mirror import Mirror
 from bench.errors import BusyError
 
@@ -111,6 +111,8 @@ class Supervisor:
     def _take_in(self, message: object) -> None:
         if isinstance(message, Seen):
             self._mirror.take_in(message)
+        elif isinstance(message, Accepted):
+            self._calls.accept(message.number)
         elif isinstance(message, Reply | Failure):
             self._calls.close(message)
 
@@ -120,6 +122,6 @@ class Supervisor:
         within = f" within {watchdog.watchdog_s:g} s" if watchdog is not None else ""
         reason = f"the bench process {how} while it ran; the drive's own watchdog stops the motor{within}"
         interrupted = self._mirror.lose(reason)
-        self._calls.fail(said or BenchProcessError(f"the bench process {how}; the next start starts it again"))
+        self._calls.fail(said, f"the bench process {how}; the next start starts it again")
         if interrupted:
             self._lost(reason)

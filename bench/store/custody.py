@@ -53,14 +53,14 @@ class Custody:
 
     def as_ended(self, record: Record) -> Record:
         """A record with the end that the database lacks."""
-        experiment_id = record.id if isinstance(record, Experiment) else record.experiment_id
-        if record.outcome != "running" or experiment_id not in self._unwritten:
+        if record.outcome != "running":
             return record
-        outcome, reason = self._unwritten[experiment_id]
-        return replace(record, outcome=outcome, reason=reason)
+        experiment_id = record.id if isinstance(record, Experiment) else record.experiment_id
+        end = self._unwritten.get(experiment_id) or self._noted_by_others().get(experiment_id)
+        return record if end is None else replace(record, outcome=end[0], reason=end[1])
 
     def write_noted(self) -> None:
-        """Write the ends that the database did not take, if it takes them now."""
+        """Write the ends that the database did not take, if it takes them now. Nothing to do, mostly."""
         for experiment_id, (outcome, reason) in list(self._unwritten.items()):
             try:
                 with suppress(StoreStateError), self._database.writing() as connection:
@@ -88,6 +88,13 @@ class Custody:
             self._settle({self._claim.token}, CLOSED)
         self._claim.release(keep_note=bool(self._unwritten))
         self._claim = None
+
+    def _noted_by_others(self) -> dict[int, End]:
+        """The control loop may be in another process, and the database full or locked for it."""
+        noted: dict[int, End] = {}
+        for token in self._tokens():
+            noted |= self._database.backend.last_words(token)
+        return noted
 
     def _note_all(self) -> None:
         if self._claim is not None:

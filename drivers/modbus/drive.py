@@ -44,6 +44,8 @@ class ModbusDrive(Drive):
     def open(self, period_s: float) -> None:
         """Connect, identify, switch off, set the watchdog and read it back, and find the rate.
 
+        A fault that says only that the last host went away is cleared; any other stays.
+
         Raises:
             DriveConnectionError: nothing answers.
             DriveConfigurationError: another drive than that of the map answers.

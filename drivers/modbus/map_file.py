@@ -165,9 +165,10 @@ class _Reader:
 
     def _watchdog(self) -> Watchdog:
         values = self._values["watchdog"]
+        fault = int(values["fault"]) if "fault" in values else None
         if "register" in values:
-            return Watchdog(self._register(values["register"], "watchdog"))
-        return Watchdog(None, float(values["fixed_s"]))
+            return Watchdog(self._register(values["register"], "watchdog"), fault=fault)
+        return Watchdog(None, float(values["fixed_s"]), fault)
 
     def _identity(self) -> Identity:
         values = self._values["identity"]

@@ -9,7 +9,7 @@ A map names its registers freely, and then says which of them plays which part:
                  zero is all that switches the motor off
     [status]     register, and the words that mean enabled, quick_stop and fault: after `mask`, or bit by bit (`bits`)
     [fault]      register, and names of its numbers
-    [watchdog]   register (its unit is s), or `fixed_s` where it is set in the drive alone
+    [watchdog]   register (its unit is s), or `fixed_s` where it is set in the drive alone; the fault that it leaves
     [identity]   vendor, product; registers of firmware and serial; register and word that tell the family; a text that
                  tells the product, and "simulated" where no hardware is behind it
     [mode]       register and the words of the modes, where it is not part of the control word
@@ -58,10 +58,13 @@ class Watchdog:
     Attributes:
         register: None where it is set in the drive alone, with its own tools.
         fixed_s: that time [s].
+        fault: what the fault register holds when the watchdog has stopped the motor, and nothing else is wrong; None
+            where the drive does not tell.
     """
 
     register: Register | None
     fixed_s: float = 0.0
+    fault: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,7 @@ class Session:
             self.link.begin()
             self.identity = identify(self.link, register_map, settings.device)
             self.switch_off()
+            self._forgive_lost_host()
             self.link.begin()
             set_watchdog(self.link, register_map, settings)
             self._read_slow()
@@ -139,6 +140,11 @@ class Session:
         if self._map.status is not None and "quick_stop" in self._map.status.words:
             return self.state is not Status.QUICK_STOP
         return self._braking.stands(values.get(self._map.measured["position_counts"].name, nan))
+
+    def _forgive_lost_host(self) -> None:
+        """Clear the fault that says only that the last host went away: this one is here, and the power is off."""
+        if self.state is Status.FAULT and self._fault == self._map.watchdog.fault:
+            self.clear_fault()
 
     def _read_slow(self) -> None:
         for block in self._plan.slow:

@@ -1,25 +1,22 @@
 """Ends runs at random moments, in every way a run can end, and looks at what is left: `python -m tests.stopping.kills`.
 
-    python -m tests.stopping.kills --kills 200 --seed 1
+    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"]
 
-Each run is a process of its own, on the simulated drive in real time. All runs of one call share one store: that the
-next run starts is part of what is tested. After each: the file is sound, every row that was seen committed is there,
-the rows have no gap, how much was lost, and what the record says.
+The drive is a simulated device in a process of its own, over Modbus TCP; when the motor was off is what the device
+says. All runs share one store and one drive: that the next run starts is part of what is tested. After each: the
+database is sound, every row that was seen committed is there, the rows have no gap, how much was lost, and what the
+record says.
 """
 
 import argparse
-import os
 import re
-import resource
-import signal
 import socket
 import sqlite3
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -28,57 +25,12 @@ import numpy as np
 
 from bench.store import Store
 from bench.store.records import Trial
-from tests.stopping import witnessed
+from tests.drivers.conformance.benches import PERIOD_S
+from tests.stopping.bench import OPTIONS, PATIENCE_S, Bench, Service, is_there, kills_bench, wait_for
+from tests.stopping.ways import WAYS, Scene, Way
 
 ALLOWED_LOSS_S = 0.2
-TOKEN = "a-token-for-the-kill-tests"
-PARAMETERS = {"loads_kg": [0.1], "waveforms": ["multisine"], "duration_s": 600, "repeats": 1}
-RUN = ["run", "excitation", "--loads-kg", "0.1", "--waveforms", "multisine", "--duration-s", "600", "--repeats", "1"]
-PATIENCE_S = 120.0
 LONGEST_S = 1.0  # of a run after its first rows
-
-
-@dataclass
-class Bench:
-    """A store in a folder, and the witness of the run under way."""
-
-    folder: Path
-
-    @property
-    def database(self) -> Path:
-        return self.folder / "bench.sqlite"
-
-    @property
-    def witness(self) -> Path:
-        return self.folder / "witness"
-
-    @contextmanager
-    def process(self, arguments: list[str], raise_after_s: float | None = None) -> Iterator["subprocess.Popen[bytes]"]:
-        witnessed.prepare(self.witness)
-        extra = [] if raise_after_s is None else ["--raise-after", str(raise_after_s)]
-        words = [sys.executable, "-m", "tests.stopping.witnessed", str(self.witness), *extra]
-        environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}
-        with (self.folder / "output").open("wb") as output:
-            process = subprocess.Popen(
-                [*words, "--store", str(self.database), *arguments],
-                stdout=output, stderr=output, env=environment, cwd=Path(__file__).parents[2],
-            )  # fmt: skip
-        try:
-            yield process
-        finally:
-            process.kill()
-            process.wait()
-
-    def committed(self) -> int:
-        """Rows of the newest trial, seen from another process."""
-        if not self.database.exists():
-            return 0
-        with closing(sqlite3.connect(f"file:{self.database}?mode=ro", uri=True)) as connection:
-            try:
-                found = connection.execute("SELECT rows, outcome FROM trial ORDER BY id DESC LIMIT 1").fetchone()
-            except sqlite3.OperationalError:  # the tables are being made
-                return 0
-        return found[0] if found and found[1] == "running" else 0
 
 
 @dataclass(frozen=True)
@@ -86,165 +38,126 @@ class Ending:
     """What is left of a run.
 
     Attributes:
-        outcome, reason: of the record.
-        seen: rows that were committed before the end, as somebody else saw them.
-        rows: rows of the record.
-        lost_s: samples that the drive gave and the record lacks [s].
-        powered: whether the drive had power when the process was gone.
+        off_s: how long after the deed the motor was off, by the device [s].
+        lost_s: samples that the record lacks, up to the deed or, where nothing has to be lost, the power-off [s].
         problems: whatever must never be.
     """
 
-    way: str
-    outcome: str
-    reason: str
-    seen: int
-    rows: int
+    way: Way
+    off_s: float
     lost_s: float
-    powered: bool
+    rows: int
     problems: list[str] = field(default_factory=list)
 
 
-@dataclass(frozen=True)
-class Way:
-    """A way to end a run.
+class Killer:
+    """Starts, kills and looks, again and again; a service that survives is used again.
 
-    Attributes:
-        end: called with the process and its bench at a random moment.
-        outcome, reason: what the record has to say; the reason as a pattern.
-        graceful: the process ends by itself: it loses nothing, and takes the power away.
-        over_rest: whether the run is started over REST, in the process of the service.
+    Args:
+        bench: store and drive.
+        seed: of the moments.
     """
 
-    name: str
-    end: Callable[["subprocess.Popen[bytes]", Bench], None]
-    outcome: str
-    reason: str
-    graceful: bool = True
-    over_rest: bool = False
-    raises: bool = False
+    def __init__(self, bench: Bench, seed: int) -> None:
+        self._bench = bench
+        self._generator = np.random.default_rng(seed)
+        self._programs = ExitStack()
+        self._scene: Scene | None = None
+
+    def end_one(self, way: Way) -> Ending:
+        """Start a run, end it at a random moment, and look at what is left."""
+        scene = self._started(way)
+        on_s = self._bench.device.wait_for_power(True, PATIENCE_S)
+        wait_for(lambda: self._bench.committed() > 0 or scene.process.poll() is not None, self._bench)
+        time.sleep(float(self._generator.uniform(0.0, LONGEST_S)))
+        seen = self._bench.committed()
+        loop = scene.loop_process()
+        deed_s = way.deed(scene)
+        wait_for(lambda: self._has_ended(scene), self._bench)
+        off_s = self._bench.device.wait_for_power(False, PATIENCE_S)
+        self._bench.device.side.ask("repair")
+        if not way.survives:
+            self.leave()
+            wait_for(lambda: not is_there(loop), self._bench)  # nobody is left behind
+        else:
+            wait_for(lambda: not self._bench.is_recorded_as_running(), self._bench)
+        return look(self._bench, way, seen, Times(on_s, deed_s, off_s))
+
+    def leave(self) -> None:
+        """End what still runs."""
+        self._programs.close()
+        self._scene = None
+
+    def _started(self, way: Way) -> Scene:
+        if way.served and self._scene is not None and self._scene.service is not None:
+            self._scene.service.start()
+            return self._scene
+        self.leave()
+        words = ["serve", "--port", str(port := free_port())] if way.served else ["run", "excitation", *OPTIONS]
+        process = self._programs.enter_context(self._bench.program(*words))
+        service = Service(process, port) if way.served else None
+        if service is not None:
+            service.wait_until_up(self._bench)
+            service.start()
+        self._scene = Scene(self._bench, process, service)
+        return self._scene
+
+    def _has_ended(self, scene: Scene) -> bool:
+        """Whether the run has, or the program that it was part of."""
+        if scene.process.poll() is not None:
+            return True
+        try:
+            return scene.service is not None and not scene.service.runs()
+        except httpx.TransportError:  # the service is just ending
+            return False
 
 
-def signals(*numbers: signal.Signals) -> Callable[["subprocess.Popen[bytes]", Bench], None]:
-    def send(process: "subprocess.Popen[bytes]", bench: Bench) -> None:
-        for number in numbers:
-            process.send_signal(number)
+@dataclass(frozen=True)
+class Times:
+    """By `time.monotonic()` [s]: when the motor got power, the deed, and when it had none."""
 
-    return send
-
-
-def fill_the_disk(process: "subprocess.Popen[bytes]", bench: Bench) -> None:
-    """No file of the process may grow: what a full disk is to it."""
-    sizes = [file.stat().st_size for file in bench.folder.glob("bench.sqlite*")]
-    resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (max(sizes), resource.RLIM_INFINITY))
+    on_s: float
+    deed_s: float
+    off_s: float
 
 
-def do_nothing(process: "subprocess.Popen[bytes]", bench: Bench) -> None:
-    """It ends by itself."""
-
-
-def lock_for_a_moment(process: "subprocess.Popen[bytes]", bench: Bench) -> None:
-    """Another program writes for a second: the rows wait, and none is lost."""
-    with closing(sqlite3.connect(bench.database, isolation_level=None, timeout=PATIENCE_S)) as other:
-        other.execute("BEGIN IMMEDIATE")
-        time.sleep(1.0)
-        other.execute("ROLLBACK")
-    process.send_signal(signal.SIGTERM)
-
-
-def lock_until_the_end(process: "subprocess.Popen[bytes]", bench: Bench) -> None:
-    """Another program never lets go while the run lasts: the run ends, and its end is written later."""
-    with closing(sqlite3.connect(bench.database, isolation_level=None, timeout=PATIENCE_S)) as other:
-        other.execute("BEGIN IMMEDIATE")
-        process.wait(PATIENCE_S)
-        other.execute("ROLLBACK")
-
-
-KILLED = "killed, crashed, or the power went"
-WAYS = (
-    Way("kill -9 of the run", signals(signal.SIGKILL), "interrupted", KILLED, graceful=False),
-    Way("kill -9 of the service", signals(signal.SIGKILL), "interrupted", KILLED, graceful=False, over_rest=True),
-    Way("Ctrl-C", signals(signal.SIGINT), "stopped", "Ctrl-C at the terminal"),
-    Way("Ctrl-C twice", signals(signal.SIGINT, signal.SIGINT), "stopped", "Ctrl-C at the terminal"),
-    Way("SIGTERM", signals(signal.SIGTERM), "stopped", "SIGTERM at the terminal"),
-    Way("SIGTERM to the service", signals(signal.SIGTERM), "stopped", "the service was ended", over_rest=True),
-    Way("disk full", fill_the_disk, "failed", "disk|full"),
-    Way("exception in the trial", do_nothing, "failed", "the witness has seen enough", raises=True),
-    Way("locked for a second", lock_for_a_moment, "stopped", "SIGTERM at the terminal"),
-    Way("locked until the end", lock_until_the_end, "failed", "locked|does not keep up"),
-)
-# graceful, but what comes after the disk is full, or the database locked for good, cannot be kept
-LOSES = ("disk full", "locked until the end")
-
-
-def end_one(bench: Bench, way: Way, generator: np.random.Generator) -> Ending:
-    """Start a run, end it at a random moment, and look at what is left."""
-    moment_s = float(generator.uniform(0.0, LONGEST_S))
-    port = free_port()
-    arguments = ["serve", "--port", str(port)] if way.over_rest else [*RUN, "--pace", "real-time"]
-    with bench.process(arguments, raise_after_s=0.3 + moment_s if way.raises else None) as process:
-        if way.over_rest:
-            start_over_rest(port)
-        wait_for(lambda: bench.committed() > 0 or process.poll() is not None, bench)
-        time.sleep(moment_s)
-        seen = bench.committed()
-        way.end(process, bench)
-        process.wait(PATIENCE_S)
-    return look(bench, way, seen)
-
-
-def look(bench: Bench, way: Way, seen: int) -> Ending:
+def look(bench: Bench, way: Way, seen: int, times: Times) -> Ending:
     """What is left, and everything about it that must not be."""
     with closing(sqlite3.connect(bench.database)) as connection:
         sound = connection.execute("PRAGMA integrity_check").fetchone()[0]
-    witnessed_s, powered = witnessed.read(bench.witness)
     with Store.open(f"sqlite:///{bench.database}") as store:
         (experiment,) = store.experiments(limit=1)
         trial = store.trials(experiment.id)[-1]
-        time_s = store.samples(trial.id, ["time_s"])["time_s"]
-    lost_s = witnessed_s - (float(time_s[-1]) if len(time_s) else 0.0)
+        samples = store.samples(trial.id, ["time_s", "enabled"])
+    off_s, lost_s = times.off_s - times.deed_s, _lost_s(way, samples, times)
     problems = [] if sound == "ok" else [f"integrity_check says {sound}"]
-    problems += list(wrong_in_record(way, trial, time_s, seen))
-    if way.graceful and powered:
-        problems.append("the drive was left with power")
-    period_s = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
-    allowed_s = ALLOWED_LOSS_S if not way.graceful else 1.5 * period_s
-    if way.name not in LOSES and lost_s > allowed_s + 1e-9:
-        problems.append(f"{lost_s:.3f} s of samples are lost")
-    return Ending(way.name, trial.outcome, trial.reason, seen, trial.rows, lost_s, powered, problems)
+    problems += list(_wrong_in_record(way, trial, samples["time_s"], seen))
+    if off_s > way.off_s:
+        problems.append(f"the motor was off after {off_s:.3f} s; stated are {way.off_s:.3f} s")
+    if lost_s > ALLOWED_LOSS_S:
+        problems.append(f"{lost_s:.3f} s of samples are lost; allowed are {ALLOWED_LOSS_S} s")
+    return Ending(way, off_s, lost_s, trial.rows, problems)
 
 
-def wrong_in_record(way: Way, trial: Trial, time_s: np.ndarray, seen: int) -> Iterator[str]:
+def _lost_s(way: Way, samples: dict[str, np.ndarray], times: Times) -> float:
+    """Samples that the record lacks [s]. Its first row with power is from the moment when the device had power."""
+    time_s, enabled = samples["time_s"], samples["enabled"]
+    if not enabled.any():
+        return max(times.deed_s - times.on_s, 0.0)
+    last_s = times.on_s + time_s[-1] - time_s[np.flatnonzero(enabled)[0]]
+    until_s = times.off_s if way.keeps_all else times.deed_s
+    return max(float(until_s - last_s), 0.0)  # a joint that brakes without power is recorded, too
+
+
+def _wrong_in_record(way: Way, trial: Trial, time_s: np.ndarray, seen: int) -> Iterator[str]:
     if (trial.outcome, bool(re.search(way.reason, trial.reason))) != (way.outcome, True):
         yield f"the record says {trial.outcome}: {trial.reason}"
     if trial.rows != len(time_s) or trial.rows < seen:
         yield f"{seen} rows were seen committed; {trial.rows} are counted, {len(time_s)} are there"
-    steps = np.diff(time_s)
-    if len(steps) and (steps.min() <= 0.0 or steps.max() > 1.5 * np.median(steps)):
-        yield f"the rows have a gap: {steps.min():g} .. {steps.max():g} s"
-
-
-def start_over_rest(port: int) -> None:
-    url, headers = f"http://127.0.0.1:{port}/api/v1", {"Authorization": f"Bearer {TOKEN}"}
-    deadline_s = time.monotonic() + PATIENCE_S
-    body = {"kind": "excitation", "parameters": PARAMETERS, "pace": "real-time"}
-    while True:
-        try:
-            answer = httpx.post(f"{url}/experiments", json=body, headers=headers, timeout=PATIENCE_S)
-            break
-        except httpx.ConnectError:
-            if time.monotonic() > deadline_s:
-                raise
-            time.sleep(0.05)
-    if answer.status_code != 201:
-        raise RuntimeError(f"the next start did not work: {answer.text}")
-
-
-def wait_for(condition: Callable[[], bool], bench: Bench) -> None:
-    deadline_s = time.monotonic() + PATIENCE_S
-    while not condition():
-        if time.monotonic() > deadline_s:
-            raise RuntimeError(f"nothing was recorded in {PATIENCE_S:g} s: {(bench.folder / 'output').read_text()}")
-        time.sleep(0.01)
+    if trial.results.get("overruns") == 0 and len(time_s) > 1 and np.diff(time_s).max() > 3.0 * PERIOD_S:
+        yield f"the rows have a gap of {np.diff(time_s).max():.3f} s"
+    if len(time_s) > 1 and np.diff(time_s).min() <= 0.0:
+        yield "the rows are not in order"
 
 
 def free_port() -> int:
@@ -252,29 +165,38 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
+def table(endings: list[Ending]) -> Iterator[str]:
+    """One line per way."""
+    yield f"{'way':28} |  n | motor off: worst, stated [s] | samples lost: worst, allowed [s] | failures"
+    for way in WAYS:
+        found = [ending for ending in endings if ending.way is way]
+        if found:
+            off_s, lost_s = (max(getattr(one, name) for one in found) for name in ("off_s", "lost_s"))
+            failures = sum(bool(one.problems) for one in found)
+            yield (
+                f"{way.name:28} | {len(found):2} | {off_s:16.3f}, {way.off_s:9.3f} "
+                f"| {lost_s:20.3f}, {ALLOWED_LOSS_S:9.3f} | {failures:8}"
+            )
+
+
 def main() -> None:
     """Kill, and print what was left."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--way", action="append", help="only this one; repeatable")
     arguments = parser.parse_args()
-    generator = np.random.default_rng(arguments.seed)
+    ways = [way for way in WAYS if not arguments.way or way.name in arguments.way]
     endings = []
-    with tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder:
-        bench = Bench(Path(folder))
+    with tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder, kills_bench(Path(folder)) as bench:
+        killer = Killer(bench, arguments.seed)
         for number in range(arguments.kills):
-            ending = end_one(bench, WAYS[number % len(WAYS)], generator)
+            ending = killer.end_one(ways[number % len(ways)])
             endings.append(ending)
             for problem in ending.problems:
-                print(f"run {number + 1}, {ending.way}: {problem}", flush=True)  # noqa: T201
-    print(f"{'way':24} | runs | wrong | samples lost [s]: median, largest (allowed)")  # noqa: T201
-    for way in WAYS:
-        found = [ending for ending in endings if ending.way == way.name]
-        if found:
-            lost = [ending.lost_s for ending in found]
-            allowed = "-" if way.name in LOSES else f"{ALLOWED_LOSS_S:g}" if not way.graceful else "one period"
-            wrong = sum(bool(ending.problems) for ending in found)
-            print(f"{way.name:24} | {len(found):4} | {wrong:5} | {np.median(lost):.3f}, {max(lost):.3f} ({allowed})")  # noqa: T201
+                print(f"run {number + 1}, {ending.way.name}: {problem}", flush=True)  # noqa: T201
+        killer.leave()
+    print("\n".join(table(endings)))  # noqa: T201
     sys.exit(any(ending.problems for ending in endings))
 
 

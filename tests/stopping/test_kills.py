@@ -1,25 +1,30 @@
 """A few of the ways a run can end; `make kills` goes through all of them many times."""
 
 import os
+from collections.abc import Iterator
 
-import numpy as np
 import pytest
 
-from tests.stopping.kills import WAYS, Bench, end_one
+from tests.stopping.bench import kills_bench
+from tests.stopping.kills import Killer
+from tests.stopping.ways import WAYS
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-CHOSEN = ("kill -9 of the run", "kill -9 of the service", "disk full")
+CHOSEN = ("stop by REST", "limit trip", "drive gone", "kill -9 of the loop", "kill -9 of the service")
 
 
 @pytest.fixture(scope="module")
-def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
-    """One store for all: that the next run starts is part of the test."""
-    return Bench(tmp_path_factory.mktemp("kills"))
+def killer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Killer]:
+    """One store and one drive for all: that the next run starts is part of the test."""
+    with kills_bench(tmp_path_factory.mktemp("kills")) as bench:
+        made = Killer(bench, seed=1)
+        yield made
+        made.leave()
 
 
-@pytest.mark.timeout(400)  # each starts a process of its own, which a loaded machine takes its time for
+@pytest.mark.timeout(300)  # processes take their time to start where others want the machine, too
 @pytest.mark.parametrize("way", [way for way in WAYS if way.name in CHOSEN], ids=lambda way: way.name)
-def test_what_was_committed_is_there_and_the_record_says_why(bench: Bench, way) -> None:
-    ending = end_one(bench, way, np.random.default_rng(len(way.name)))
+def test_what_was_committed_is_there_the_motor_off_and_the_record_says_why(killer: Killer, way) -> None:
+    ending = killer.end_one(way)
     assert ending.problems == []
     assert ending.rows > 0

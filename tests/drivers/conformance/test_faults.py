@@ -21,7 +21,7 @@ from bench.loop import Outcome
 from bench.runner import Runner
 from bench.stop_request import StopRequest
 from bench.store import Store
-from drivers.contract import Command, Mode
+from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError, DriveError
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured, run
 
@@ -261,4 +261,5 @@ def test_a_host_that_is_killed_in_mid_motion(wired, tmp_path):
         newest = store.experiments()[0]
         assert (newest.kind, newest.outcome) == ("steps", "interrupted")
     with wired.opened() as drive:
+        assert drive.exchange(OFF).status is Status.DISABLED, "the next start would need somebody to clear a fault"
         opens_again(wired, drive)

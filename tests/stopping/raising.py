@@ -1,0 +1,55 @@
+"""`friction-bench` with a drive that raises as soon as a file is there: `python -m tests.stopping.raising FILE ...`.
+
+An error of no known kind, in the middle of a trial: what a fault of our own software would look like.
+"""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from drivers.contract import Command, Sample
+
+
+class RaisingDrive:
+    """A drive; everything but the raising is its own."""
+
+    def __init__(self, drive: Any, file: Path) -> None:
+        self._drive = drive
+        self._file = file
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._drive, name)
+
+    def exchange(self, command: Command) -> Sample:
+        if self._file.exists():
+            self._file.unlink()
+            raise ZeroDivisionError("a fault of the software")
+        found: Sample = self._drive.exchange(command)
+        return found
+
+
+def install(file: Path) -> None:
+    """Give every runner of this process such drives."""
+    from bench import station
+    from bench.drive_factory import Equipment, make_equipment
+
+    def raising(*words: Any) -> Equipment:
+        found = make_equipment(*words)
+        return Equipment(RaisingDrive(found.drive, file), found.technician)  # type: ignore[arg-type]
+
+    station.make_equipment = raising
+
+
+def main() -> None:
+    """The command."""
+    file = Path(sys.argv[1])
+    sys.argv = ["friction-bench", *sys.argv[2:]]
+    if "run" in sys.argv:  # the control loop of a service is elsewhere
+        install(file)
+    from bench.cli import main as command
+
+    command()
+
+
+if __name__ == "__main__":
+    main()
