@@ -73,6 +73,14 @@ def runner(remote: RemoteRunner) -> Iterator[RemoteRunner]:
     assert remote.wait(PATIENCE_S)
 
 
+def set_going(runner: RemoteRunner) -> int:
+    """Start something that takes a while, and return its id when its first rows have been recorded."""
+    before = runner.live().last_row
+    experiment_id = runner.start("steps", {"repeats": 3}, pace="real-time")
+    wait_for(lambda: len(runner.live(before).rows) > 20)
+    return experiment_id
+
+
 def process_of(runner: RemoteRunner) -> int:
     return runner._supervisor.child().process_id
 
@@ -116,8 +124,7 @@ def test_an_answer_to_what_is_not_asked(runner):
 
 
 def test_one_at_a_time_and_stop_says_why(runner, store):
-    experiment_id = runner.start("steps", {"repeats": 3}, pace="real-time")
-    wait_for(lambda: len(runner.live().rows) > 20)
+    experiment_id = set_going(runner)
     with pytest.raises(BusyError, match=f"experiment {experiment_id}"):
         runner.start("steps", {})
     runner.stop("cable is caught")
@@ -128,8 +135,7 @@ def test_one_at_a_time_and_stop_says_why(runner, store):
 
 
 def test_stop_passes_a_way_that_is_blocked(runner):
-    runner.start("steps", {"repeats": 3}, pace="real-time")
-    wait_for(lambda: len(runner.live().rows) > 20)
+    set_going(runner)
     with runner._supervisor.child()._sending:  # no message gets through
         runner.stop("through the wall")
         assert runner.wait(PATIENCE_S)
@@ -148,7 +154,7 @@ def test_live_rows_are_the_recorded_ones_and_start_over(runner, store):
     assert runner.wait(PATIENCE_S)
     before = runner.live().last_row
     experiment_id = runner.start("steps", {"repeats": 1}, pace="real-time")
-    wait_for(lambda: len(runner.live().rows) > 100)
+    wait_for(lambda: len(runner.live(before).rows) > 100)
     rows = runner.live(before)
     runner.stop()
     assert runner.wait(PATIENCE_S)
@@ -158,8 +164,7 @@ def test_live_rows_are_the_recorded_ones_and_start_over(runner, store):
 
 
 def test_kill_of_the_bench_process_is_said_and_the_next_start_works(runner, store):
-    experiment_id = runner.start("steps", {"repeats": 3}, pace="real-time")
-    wait_for(lambda: len(runner.live().rows) > 20)
+    experiment_id = set_going(runner)
     killed = process_of(runner)
     os.kill(killed, signal.SIGKILL)
     assert runner.wait(PATIENCE_S)
@@ -180,8 +185,7 @@ def test_kill_of_the_bench_process_is_said_and_the_next_start_works(runner, stor
 
 
 def test_sigterm_to_the_bench_process_stops_the_joint_first(runner, store):
-    experiment_id = runner.start("steps", {"repeats": 3}, pace="real-time")
-    wait_for(lambda: len(runner.live().rows) > 20)
+    experiment_id = set_going(runner)
     os.kill(process_of(runner), signal.SIGTERM)
     assert runner.wait(PATIENCE_S)
     record = store.experiment(experiment_id)
