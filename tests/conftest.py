@@ -15,7 +15,16 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 HERE = Path(__file__).parent
 # devices, services and browsers in processes of their own: they run one after the other, nothing beside them
-WALL_CLOCK = ("browser", "devices", "drivers", "service", "stopping", "bench/test_clock.py", "cli/test_serve.py")
+WALL_CLOCK = (
+    "browser",
+    "devices",
+    "drivers",
+    "service",
+    "stopping",
+    "bench/test_bench_process.py",
+    "bench/test_clock.py",
+    "cli/test_serve.py",
+)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -80,7 +80,9 @@ async def live(
     )
 
 
-async def _events(request: Request, runner: BenchControl, lease: Lease, after_row: int, limit: int) -> AsyncIterator[str]:
+async def _events(
+    request: Request, runner: BenchControl, lease: Lease, after_row: int, limit: int
+) -> AsyncIterator[str]:
     simulated = is_simulated(runner.configuration)
     shown = ""
     period = 0
