@@ -40,6 +40,7 @@ benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo,
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m tests.sim_backend.rates
 	$(BIN)/python -m tests.store.rates
+	$(BIN)/python -m tests.service.rates
 	$(BIN)/python -m tests.drivers.rates
 
 kills: $(STAMP)  ## 200 runs ended at random moments, in every way, on a drive in a process of its own: what is left of each

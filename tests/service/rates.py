@@ -1,0 +1,230 @@
+"""What serving costs the control loop: `python -m tests.service.rates`. Part of `make benchmark`, not a test.
+
+    python -m tests.service.rates [--rounds 4] [--seconds 8]
+
+One trial at 1 kHz on the simulated drive, again and again, in turn alone and beside 50 readers, an export and a
+diagnosis that are asked for without a pause. Readers are in a process of their own, on the same machine. Printed:
+cycles lost, and how late cycles began, of both, and the ratio of each pair of neighbours.
+"""
+
+import argparse
+import asyncio
+import multiprocessing
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing.synchronize import Event
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import httpx
+import numpy as np
+import tomli_w
+
+from bench.configuration import default_configuration
+from tests.service import timed_process
+from tests.service.recorded_joint import recording_set_zip
+
+TOKEN = "a-token-for-the-benchmark"
+PERIOD_S = 0.001
+STREAMS, ASKING = 30, ("/bench", "/trials?limit=100")  # 30 watch; 10 each ask for these
+ASKED_EVERY_S = 0.5
+ASKED_RATIO = 1.05
+ROOT = Path(__file__).parents[2]
+
+
+class Round(NamedTuple):
+    """One trial.
+
+    Attributes:
+        late_s: how late each cycle began.
+        lost: cycles that were lost.
+        served: answers given meanwhile.
+    """
+
+    late_s: np.ndarray
+    lost: int
+    served: int
+
+
+async def _watch(port: int, served: Any) -> None:
+    """Read the live stream, as a browser does."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    writer.write(f"GET /api/v1/live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+    while data := await reader.read(65536):
+        served.value += data.count(b"event: ")
+
+
+async def _ask(client: httpx.AsyncClient, path: str, pause_s: float, served: Any) -> None:
+    while True:
+        (await client.get(path)).raise_for_status()
+        served.value += 1
+        await asyncio.sleep(pause_s)
+
+
+async def _read_all(port: int, paths: list[str], served: Any, over: Event) -> None:
+    headers = {"Authorization": f"Bearer {TOKEN}"}
+    limits = httpx.Limits(max_connections=100)
+    base = f"http://127.0.0.1:{port}/api/v1"
+    async with httpx.AsyncClient(base_url=base, headers=headers, timeout=120, limits=limits) as client:
+        work = [_watch(port, served) for _ in range(STREAMS)]
+        work += [_ask(client, path, ASKED_EVERY_S, served) for path in ASKING for _ in range(10)]
+        work += [_ask(client, path, 0.0, served) for path in paths]
+        tasks = [asyncio.ensure_future(one) for one in work]
+        while not over.is_set():
+            await asyncio.sleep(0.05)
+            for task in tasks:
+                if task.done():
+                    task.result()  # a reader that was refused shows nothing
+        for task in tasks:
+            task.cancel()
+
+
+def _readers(port: int, paths: list[str], served: Any, over: Event) -> None:
+    asyncio.run(_read_all(port, paths, served, over))
+
+
+class Bench:
+    """The service under test, and its client."""
+
+    def __init__(self, port: int, folder: Path) -> None:
+        headers = {"Authorization": f"Bearer {TOKEN}"}
+        self._port, self._folder = port, folder
+        self._client = httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", headers=headers, timeout=120)
+        self._long: list[str] = []
+
+    def prepare(self, seconds: float) -> None:
+        """What is exported, and what is diagnosed."""
+        exported = self.trial(seconds)
+        content, kind = recording_set_zip(), {"Content-Type": "application/zip"}
+        imported = self._post("/recording-sets?name=known", content=content, headers=kind)["experiment_id"]
+        study = self._post("/studies", json={"name": "known", "experiment_ids": [imported]})["study_id"]
+        self._long = [f"/experiments/{exported}/recording-set", f"/studies/{study}/diagnose"]
+
+    def trial(self, seconds: float) -> int:
+        """Run it to its end."""
+        parameters = {"loads_kg": [0.05], "waveforms": ["multisine"], "duration_s": seconds, "repeats": 1}
+        body = {"kind": "excitation", "parameters": parameters, "pace": "real-time"}
+        experiment_id = int(self._post("/experiments", json=body)["experiment_id"])
+        while self._client.get("/bench").json()["state"] == "running":
+            time.sleep(0.5)
+        found = self._client.get(f"/experiments/{experiment_id}").json()
+        if found["outcome"] != "completed":
+            raise RuntimeError(f"the trial {found['outcome']}: {found['reason']}")
+        self.scheduling = found["provenance"]["control_loop"]["scheduling"]
+        return experiment_id
+
+    def measured(self, seconds: float, beside: bool) -> Round:
+        """A trial, alone or not."""
+        served = multiprocessing.get_context("spawn").Value("q", 0)
+        with self._serving(served) if beside else _nothing():
+            before = served.value
+            experiment_id = self.trial(seconds)
+            answers = served.value - before
+        (trial,) = self._client.get("/trials", params={"experiment_id": experiment_id}).json()["items"]
+        return Round(timed_process.read(self._folder)[-1], trial["results"]["overruns"], answers)
+
+    @contextmanager
+    def _serving(self, served: Any) -> Iterator[None]:
+        context = multiprocessing.get_context("spawn")
+        over = context.Event()
+        readers = context.Process(target=_readers, args=(self._port, self._long, served, over))
+        readers.start()
+        try:
+            while served.value < STREAMS:
+                time.sleep(0.1)
+            yield
+        finally:
+            over.set()
+            readers.join()
+        if readers.exitcode:
+            raise RuntimeError("the readers were not served; the run shows nothing")
+
+    def _post(self, path: str, **content: Any) -> Any:
+        answer = self._client.post(path, **content)
+        if answer.is_error:
+            raise RuntimeError(f"{path}: {answer.text}")
+        return answer.json()
+
+
+@contextmanager
+def _nothing() -> Iterator[None]:
+    yield
+
+
+@contextmanager
+def service(folder: Path) -> Iterator[Bench]:
+    """`friction-bench serve` in a process of its own, whose control loop notes how late it is."""
+    values = default_configuration().model_dump(mode="json", exclude_none=True, exclude={"store"})
+    values["control"]["period_s"] = PERIOD_S
+    (folder / "bench.toml").write_text(tomli_w.dumps(values))
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    options = ["--config", str(folder / "bench.toml"), "--store", str(folder / "bench.sqlite")]
+    command = [sys.executable, "-m", "tests.service.timed_process", str(folder), *options, "serve", "--port", str(port)]
+    environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}
+    process = subprocess.Popen(command, env=environment, cwd=ROOT, stdout=subprocess.DEVNULL)
+    try:
+        _wait_until_up(port)
+        yield Bench(port, folder)
+    finally:
+        process.send_signal(signal.SIGTERM)
+        process.wait(60)
+
+
+def _wait_until_up(port: int) -> None:
+    deadline_s = time.monotonic() + 60.0
+    while True:
+        try:
+            httpx.get(f"http://127.0.0.1:{port}/api/v1/bench")
+            return
+        except httpx.TransportError:
+            if time.monotonic() > deadline_s:
+                raise
+            time.sleep(0.1)
+
+
+def report(alone: list[Round], beside: list[Round]) -> Iterator[str]:
+    """The table, and the ratios."""
+    yield f"{'trial at 1 kHz':22} | cycles | lost | late [us]: median |  p99 | p99.9 |   max | answers served"
+    for name, rounds in (("alone", alone), ("beside 50 readers ...", beside)):
+        late_us = 1e6 * np.concatenate([one.late_s for one in rounds])
+        p50, p99, p999 = np.percentile(late_us, (50, 99, 99.9))
+        lost, served = sum(one.lost for one in rounds), sum(one.served for one in rounds)
+        yield (
+            f"{name:22} | {len(late_us):6} | {lost:4} | {p50:17.1f} | {p99:4.0f} | {p999:5.0f} "
+            f"| {late_us.max():5.0f} | {served}"
+        )
+    p99_s = [[float(np.percentile(one.late_s, 99)) for one in rounds] for rounds in (alone, beside)]
+    pairs = [with_readers / without for without, with_readers in zip(*p99_s, strict=True)]
+    ratio = float(np.median(pairs))
+    lost = sum(one.lost for one in beside)
+    met = "" if ratio <= ASKED_RATIO and not lost else "   NOT MET"
+    yield f"p99 beside / alone, pair by pair: {', '.join(f'{one:.2f}' for one in pairs)}; median {ratio:.2f}"
+    yield f"asked: no cycle lost, p99 at most x {ASKED_RATIO}; measured: {lost} lost, x {ratio:.2f}{met}"
+
+
+def main() -> None:
+    """Measure, in one run, and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--seconds", type=float, default=8.0)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="friction-bench-rates-") as folder, service(Path(folder)) as bench:
+        bench.prepare(arguments.seconds)
+        rounds = [
+            (bench.measured(arguments.seconds, False), bench.measured(arguments.seconds, True))
+            for _ in range(arguments.rounds)
+        ]
+        print(f"control loop: a process of its own, {bench.scheduling}; {os.cpu_count()} cores")
+    print("\n".join(report([one for one, _ in rounds], [two for _, two in rounds])))
+
+
+if __name__ == "__main__":
+    main()
