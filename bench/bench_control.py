@@ -18,7 +18,13 @@ class BenchControl(Protocol):
         """Of the bench."""
 
     def start(
-        self, kind: str, parameters: dict[str, Any], operator: str = "", note: str = "", pace: Pace | None = None
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        operator: str = "",
+        note: str = "",
+        pace: Pace | None = None,
+        hung: tuple[float, bool] | None = None,
     ) -> int:
         """Start an experiment; it moves the joint. Returns the id of its record; see `Runner.start`."""
 
@@ -33,6 +39,12 @@ class BenchControl(Protocol):
 
     def stop(self, reason: str = "") -> None:
         """Stop what runs, within one control cycle. Never waits: safe in a signal handler."""
+
+    def pause(self) -> None:
+        """Let what runs stand still after its present trial, with the power off; nothing where nothing runs."""
+
+    def resume(self) -> None:
+        """Let what was paused go on: the joint moves."""
 
     def wait(self, timeout_s: float | None = None) -> bool:
         """Wait until nothing runs; False where that takes longer than `timeout_s`."""

@@ -5,7 +5,7 @@ else can reach. STOP is no message: it goes by the stop line, past everything he
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from bench.configuration import BenchConfiguration
 from bench.live import LiveRows
@@ -13,6 +13,9 @@ from bench.runner import RunnerStatus
 
 VERSION = b"friction-bench bench process, 1"
 """First on the line from both ends, as bytes. A service outlives an update of its files: then these differ."""
+
+Method = Literal["start", "answer", "pause", "resume"]
+"""Of the runner, called in the bench process; the others a service answers from what it has seen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,13 +31,13 @@ class Call:
 
     Attributes:
         number: comes back with the reply.
-        method: one of `CALLS`.
+        method: of the runner.
         arguments: by name.
         stops: how often STOP had been asked for before the call.
     """
 
     number: int
-    method: str
+    method: Method
     arguments: dict[str, Any]
     stops: int
 
@@ -93,8 +96,5 @@ class Seen:
     rows: LiveRows
 
 
-CALLS = ("start", "answer")
-"""Methods of the runner that a service calls; the others it answers from what it has seen."""
-
-SLOW_CALLS = ("start",)
-"""Those that wait for a drive or a disk; they take turns, and the others do not wait for them."""
+SLOW: tuple[Method, ...] = ("start",)
+"""Methods that wait for a drive or a disk; they take turns, and the others do not wait for them."""

@@ -35,12 +35,16 @@ class Mirror:
         self._change(seen.status, seen.busy)
 
     def lose(self, reason: str) -> bool:
-        """The process has ended; True where that has interrupted an experiment."""
+        """The process has ended; True where that has interrupted an experiment. Nothing is free before `release`."""
         running = self.status.outcome == "running"
         self._new_process = True
         ended = replace(self.status, outcome="interrupted", reason=reason, prompt=None) if running else self.status
-        self._change(ended, busy=False)
+        self._change(ended, busy=self._busy)
         return running
+
+    def release(self) -> None:
+        """Its records are in order: who waited may go on."""
+        self._change(self.status, busy=False)
 
     def wait(self, timeout_s: float | None) -> bool:
         """Wait until nothing runs; False where that takes longer than `timeout_s`."""

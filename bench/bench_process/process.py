@@ -16,7 +16,7 @@ from typing import Any
 
 from bench.bench_process import scheduling
 from bench.bench_process.failures import failure_of
-from bench.bench_process.messages import SLOW_CALLS, VERSION, Call, Hello, Reply
+from bench.bench_process.messages import SLOW, VERSION, Call, Hello, Reply
 from bench.bench_process.publisher import GONE, Publisher
 from bench.bench_process.stop_line import LineStop, StopLine
 from bench.configuration import BenchConfiguration
@@ -63,7 +63,7 @@ class BenchProcess:
             message = self._receive()
             if isinstance(message, Call) and not self.ended:
                 self._publisher.begin_call(message.number)
-                self._slow_calls.put(message) if message.method in SLOW_CALLS else self._make(message)
+                self._slow_calls.put(message) if message.method in SLOW else self._make(message)
         last = threading.Timer(LAST_S, os._exit, (1,))
         last.daemon = True
         last.start()
@@ -102,8 +102,8 @@ class BenchProcess:
             self._make(call)
 
     def _make(self, call: Call) -> None:
-        method: Callable[..., Any] = getattr(self._runner, call.method)
         try:
+            method: Callable[..., Any] = getattr(self._runner, call.method)
             reply: object = Reply(call.number, method(**call.arguments))
         except BaseException as error:
             reply = failure_of(call.number, error)

@@ -6,8 +6,8 @@ from typing import Any
 
 from bench.bench_process.calls import Calls
 from bench.bench_process.child import MODULE, Child
-from bench.bench_process.errors import NotBegunError
-from bench.bench_process.messages import Call, Hello
+from bench.bench_process.errors import BenchProcessError, NotBegunError
+from bench.bench_process.messages import Call, Hello, Method
 from bench.bench_process.mirror import Mirror
 from bench.bench_process.stop_line import StopLine
 from bench.bench_process.supervisor import Supervisor
@@ -42,14 +42,21 @@ class RemoteRunner:
         )
 
     def start(
-        self, kind: str, parameters: dict[str, Any], operator: str = "", note: str = "", pace: Pace | None = None
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        operator: str = "",
+        note: str = "",
+        pace: Pace | None = None,
+        hung: tuple[float, bool] | None = None,
     ) -> int:
         """Start an experiment; it moves the joint. See `Runner.start`.
 
         Raises:
             BenchProcessError: besides what `Runner.start` raises: the process cannot be started, or has ended.
         """
-        arguments = {"kind": kind, "parameters": parameters, "operator": operator, "note": note, "pace": pace}
+        who = {"operator": operator, "note": note}
+        arguments = {"kind": kind, "parameters": parameters, **who, "pace": pace, "hung": hung}
         experiment_id: int = self._call("start", arguments)
         return experiment_id
 
@@ -76,6 +83,14 @@ class RemoteRunner:
         """
         self._line.ask(reason)
 
+    def pause(self) -> None:
+        """Let what runs stand still after its present trial, with the power off; nothing where nothing runs."""
+        self._tell_running("pause")
+
+    def resume(self) -> None:
+        """Let what was paused go on: the joint moves."""
+        self._tell_running("resume")
+
     def wait(self, timeout_s: float | None = None) -> bool:
         """Wait until nothing runs; False where that takes longer than `timeout_s`."""
         return self._mirror.wait(timeout_s)
@@ -88,14 +103,19 @@ class RemoteRunner:
             os.close(self._stop_file)
             self._stop_file = None
 
-    def _call(self, method: str, arguments: dict[str, Any]) -> Any:
+    def _tell_running(self, method: Method) -> None:
+        if self.status().outcome == "running":
+            with suppress(BenchProcessError):  # what it was meant for has ended with the process
+                self._call(method, {})
+
+    def _call(self, method: Method, arguments: dict[str, Any]) -> Any:
         stops = self._line.settled()  # what is asked for from here on counts
         for _ in range(TRIES - 1):
             with suppress(NotBegunError):  # it was just ending: another process is there next time
                 return self._call_once(method, arguments, stops)
         return self._call_once(method, arguments, stops)
 
-    def _call_once(self, method: str, arguments: dict[str, Any], stops: int) -> Any:
+    def _call_once(self, method: Method, arguments: dict[str, Any], stops: int) -> Any:
         child = self._supervisor.child()
         number, answer = self._calls.open()
         try:

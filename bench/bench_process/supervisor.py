@@ -121,7 +121,7 @@ class Supervisor:
         watchdog = self._mirror.status.description
         within = f" within {watchdog.watchdog_s:g} s" if watchdog is not None else ""
         reason = f"the bench process {how} while it ran; the drive's own watchdog stops the motor{within}"
-        interrupted = self._mirror.lose(reason)
-        self._calls.fail(said, f"the bench process {how}; the next start starts it again")
-        if interrupted:
+        if self._mirror.lose(reason):
             self._lost(reason)
+        self._mirror.release()
+        self._calls.fail(said, f"the bench process {how}; the next start starts it again")

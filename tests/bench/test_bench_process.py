@@ -142,6 +142,15 @@ def test_stop_passes_a_way_that_is_blocked(runner):
     assert runner.status().outcome == "stopped"
 
 
+def test_a_pause_is_honoured_and_said(runner):
+    set_going(runner)
+    runner.pause()
+    wait_for(lambda: runner.status().pausing == "asked")
+    runner.resume()
+    wait_for(lambda: runner.status().pausing == "")
+    assert runner.status().outcome == "running"
+
+
 def test_a_stop_from_before_does_not_count(runner):
     runner.stop("too early")
     runner.start("steps", {"repeats": 1}, pace="fast")
