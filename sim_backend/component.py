@@ -1,10 +1,12 @@
 """What every component of the plant shares: quantities with units, checked when made."""
 
 from dataclasses import MISSING, dataclass, field, fields
-from math import isfinite
 from typing import Any
 
 from sim_backend.errors import ParameterError
+
+# no quantity of a joint in SI is beyond; far within what a float holds, so that no product of a few overflows
+SMALLEST, LARGEST = 1e-15, 1e12
 
 
 def quantity(
@@ -32,7 +34,7 @@ def quantity(
 
 @dataclass(frozen=True, kw_only=True)
 class Component:
-    """One part of the plant. Refuses values that are not finite or are outside their range."""
+    """One part of the plant. Refuses values that are not finite, or outside their range."""
 
     def __post_init__(self) -> None:
         for item in fields(self):
@@ -41,10 +43,14 @@ class Component:
 
     def _check(self, name: str, range_: Any) -> None:
         value = getattr(self, name)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, int | float):
             self.refuse(name, "a finite number is wanted")
+        if not abs(value) <= LARGEST:
+            self.refuse(name, f"a finite number is wanted, at most {LARGEST:g} in size")
         if range_["above"] is not None and not value > range_["above"]:
             self.refuse(name, f"must be greater than {range_['above']:g}")
+        if range_["above"] == 0 and value < SMALLEST:
+            self.refuse(name, f"too small to be told from 0; at least {SMALLEST:g} is wanted")
         if range_["at_least"] is not None and not value >= range_["at_least"]:
             self.refuse(name, f"must be at least {range_['at_least']:g}")
         if range_["at_most"] is not None and not value <= range_["at_most"]:

@@ -22,6 +22,16 @@ class EndStops(Surface):
         if self.upper_rad <= 0.0:
             self.refuse("upper_rad", "the arm rests at angle 0: the upper stop must be above 0")
 
+    def check_reach(self, wall_rad: float) -> None:
+        """Refuse stops that keep the arm from a wall.
+
+        Raises:
+            ParameterError: the wall lies at a stop, or beyond.
+        """
+        name = "upper_rad" if wall_rad > 0.0 else "lower_rad"
+        if not self.lower_rad < wall_rad < self.upper_rad:
+            self.refuse(name, f"the wall at {wall_rad:g} rad lies beyond it, and the arm never gets there")
+
 
 @jitted
 def stop_depth(stops: EndStops, angle_rad: float) -> float:

@@ -18,6 +18,16 @@ class Arm(Component):
     mass_kg: float = quantity("kg", at_least=0, default=0.0)
     centre_of_mass_m: float = quantity("m from the axis", default=0.0)
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        least_kg_m2 = self.mass_kg * self.centre_of_mass_m**2
+        if self.inertia_kg_m2 < least_kg_m2:
+            self.refuse(
+                "inertia_kg_m2",
+                f"a mass of {self.mass_kg:g} kg at {self.centre_of_mass_m:g} m has at least {least_kg_m2:.3g} kg m2 "
+                "about the axis (Steiner)",
+            )
+
 
 @dataclass(frozen=True, kw_only=True)
 class Load(Component):

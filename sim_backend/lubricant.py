@@ -16,9 +16,9 @@ class Lubricant(Component):
     b about 1000 K and T0 about -100 degC make a mineral oil: near 20 degC it loses 7 % per kelvin. b = 0 is off.
     """
 
-    vogel_k: float = quantity("K", at_least=0, default=0.0)
+    vogel_k: float = quantity("K", at_least=0, at_most=5000, default=0.0)
     divergence_c: float = quantity("degC", at_least=-273.15, default=-100.0)
-    reference_c: float = quantity("degC", default=25.0)
+    reference_c: float = quantity("degC", at_least=-273.15, at_most=1000, default=25.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -37,7 +37,7 @@ class Operator(Component):
     reach_start_s: float = quantity("s, the plant's time", at_least=0, default=0.0)
     reach_duration_s: float = quantity("s", above=0, default=1.0)
     amplitude_rad: float = quantity("rad", at_least=0, default=0.0)
-    frequency_hz: float = quantity("Hz", above=0, default=0.5)
+    frequency_hz: float = quantity("Hz", above=0, at_most=100, default=0.5)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -93,6 +93,8 @@ class PlantParameters:
             raise ParameterError("CurrentLoop.present = True: a loop needs CurrentSensor.present = True to close on")
         if self.overload.present and not self.current_sensor.present:
             raise ParameterError("Overload.present = True: I2t needs CurrentSensor.present = True to count")
+        if self.wall.present and self.end_stops.present:
+            self.end_stops.check_reach(self.wall.angle_rad)
         self.bristle.check(self.friction)
         self.arm_bristle.check(self.arm_friction)
 

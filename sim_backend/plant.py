@@ -16,7 +16,7 @@ from sim_backend.operator import Operator
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
 from sim_backend.state import at_rest
-from sim_backend.stiffness import stiffest
+from sim_backend.stiffness import quickest, stiffest
 from sim_backend.wall import Wall
 
 COARSEST_STEP_S = 1e-4
@@ -214,8 +214,13 @@ class Plant:
     def _check_step(self, step_s: float) -> None:
         if not 0.0 < step_s <= COARSEST_STEP_S:
             raise ParameterError(f"step = {step_s:g} [s]: must be above 0 and at most {COARSEST_STEP_S:g}")
-        for stiff in stiffest(self.parameters):
-            stiff.check(step_s)
+        for part in (*stiffest(self.parameters), *quickest(self.parameters)):
+            part.check(step_s)
+        window_s = self.parameters.encoder.speed_window_s
+        if window_s < 0.5 * step_s:
+            raise ParameterError(
+                f"Encoder.speed_window_s = {window_s:g} [s]: shorter than a step, {step_s:g} s, counts nothing"
+            )
 
     def _forget(self) -> None:
         """Fill the drive's memory with what it would see at rest here."""

@@ -13,7 +13,7 @@ class Encoder(Component):
     """Encoder or resolver on the motor shaft: whole counts; the speed is counts gained in a window / the window."""
 
     counts_per_turn: float = quantity("counts per motor turn", at_least=1)
-    speed_window_s: float = quantity("s", above=0, default=5e-3)
+    speed_window_s: float = quantity("s", above=0, at_most=1, default=5e-3)
 
 
 @dataclass(frozen=True, kw_only=True)

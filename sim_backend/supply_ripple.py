@@ -16,7 +16,7 @@ class SupplyRipple(Component):
     """
 
     fraction: float = quantity("1", at_least=0, at_most=0.5, default=0.0)
-    frequency_hz: float = quantity("Hz", above=0, default=2.0)
+    frequency_hz: float = quantity("Hz", above=0, at_most=1000, default=2.0)
 
 
 @jitted

@@ -16,7 +16,7 @@ class ThermalDrift(Component):
 
     resistance_per_k: float = quantity("1/K", at_least=0, at_most=0.01, default=0.0)
     torque_constant_per_k: float = quantity("1/K", at_least=0, at_most=0.01, default=0.0)
-    reference_c: float = quantity("degC", default=25.0)
+    reference_c: float = quantity("degC", at_least=-273.15, at_most=1000, default=25.0)
 
 
 class Winding(NamedTuple):

@@ -120,7 +120,8 @@ def test_no_plant_blows_up_or_makes_energy(
         bristle=bristle | {"stiffness_n_m_rad": bristles},
         arm_bristle=bristle | {"stiffness_n_m_rad": arm_bristles},
         wall=surface_of | {"present": wall, "angle_rad": wall_rad},
-        end_stops=surface_of | {"present": stops, "lower_rad": -stop_rad, "upper_rad": 0.9 * stop_rad},
+        end_stops=surface_of
+        | {"present": stops, "lower_rad": -stop_rad, "upper_rad": 0.9 * stop_rad + wall * wall_rad},
         current_sensor={"present": True},
         current_loop={"present": True},
     )
