@@ -214,8 +214,10 @@ class Plant:
     def _check_step(self, step_s: float) -> None:
         if not 0.0 < step_s <= COARSEST_STEP_S:
             raise ParameterError(f"step = {step_s:g} [s]: must be above 0 and at most {COARSEST_STEP_S:g}")
-        for part in (*stiffest(self.parameters), *quickest(self.parameters)):
-            part.check(step_s)
+        for stiff in stiffest(self.parameters):
+            stiff.check(step_s)
+        for quick in quickest(self.parameters):
+            quick.check(step_s)
         window_s = self.parameters.encoder.speed_window_s
         if window_s < 0.5 * step_s:
             raise ParameterError(
