@@ -4,9 +4,9 @@ import { h } from "./dom.js";
 
 const SPACE = "http://www.w3.org/1998/Math/MathML";
 const LETTERS = { alpha: "α", kappa: "κ", lambda: "λ", rho: "ρ", eta: "η", zeta: "ζ", pi: "π", beta: "β", gamma: "γ", delta: "δ", mu: "μ", omega: "ω", phi: "φ", sigma: "σ", tau: "τ", theta: "θ", Delta: "Δ" };
-const ACCENTS = { tilde: "~", dot: "˙", ddot: "¨", hat: "^", bar: "¯" };
+const ACCENTS = { tilde: "~", dot: ".", ddot: "..", hat: "^", bar: "¯" };
 const FUNCTIONS = new Set(["log", "max", "min", "sin", "cos", "tan", "exp", "tanh", "ln", "sgn"]);
-const TOKEN = /\\[A-Za-z]+|\\.|[A-Za-z]|\d+(?:\.\d+)?|\S/g;
+const TOKEN = /\\(?:text|mathrm)\{[^}]*\}|\\[A-Za-z]+|\\.|[A-Za-z]|\d+(?:\.\d+)?|\S/g;
 
 // shows the source itself where it holds something that is not known here
 export function equation(source) {
@@ -68,7 +68,7 @@ function command(name, tokens) {
   if (name in LETTERS) return element("mi", LETTERS[name]);
   if (FUNCTIONS.has(name)) return element("mrow", element("mi", name), space());
   if (name in ACCENTS) return accented(ACCENTS[name], item(tokens));
-  if (name === "mathrm" || name === "text") return upright(tokens);
+  if (name.endsWith("}")) return upright(name.slice(name.indexOf("{") + 1, -1));
   if (name === "frac") return element("mfrac", item(tokens), item(tokens));
   if (name === "cdot") return element("mo", "·");
   throw new Error(`unknown \\${name}`);
@@ -86,11 +86,7 @@ function accented(sign, base) {
   return made;
 }
 
-function upright(tokens) {
-  if (tokens.shift() !== "{") throw new Error("missing {");
-  let text = "";
-  while (tokens.length && tokens[0] !== "}") text += tokens.shift();
-  tokens.shift();
+function upright(text) {
   const made = element("mi", text);
   made.setAttribute("mathvariant", "normal");
   return made;
