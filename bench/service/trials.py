@@ -1,5 +1,6 @@
 """/trials: what was recorded, down-sampled for a plot or whole as CSV."""
 
+import math
 from datetime import datetime
 from typing import Annotated, Any
 
@@ -114,15 +115,22 @@ def samples(
     points: Annotated[
         int, Query(ge=10, le=200_000, description="about how many rows at most; the extremes of every channel are kept")
     ] = 4000,
+    from_s: Annotated[float | None, Query(description="begin of a stretch; without: of the trial [s]")] = None,
+    to_s: Annotated[float | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
 ) -> Samples:
     """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
     found = store.trial(trial_id)
     names = [name for name in channels.split(",") if name] or list(found.channels)
     # the store keeps rows for each channel; together they are to stay near `points`
     share = max(LEAST_PER_CHANNEL, points // len(names))
-    reduced = store.samples_reduced(trial_id, names, share)
+    stretch = None if from_s is None and to_s is None else (_or(from_s, -math.inf), _or(to_s, math.inf))
+    reduced = store.samples_reduced(trial_id, names, share, stretch)
     listed = {name: column(values) for name, values in reduced.items()}
     return Samples(trial_id=trial_id, rows_recorded=found.rows, rows_returned=len(listed["time_s"]), channels=listed)
+
+
+def _or(value: float | None, otherwise: float) -> float:
+    return otherwise if value is None else value
 
 
 @router.get(

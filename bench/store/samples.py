@@ -74,7 +74,7 @@ def read(connection: Connection, trial: Trial, channels: Sequence[str]) -> dict[
     Raises:
         NotFoundError: a channel that the trial does not have.
     """
-    columns = {channel: _column(trial, channel) for channel in channels}
+    columns = {channel: column_of(trial, channel) for channel in channels}
     samples = {channel: np.empty(trial.rows) for channel in columns}
     for first_row, block in _blocks(connection, trial, 0, trial.rows):
         for channel, column in columns.items():
@@ -112,7 +112,7 @@ def read_overview(
     Raises:
         NotFoundError: a channel that the trial does not have.
     """
-    wanted = {name: _column(trial, name) for name in names}
+    wanted = {name: column_of(trial, name) for name in names}
     channels = len(trial.channels)
     covered, parts, asked = 0, [], []
     table = SAMPLE_OVERVIEW.c
@@ -161,7 +161,8 @@ def _blocks(connection: Connection, trial: Trial, first_row: int, last_row: int)
         yield start, decode(data, len(trial.channels))
 
 
-def _column(trial: Trial, channel: str) -> int:
+def column_of(trial: Trial, channel: str) -> int:
+    """Where a channel stands among the trial's; NotFoundError where it has none of that name."""
     if channel not in trial.channels:
         raise NotFoundError(f"trial {trial.id} has no channel '{channel}'; it has {', '.join(trial.channels)}")
     return trial.channels.index(channel)

@@ -14,19 +14,18 @@ from bench.store.database import Database
 from bench.store.errors import StoreError, StoreValueError
 from bench.store.importing import Import
 from bench.store.migration import migrate
-from bench.store.overview import GROUP_ROWS
 from bench.store.queue import QueueTable
 from bench.store.records import Condition, Event, Experiment, Trial
-from bench.store.reduction import MIN_POINTS, rows_to_keep
+from bench.store.reduction import MIN_POINTS
 from bench.store.retention import Retention
 from bench.store.space import SpaceNeed
 from bench.store.study_store import StudyStore
 from bench.store.trial_writer import TrialWriter
 from bench.store.upkeep import Upkeep
+from bench.store.window import Stretch, reduced
 from compensator.lab.recording import FloatArray, Recording
 
 BUSY_TIMEOUT_S = 10.0
-GROUPS_PER_POINT = 1.5  # fewer, and a plot is made from all rows: MinMaxLTTB wants about two
 
 
 class Store(StudyStore):
@@ -289,13 +288,16 @@ class Store(StudyStore):
         with self._database.reading() as connection:
             return samples.read_part(connection, trial, first_row, rows)
 
-    def samples_reduced(self, trial_id: int, channels: Sequence[str] | None, points: int) -> dict[str, FloatArray]:
+    def samples_reduced(
+        self, trial_id: int, channels: Sequence[str] | None, points: int, between_s: Stretch | None = None
+    ) -> dict[str, FloatArray]:
         """As `samples`, always with time_s, reduced to the rows that a plot needs.
 
         Args:
             trial_id: the trial.
             channels: all channels of the trial where None.
             points: rows that each channel may ask for, at least 4; all channels share the rows returned.
+            between_s: a stretch of the trial [s]; None for all of it.
 
         Raises:
             NotFoundError: no such trial, or it has no such channel.
@@ -306,10 +308,4 @@ class Store(StudyStore):
         with self._database.reading() as connection:
             trial = trials.get(connection, trial_id)
             names = list(dict.fromkeys(["time_s", *(trial.channels if channels is None else channels)]))
-            if trial.rows < GROUPS_PER_POINT * points * GROUP_ROWS:
-                found = samples.read(connection, trial, names)
-                rows = rows_to_keep(found, points)
-            else:
-                found, asked = samples.read_overview(connection, trial, names)
-                rows = rows_to_keep(found, points, asked)
-        return {name: values[rows] for name, values in found.items()}
+            return reduced(connection, trial, names, points, between_s)

@@ -33,7 +33,7 @@ def test_the_technician_starts_watches_and_stops(service, open_page):
     row = page.locator("[aria-label='Trials'] tbody tr").first
     row.get_by_text("stopped").wait_for()
     row.get_by_role("button", name="Plot").click()
-    page.locator("[aria-label^='Channels of trial'] .scatterlayer .trace").first.wait_for()
+    page.get_by_role("group", name="Channels of trial").locator(".legend-entry").first.wait_for()
     with page.expect_download() as download:
         row.get_by_role("button", name="CSV").click()
     text = download.value.path().read_text()

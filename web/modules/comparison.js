@@ -29,7 +29,7 @@ export async function comparison(place, compared, path) {
   }, { busy: "Looking …" });
   attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask), { busy: "Looking …" });
   for (const driver of compared.residual_against) {
-    const picture = h("div", { class: "plot", role: "img", "aria-label": `Residual against ${nameOf(driver.driver)}` });
+    const picture = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${nameOf(driver.driver)}` });
     drivers.append(picture);
     await driverPlot(picture, driver, compared.effort);
     picture.on?.("plotly_click", ({ points }) => ask(...spotOf(driver, points[0])));
@@ -86,6 +86,6 @@ function parameterTable({ parameters }) {
     { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
     { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
     { title: "Unit", cell: (one) => one.unit },
-    { title: "", cell: (one) => one.note },
+    { title: "Note", cell: (one) => one.note },
   ], parameters);
 }

@@ -34,7 +34,7 @@ function className(one) {
 }
 
 async function card(parent, one, add) {
-  const plot = h("div", { class: "plot", role: "img", "aria-label": `Residual against ${one.picture?.driver ?? "its driver"} with the curve of ${one.title}` });
+  const plot = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${one.picture?.driver ?? "its driver"} with the curve of ${one.title}` });
   const answer = h("div");
   const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
   const button = h("button", { type: "button", class: one.in_class ? "primary" : "", onclick: () => add(one.effect, answer) }, `Add ${one.title}`);

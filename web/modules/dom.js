@@ -15,7 +15,7 @@ function set(element, name, value) {
 }
 
 export function panel(title, ...children) {
-  return h("section", { class: "panel", "aria-label": title }, h("h2", {}, title), ...children);
+  return h("section", { class: "panel", role: "group", "aria-label": title }, h("h2", {}, title), ...children);
 }
 
 export function replace(parent, ...children) {
@@ -24,7 +24,7 @@ export function replace(parent, ...children) {
 }
 
 export function table(caption, columns, rows) {
-  const head = h("tr", {}, columns.map((column) => h("th", { scope: "col", class: column.number ? "number" : "" }, column.title)));
+  const head = h("tr", {}, columns.map((column) => h("th", { scope: "col", class: column.number ? "number" : "" }, column.title || h("span", { class: "unseen" }, column.unseen ?? "Actions"))));
   const body = rows.map((row) =>
     h("tr", { class: row.chosen ? "chosen" : "" }, columns.map((column) => h("td", { class: column.number ? "number" : "" }, column.cell(row) ?? ""))));
   return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },

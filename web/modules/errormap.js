@@ -3,7 +3,7 @@
 import { h, replace } from "./dom.js";
 import { number } from "./format.js";
 
-const DARKEST_PERCENT = 55;
+const DARKEST_PERCENT = 45;
 
 // ask(criteria, words): a cell was chosen
 export function errorMap(place, map, ask) {

@@ -6,7 +6,7 @@ import { colour, draw } from "./plot.js";
 import { rungName } from "./study.js";
 
 export async function ladderPlot(place, ladder, current) {
-  const plot = h("div", { class: "plot ladder", role: "img", "aria-label": "Error of each model; the table below holds the numbers" });
+  const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });
   const floor = floorValue(ladder.floor);
   replace(place, plot, rungTable(ladder, current),
     floor !== null && h("p", { class: "soft" }, `Floor: repeated trials differ by ${percent(floor)} among themselves; no model can be better than that.`));

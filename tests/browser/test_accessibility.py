@@ -1,0 +1,55 @@
+"""No view breaks a rule of axe-core: names, roles, contrast, order; light and dark, wide and narrow."""
+
+import pytest
+
+from tests.service.recorded_joint import recording_set_zip
+
+pytestmark = pytest.mark.browser
+VIEWS = ("#bench", "#trials", "#study", "#learn", "#learn/backlash")
+
+
+@pytest.fixture(scope="module")
+def axe():
+    return pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe-playwright-python missing").Axe()
+
+
+@pytest.fixture(scope="module")
+def study(service) -> str:
+    """A study to look at, and a trial."""
+    service.run("steps", repeats=1)
+    headers = {"Content-Type": "application/zip"}
+    made = service.client.post("/recording-sets?name=read+aloud", content=recording_set_zip(), headers=headers).json()
+    body = {"name": "read aloud", "experiment_ids": [made["experiment_id"]], "hold_out": ["amplitude_rad=0.9"]}
+    return f"#study/{service.client.post('/studies', json=body).json()['study_id']}"
+
+
+def violations(axe, page) -> list[str]:
+    found = axe.run(page).response["violations"]
+    return [f"{one['id']}: {node['html'][:160]} {node['failureSummary']}" for one in found for node in one["nodes"]]
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (1280, "dark"), (400, "light"), (400, "dark")])
+def test_no_view_breaks_a_rule(axe, open_page, study, width, scheme):
+    page = open_page("#bench", width=width, scheme=scheme)
+    page.locator(".badge.idle").wait_for()
+    broken = []
+    for view in (*VIEWS, study):
+        page.evaluate("(hash) => { location.hash = hash; }", view)
+        page.locator("main .panel").first.wait_for()
+        for busy in page.locator("main .busy").all():
+            busy.wait_for(state="detached")
+        if view == "#trials":
+            page.get_by_role("button", name="Plot trial").first.click()
+            page.get_by_role("group", name="Channels of trial").locator(".legend-entry").first.wait_for()
+        if view == study:
+            page.locator("table.heat button.cell").first.wait_for()
+        broken += [f"{view} {one}" for one in violations(axe, page)]
+    assert broken == []
+
+
+def test_a_broken_rule_is_found(axe, open_page):
+    """The check itself: it does see what is wrong."""
+    page = open_page()
+    page.locator(".badge.idle").wait_for()
+    page.evaluate("document.querySelector('main').append(document.createElement('input'))")
+    assert any(one.startswith("label:") for one in violations(axe, page))
