@@ -33,6 +33,9 @@ test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock 
 	$(BIN)/pytest -m wall_clock || failed=1; \
 	exit $$failed
 
+screenshots: $(STAMP) ## the walk of docs/walk.md in Chromium, every view, light and dark: pictures in out/walk
+	$(BIN)/python -m tests.browser.screenshots out/walk
+
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)
 

@@ -1,15 +1,10 @@
-import shutil
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
-from tests.service.running_service import TOKEN, RunningService, running_service
-
-CHROMIUM = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
+from tests.browser.browser import ARGUMENTS, CHROMIUM, WITH_TOKEN
+from tests.service.running_service import RunningService, running_service
 
 OpenPage = Callable[..., Any]
 
@@ -49,7 +44,7 @@ def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
         page.set_viewport_size({"width": width, "height": 900})
         page.emulate_media(color_scheme=scheme)
         if token:
-            page.add_init_script(f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')")
+            page.add_init_script(WITH_TOKEN)
         page.set_default_timeout(20_000)
         page.on("console", lambda message: complaints.append(message.text) if is_complaint(message) else None)
         page.on("pageerror", lambda error: complaints.append(str(error)))

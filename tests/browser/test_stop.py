@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+from bench.service.roles import Role
+from bench.service.tokens import digest_of, make_token
 from tests.service.running_service import running_service
 
 pytestmark = pytest.mark.browser
@@ -87,3 +89,31 @@ def test_the_page_goes_on_when_the_service_comes_back(tmp_path, chromium):
         page.get_by_text("Experiment 1 (steps): completed").wait_for()
         page.get_by_label("Live", exact=True).locator(".legend-entry").first.wait_for()
         page.close()
+
+
+def test_another_one_has_the_bench_and_everybody_can_stop(service, open_page):
+    """Two users: who does not have the bench is told so where it is started, and can stop."""
+    page = open_page()
+    page.get_by_text("The bench is free.").wait_for()
+    page.get_by_role("button", name="Take the bench").click()
+    page.get_by_text("You have the bench.").wait_for()
+    assert service.client.get("/lease").json()["lease"]["token"] == "environment"
+    page.get_by_role("button", name="Give it back").click()
+    page.get_by_text("The bench is free.").wait_for()
+
+    ada = make_token()
+    service.store.access.tokens.add("ada", Role.OPERATOR, digest_of(ada))
+    headers = {"Authorization": f"Bearer {ada}"}
+    taken = service.stranger.post("/lease", json={"holder": "Ada, room 12"}, headers=headers)
+    assert taken.status_code == 201, taken.text
+    page.get_by_text("Ada, room 12 has the bench: you can watch and stop, not start.").wait_for()
+    body = {"kind": "steps", "parameters": {"repeats": 20}, "pace": "real-time"}
+    assert service.stranger.post("/experiments", json=body, headers=headers).status_code == 201
+    page.locator(".badge.running").wait_for()
+    page.keyboard.press("Escape")
+    page.get_by_text("Stop accepted and confirmed").wait_for()
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.locator("form .problem").get_by_text("Ada, room 12").wait_for()
+    service.stranger.delete("/lease", headers=headers)
+    page.get_by_text("The bench is free.").wait_for()
+    open_page.complaints[:] = [text for text in open_page.complaints if "409" not in text]

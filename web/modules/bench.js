@@ -4,6 +4,7 @@ import { get } from "./api.js";
 import { facts, h, panel, replace } from "./dom.js";
 import { startForm } from "./experiments.js";
 import { nameOf, number } from "./format.js";
+import { leasePanel } from "./lease.js";
 import { livePlot } from "./liveplot.js";
 import { attempt } from "./problem.js";
 
@@ -11,9 +12,10 @@ const UNITS = { degC: "°C" };
 
 export function benchView(place, { live }) {
   const start = h("div");
+  const lease = h("div");
   const drive = h("div");
   const plot = h("div");
-  replace(place, h("div", { class: "columns" }, panel("Start an experiment", start), h("div", { class: "wide" }, panel("Live", plot)),
+  replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, start), h("div", { class: "wide" }, panel("Live", plot)),
     panel("Drive and limits", drive)));
   startForm(start, live);
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
@@ -26,7 +28,9 @@ export function benchView(place, { live }) {
   live.addEventListener("status", changed);
   refresh();
   const leave = livePlot(plot, live);
+  const leaveLease = leasePanel(lease, live);
   return () => {
+    leaveLease();
     live.removeEventListener("status", changed);
     leave();
   };

@@ -5,9 +5,11 @@ import { beforeAfter } from "./beforeafter.js";
 import { comparison } from "./comparison.js";
 import { diagnosis } from "./diagnosis.js";
 import { h, panel, replace } from "./dom.js";
+import { withFiles } from "./files.js";
 import { ladderPlot } from "./ladder.js";
 import { attempt } from "./problem.js";
 import { searchButton } from "./searching.js";
+import { suggestions } from "./suggestions.js";
 
 export function studyView(place, id) {
   const parts = Object.fromEntries(["head", "model", "change", "ladder", "compared", "diagnosed"].map((name) => [name, h("div")]));
@@ -36,7 +38,7 @@ class Study {
   async open() {
     const study = await attempt(this.parts.head, () => get(this.path));
     if (!study) return;
-    replace(this.parts.head, heading(study));
+    replace(this.parts.head, heading(study, this.path));
     await this.select(study.model_id);
   }
 
@@ -63,15 +65,22 @@ class Study {
   }
 
   askDiagnosis() {
-    const [answer, search] = [h("div"), h("div", { class: "row centre" })];
+    const [answer, search, suggested] = [h("div"), h("div", { class: "row centre" }), h("div")];
     const button = h("button", { class: "primary", type: "button" }, "Diagnose");
     button.addEventListener("click", async () => {
       const busy = "Testing every effect of the catalogue …";
       const found = await attempt(answer, () => get(`${this.path}/diagnose`, { model_id: this.model }), { button, busy });
       if (found) await diagnosis(answer, found, (effect, place) => this.add(effect, place));
     });
-    replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button, search), answer);
+    replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button, search), answer, suggested);
+    suggestions(suggested, this.path, () => this.model, (sentence) => this.extended(sentence));
     searchButton(search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
+  }
+
+  async extended(sentence) {
+    await this.open();
+    replace(this.parts.change, h("div", { class: "good", role: "status" }, sentence));
+    this.parts.change.scrollIntoView({ block: "center" });
   }
 
   async searched(model_id, tell) {
@@ -129,9 +138,9 @@ export function rungName(rung) {
   return `${rung.model_id}: ${change.join(", ").replaceAll("_", " ") || "base"}`;
 }
 
-function heading(study) {
+function heading(study, path) {
   const count = (role) => study.trials.filter((trial) => trial.role === role).length;
   return h("div", { class: "panel" }, h("h2", {}, `Study ${study.study_id}: ${study.name}`),
     h("p", { class: "soft" }, `${count("training")} training trials, ${count("held_out")} held out. Effort: ${study.effort.name} [${study.effort.unit}]. `,
-      h("a", { href: "#study" }, "All studies")));
+      h("a", { href: "#study" }, "All studies")), withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`]]));
 }

@@ -1,0 +1,27 @@
+"""Chromium for commands and tests: where it is, and how it is started."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from tests.service.running_service import TOKEN
+
+CHROMIUM = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
+WITH_TOKEN = f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')"
+
+
+@contextmanager
+def browser(*arguments: str) -> Iterator[Any]:
+    """A browser, for a command."""
+    from playwright.sync_api import sync_playwright
+
+    if CHROMIUM is None:
+        raise SystemExit("Chromium is not installed; on Debian: apt-get install chromium")
+    with sync_playwright() as driver:
+        opened = driver.chromium.launch(executable_path=CHROMIUM, args=[*ARGUMENTS, *arguments])
+        yield opened
+        opened.close()

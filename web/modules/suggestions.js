@@ -1,0 +1,39 @@
+// Which trials would separate the rivals of a diagnosis: ask, start them one by one, and add them to the study.
+
+import { post } from "./api.js";
+import { h, replace, table } from "./dom.js";
+import { number, withUnit } from "./format.js";
+import { attempt } from "./problem.js";
+
+// model_id(): the model that is shown; extended(sentence): the study has more trials now
+export function suggestions(place, path, model_id, extended) {
+  const answer = h("div");
+  const button = h("button", { type: "button" }, "Suggest trials");
+  button.addEventListener("click", async () => {
+    const found = await attempt(answer, () => post(`${path}/suggest`, { model_id: model_id() }), { button, busy: "Simulating what each trial would tell …" });
+    if (found) show(answer, path, found, extended);
+  });
+  replace(place, h("div", { class: "row centre" }, button, h("span", { class: "soft" }, "which trials would tell apart what these cannot")), answer);
+}
+
+function show(place, path, found, extended) {
+  const [started, added] = [h("div"), h("div")];
+  const start = (one) => async ({ currentTarget: button }) => {
+    const made = await attempt(started, () => post("/experiments", { kind: one.kind, parameters: one.parameters, note: found.note }), { button });
+    if (made) replace(started, h("div", { class: "good", role: "status" }, `Experiment ${made.experiment_id} has started. When it has ended, start the next, or add what was recorded.`));
+  };
+  const add = h("button", { type: "button", onclick: async ({ currentTarget: button }) => {
+    const result = await attempt(added, () => post(`${path}/trials`, {}), { button, busy: "Fitting …" });
+    if (result) await extended(result.sentence);
+  } }, "Add the recorded trials to the study");
+  replace(place, h("p", { class: "sentence", role: "status" }, found.sentence), found.trials.length > 0 && table("Suggested trials", [
+    { title: "Trial", cell: (one) => [one.kind, h("div", { class: "hint" }, words(one.parameters))] },
+    { title: "Minutes", number: true, cell: (one) => number(one.minutes, 2) },
+    { title: "Why", cell: (one) => one.sentence },
+    { title: "", cell: (one) => h("button", { type: "button", class: "small", "aria-label": `Start ${one.kind}: ${words(one.parameters)}`, onclick: start(one) }, "Start") },
+  ], found.trials), started, found.trials.length > 0 && h("div", { class: "row" }, add), added);
+}
+
+function words(parameters) {
+  return Object.entries(parameters).map(([name, value]) => `${withUnit(name)} ${[value].flat().map((one) => number(one, 3)).join(", ")}`).join("; ");
+}
