@@ -52,6 +52,7 @@ fault = 4
 
 [fault]
 register = "fault"
+host_lost = 0x8130
 [fault.names]
 0x2310 = "over-current"
 

@@ -164,6 +164,19 @@ def test_a_drive_that_does_not_switch_on(answers, drive):
         drive.exchange(Command(Mode.DUTY, 0.1))
 
 
+def cleared(answers):
+    """Whether the word that clears a fault was written (register 10, in the first place of the written block)."""
+    return any(frame.hex(" ").split()[10:12] == ["00", "08"] for frame in answers.sent)
+
+
+@pytest.mark.parametrize(("fault", "is_forgiven"), [(0x8130, True), (0x2310, False)])
+def test_only_the_watchdogs_fault_is_cleared_by_the_next_host(answers, made, fault, is_forgiven):
+    answers.obeys = False
+    answers.holding |= {20: 4, 21: fault}
+    made().open(0.01)
+    assert cleared(answers) is is_forgiven
+
+
 def test_a_fault_is_named_and_cleared(answers, drive):
     drive.enable(Mode.DUTY)
     answers.obeys = False

@@ -198,5 +198,17 @@ def test_a_silent_host_is_switched_off_by_the_drive_itself(wired):
         assert knows_that_it_is_off(drive, Command(mode, PUSHES[mode]))
 
 
+def test_a_host_that_was_lost_leaves_nothing_for_the_next_one_to_clear(wired):
+    """As after a host that was killed, and as `friction-bench doctor --move` goes on after its test of the watchdog."""
+    with wired.opened() as drive:
+        mode = push_mode(drive)
+        drive.enable(mode)
+        drive.exchange(Command(mode, 0.0))
+        time.sleep(1.5 * wired.watched_s)
+    with wired.opened() as drive:
+        drive.enable(mode)
+        assert cycles(drive, Command(mode, 0.0), 3)[-1].status is Status.ENABLED
+
+
 def test_errors_are_of_one_tree():
     assert issubclass(DriveFault, DriveError)
