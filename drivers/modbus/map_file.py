@@ -88,7 +88,6 @@ class _Reader:
             fault=self._register(fault["register"], "fault") if fault else None,
             fault_names={int(number, 0): name for number, name in fault.get("names", {}).items()},
             fault_is_bits=bool(fault.get("bits", False)),
-            host_lost=int(fault.get("host_lost", 0)),
             read_write=bool(values.get("read_write", False)),
             longest_gap=int(values.get("longest_gap", 0)),
         )

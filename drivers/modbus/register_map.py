@@ -96,7 +96,6 @@ class RegisterMap:
         identity, control, mode, status, fault, watchdog: see the module.
         demand: register of each mode's demand.
         measured: registers by quantity.
-        host_lost: the fault that says only that the watchdog has acted; 0 where there is none.
         read_write: whether one request may write and read (function 23).
         longest_gap: words without a meaning that a read may span.
     """
@@ -113,7 +112,6 @@ class RegisterMap:
     fault: Register | None = None
     fault_names: Mapping[int, str] = field(default_factory=dict)
     fault_is_bits: bool = False
-    host_lost: int = 0
     read_write: bool = False
     longest_gap: int = 0
 

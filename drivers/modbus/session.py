@@ -48,7 +48,6 @@ class Session:
             self._forgive_lost_host()
             self.link.begin()
             set_watchdog(self.link, register_map, settings)
-            self._forgive_lost_host()
             self._read_slow()
         except BaseException:
             self.leave()
@@ -120,11 +119,6 @@ class Session:
             pass
         finally:
             self.link.close()
-
-    def _forgive_lost_host(self) -> None:
-        """Clear the fault that says only that the last host went away: this one is here, and the power is off."""
-        if self.state is Status.FAULT and self._fault == self._map.host_lost:
-            self.clear_fault()
 
     def _transact(self, values: Values) -> Values:
         try:

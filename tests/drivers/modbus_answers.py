@@ -52,12 +52,12 @@ fault = 4
 
 [fault]
 register = "fault"
-host_lost = 0x8130
 [fault.names]
 0x2310 = "over-current"
 
 [watchdog]
 register = "watchdog"
+fault = 0x8130
 
 [[register]]
 name = "control"
