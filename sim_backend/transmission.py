@@ -107,11 +107,16 @@ def _tried(
     """Tell whether a motion is what the teeth allow, and if not, how they push instead."""
     gear, rigidity, damping = parameters.gear, constants.teeth_n_m_rad, constants.teeth_n_m_s_rad
     start_rad, end_rad = _twist(state), _twist(state) + way_rad
-    if teeth.side != 0.0:
-        if teeth.phase == _APART or carried(parameters.clutch, contact_n_m) != contact_n_m:
+    touched = flank(gear, end_rad)
+    if teeth.side != 0.0 and teeth.phase == _APART:
+        # let go; on their way they may meet the other flank, and close on that
+        if touched != -teeth.side:
+            return True, teeth
+    elif teeth.side != 0.0:
+        if carried(parameters.clutch, contact_n_m) != contact_n_m:
             return True, teeth
         opens = gear.backlash_rad > 0.0 and penetration(gear, teeth.side, end_rad) * teeth.side < 0.0
-        through = opens and flank(gear, end_rad) != 0.0  # all the free play in one step
+        through = opens and touched != 0.0  # all the free play in one step
         if not opens or (teeth.phase == _OPENING and is_close(way_rad, before_rad)):
             # where they would pull they part for this step; the side stays, so that they do not close again
             return through or not is_pull(gear, teeth.side, contact_n_m), Teeth(_APART, teeth.side, 0.0, 0.0, 0.0)
@@ -121,7 +126,6 @@ def _tried(
             met_rad = penetration(gear, -teeth.side, end_rad)
             line = one_after_the_other(line, closing_line(rigidity, damping, met_rad, way_rad, step_s))
         return False, _crossing(state, _OPENING, teeth.side, line, step_s)
-    touched = flank(gear, end_rad)
     if touched == 0.0 or (teeth.phase == _CLOSING and is_close(way_rad, before_rad)):
         return True, teeth
     line = closing_line(rigidity, damping, penetration(gear, touched, end_rad), way_rad, step_s)
@@ -141,11 +145,12 @@ def _lost(
     parameters: PlantParameters, constants: Constants, state: State, teeth: Teeth, way_rad: float, step_s: float
 ) -> float:
     """Return what the teeth took [J]: damping while they push; what is left in the spring when they let go."""
+    gear, rigidity, twist_rad = parameters.gear, constants.teeth_n_m_rad, _twist(state)
     if teeth.phase != _APART:
-        return teeth.share * constants.teeth_n_m_s_rad * way_rad * way_rad / step_s
+        damped_j = teeth.share * constants.teeth_n_m_s_rad * way_rad * way_rad / step_s
+        return damped_j + contact_energy(gear, rigidity, twist_rad) if teeth.phase == _CLOSING else damped_j
     if teeth.side == 0.0:
         return 0.0
-    gear, rigidity, twist_rad = parameters.gear, constants.teeth_n_m_rad, _twist(state)
     return contact_energy(gear, rigidity, twist_rad) - contact_energy(gear, rigidity, twist_rad + way_rad)
 
 

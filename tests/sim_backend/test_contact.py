@@ -87,3 +87,22 @@ def test_gear_without_free_play_pulls_as_well_as_it_pushes() -> None:
     # the midpoint rule lengthens the period by (w h)^2 / 12
     assert measured_s == pytest.approx(period_s * (1.0 + (2.0 * pi / period_s * 1e-4) ** 2 / 12.0), rel=1e-4)
     assert max(twists) == pytest.approx(2e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("gap_rad", "stiffness", "damping", "pressed_rad", "speed_rad_s"),
+    [(4.2e-6, 1.3e4, 780.0, 5.4e-8, -15.0), (2e-5, 6.6e3, 530.0, 8.6e-7, -7.0), (7.5e-5, 4.1e3, 940.0, 1.9e-8, -25.0)],
+)
+def test_teeth_that_let_go_and_meet_the_other_flank_in_one_step_make_no_energy(
+    gap_rad: float, stiffness: float, damping: float, pressed_rad: float, speed_rad_s: float
+) -> None:
+    gear = {"backlash_rad": gap_rad, "stiffness_n_m_rad": stiffness, "damping_n_m_s_rad": damping}
+    rattling = plant(gear=gear)
+    rattling.place(0.5 * gap_rad + pressed_rad, 0.0, rotor_rad_s=speed_rad_s)
+    began_j = rattling.energy().stored_j
+    losses_j = [0.0]
+    for _ in range(30):
+        rattling.advance(OPEN, 0.0, 1)
+        losses_j.append(rattling.energy().lost_j)
+    assert losses_j[-1] + rattling.energy().stored_j == pytest.approx(began_j, rel=1e-9)
+    assert all(after >= before - 1e-12 * began_j for before, after in pairwise(losses_j))
