@@ -190,13 +190,15 @@ def main() -> None:
     endings = []
     with tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder, kills_bench(Path(folder)) as bench:
         killer = Killer(bench, arguments.seed)
-        for number in range(arguments.kills):
-            ending = killer.end_one(ways[number % len(ways)])
-            endings.append(ending)
-            for problem in ending.problems:
-                print(f"run {number + 1}, {ending.way.name}: {problem}", flush=True)  # noqa: T201
-        killer.leave()
-    print("\n".join(table(endings)))  # noqa: T201
+        try:
+            for number in range(arguments.kills):
+                ending = killer.end_one(ways[number % len(ways)])
+                endings.append(ending)
+                for problem in ending.problems:
+                    print(f"run {number + 1}, {ending.way.name}: {problem}", flush=True)  # noqa: T201
+        finally:
+            print("\n".join(table(endings)), flush=True)  # noqa: T201
+            killer.leave()
     sys.exit(any(ending.problems for ending in endings))
 
 
