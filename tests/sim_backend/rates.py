@@ -7,7 +7,7 @@ of many short rounds.
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from os import environ
 from pathlib import Path
 from resource import RUSAGE_CHILDREN, getrusage
@@ -30,6 +30,7 @@ from sim_backend.plant import Plant
 from tests.sim_backend.mujoco_hinge import hinge, swing
 
 STEPS, ROUNDS, STEP_S = 5_000, 400, 1e-4
+CYCLES = 50  # in a round: few, so that some rounds meet no other work
 # one joint with backlash, bristles on both sides of it, and heat
 BRISTLED: dict[str, dict[str, Any]] = {
     "bristle": {"stiffness_n_m_rad": 2.0, "damping_n_m_s_rad": 4e-3},
@@ -90,11 +91,30 @@ def exchange_s(period_s: float) -> float:
     command = Command(Mode.DUTY, 0.3)
 
     def cycles() -> None:
-        for _ in range(500):
+        for _ in range(CYCLES):
             drive.exchange(command)
 
     cycles()
-    return best_s(cycles, 20) / 500
+    return best_s(cycles, ROUNDS) / CYCLES
+
+
+def floor_s(period_s: float) -> float:
+    """Seconds that a control cycle takes at least: a procedure that does nothing, and one call of the kernel."""
+    plant, steps = Plant(presets.paper()), round(period_s / STEP_S)
+
+    def nothing() -> Generator[None, None, None]:
+        while True:
+            yield
+
+    send = nothing().send
+
+    def cycles() -> None:
+        for _ in range(CYCLES):
+            plant.advance(VOLTAGE, 0.3, steps)
+            send(None)
+
+    cycles()
+    return best_s(cycles, ROUNDS) / CYCLES
 
 
 def bench_ratio() -> tuple[float, float]:
@@ -145,6 +165,8 @@ def report() -> Iterator[str]:
     for period_s in (1e-3, 5e-3):
         each_s = exchange_s(period_s)
         yield f"drive, {1e3 * period_s:g} ms cycle: {1e6 * each_s:.1f} us, {period_s / each_s:.0f} x real time"
+    least_s = floor_s(1e-3)
+    yield f"floor at 1 kHz, empty procedure + one compiled call: {1e6 * least_s:.1f} us, {1e-3 / least_s:.0f} x"
     wall, cpu = bench_ratio()
     yield f"whole bench at 1 kHz: {wall:.0f} x real time; {cpu:.0f} x by CPU time (asked for: 40 x)"
     yield f"batch of plants, two threads over one: {batch_scaling():.2f} x (asked for: 1.8 x on two cores)"
