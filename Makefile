@@ -49,6 +49,9 @@ benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo,
 kills: $(STAMP)  ## 200 runs ended at random moments, in every way, on a drive in a process of its own: what is left of each
 	$(BIN)/python -m tests.stopping.kills --kills 200
 
+schema: $(STAMP) ## every route of the interface asked with many requests that fit its description, and many that do not
+	SCHEMA_EXAMPLES=100 $(BIN)/pytest tests/service/test_schema.py --timeout=3600
+
 check: $(STAMP)  ## style, types and walls
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .

@@ -186,7 +186,7 @@ class ExperimentRun:
         conditions = {**plan.conditions, session.CONDITION: prepared.session.seconds()}
         loop = prepared.station.loop
         writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, loop.channels)
-        live.begin_trial(loop.channels)
+        live.begin_trial(loop.channels, writer.trial_id)
         outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self.stop_request)
         prepared.session.passed(loop.last_reading.time_s if loop.last_reading else 0.0)
         self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))

@@ -18,12 +18,16 @@ class LiveRows:
         rows: shape (n, channels).
         last_row: number of the newest row, to be asked from next time; rows are numbered on and on.
         restarted: rows before these belong to another trial, or were left out.
+        trial_id: the trial in the store; None where that is not known.
+        trial_rows: rows of the trial up to the newest.
     """
 
     channels: tuple[str, ...]
     rows: FloatArray
     last_row: int
     restarted: bool
+    trial_id: int | None = None
+    trial_rows: int = 0
 
 
 class LiveBuffer:
@@ -41,14 +45,25 @@ class LiveBuffer:
         self._blocks: list[FloatArray] = []
         self._first_row = 0  # number of the first row kept
         self._trial_row = 0  # number of the first row of the trial
+        self._trial_id: int | None = None
+        self._rows_before = 0
         self._kept = 0
 
-    def begin_trial(self, channels: tuple[str, ...] | None = None) -> None:
-        """Forget the rows of the trial before; rows of other channels may come."""
+    def begin_trial(
+        self, channels: tuple[str, ...] | None = None, trial_id: int | None = None, rows_before: int = 0
+    ) -> None:
+        """Forget the rows of the trial before; rows of other channels may come.
+
+        Args:
+            channels: names of the columns; None: as before.
+            trial_id: the trial in the store; None where that is not known.
+            rows_before: rows of it that come not here.
+        """
         with self._lock:
             self._channels = channels or self._channels
             self._first_row += self._kept
             self._trial_row = self._first_row
+            self._trial_id, self._rows_before = trial_id, rows_before
             self._kept = 0
             self._blocks.clear()
 
@@ -77,8 +92,9 @@ class LiveBuffer:
             begin = first_row if restarted else after_row + 1
             wanted = last_row + 1 - begin
             blocks, channels = self._newest(wanted), self._channels
+            trial_id, trial_rows = self._trial_id, last_row + 1 - self._trial_row + self._rows_before
         rows = np.concatenate(blocks)[-wanted:] if wanted else np.empty((0, len(channels)))
-        return LiveRows(channels, rows, last_row, restarted)
+        return LiveRows(channels, rows, last_row, restarted, trial_id, trial_rows)
 
     def _newest(self, wanted: int) -> list[FloatArray]:
         """The last blocks that hold at least that many rows."""

@@ -29,7 +29,8 @@ class Mirror:
         """The news."""
         if seen.rows.restarted or (self._new_process and len(seen.rows.rows)):
             self._new_process = False
-            self.live.begin_trial(seen.rows.channels)
+            rows = seen.rows
+            self.live.begin_trial(rows.channels, rows.trial_id, rows.trial_rows - len(rows.rows))
         if len(seen.rows.rows):
             self.live.append(seen.rows.rows)
         self._change(seen.status, seen.busy)

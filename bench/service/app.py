@@ -1,6 +1,7 @@
 """The application: routes, errors, guard, page."""
 
 import asyncio
+import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
@@ -16,11 +17,13 @@ from bench.service import (
     bench_state,
     calibrations,
     challenges,
+    conditional,
     effects,
     error_map,
     experiments,
     leases,
     live,
+    openapi,
     page,
     problems,
     queue,
@@ -132,12 +135,15 @@ def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
     app.state.lease = lease
     app.state.conductor = conductor
+    app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     problems.install(app)
+    conditional.install(app)
     api = APIRouter(prefix=PREFIX)
     for module in _ROOMS:
         api.include_router(module.router)
     app.include_router(api)
     page.install(app)
+    openapi.install(app)
     app.add_middleware(AuditTrail, add=trail.add)
     app.add_middleware(Guard, hosts=access.hosts)
     return app

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Depends, Query
 from pydantic import BaseModel, Field
 
 from bench.service.access import require_admin
+from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
 from bench.service.services import StoreOf
 
@@ -26,23 +27,20 @@ class Deed(BaseModel):
     detail: str = Field(description="what was changed", examples=["started experiment 12 (steps)"])
 
 
-class Deeds(BaseModel):
+class Deeds(Page):
     """One page of the audit log, newest first."""
 
     items: list[Deed]
-    limit: int
-    offset: int
-    next_offset: int | None = Field(description="offset of the next page; null on the last")
 
 
 @router.get("", summary="Who did what", responses=problems(401, 403, 422))
 def audit(
     store: StoreOf,
     token: Annotated[str, Query(max_length=100, description="name of a token; without it, all")] = "",
-    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: Limit = 100,
+    offset: Offset = 0,
 ) -> Deeds:
     """Newest first; for admins. A deed appears within a second."""
     found = store.access.audit.find(token or None, limit + 1, offset)
-    items = [Deed.model_validate(one, from_attributes=True) for one in found[:limit]]
-    return Deeds(items=items, limit=limit, offset=offset, next_offset=offset + limit if len(found) > limit else None)
+    items, page = cut(found, limit, offset)
+    return Deeds(items=[Deed.model_validate(one, from_attributes=True) for one in items], **page)

@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench import calibration
@@ -11,6 +11,7 @@ from bench.service.access import allow_read, require_token
 from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
+from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import CalibrationRow
@@ -70,13 +71,10 @@ class Calibration(BaseModel):
     chosen_utc: datetime | None
 
 
-class Calibrations(BaseModel):
+class Calibrations(Page):
     """One page of calibrations, newest first."""
 
     items: list[Calibration]
-    limit: int
-    offset: int
-    next_offset: int | None = Field(description="offset of the next page; null on the last")
 
 
 class Columns(BaseModel):
@@ -138,15 +136,13 @@ async def create(
 def calibrations(
     store: StoreOf,
     runner: RunnerOf,
-    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: Limit = 100,
+    offset: Offset = 0,
 ) -> Calibrations:
     """Newest first."""
     found, used_id = store.calibrations.find(limit + 1, offset), _used_id(store, runner)
-    items = [represent(one, used_id) for one in found[:limit]]
-    return Calibrations(
-        items=items, limit=limit, offset=offset, next_offset=offset + limit if len(found) > limit else None
-    )
+    items, page = cut(found, limit, offset)
+    return Calibrations(items=[represent(one, used_id) for one in items], **page)
 
 
 @router.get("/in-use", summary="The calibration that this bench uses", responses=problems(404))

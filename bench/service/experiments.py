@@ -14,12 +14,15 @@ from starlette.background import BackgroundTask
 from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
 from bench.recording_set import export_experiment, export_parquet
+from bench.service import conditional
 from bench.service.access import Operator, allow_read, require_operator
 from bench.service.audit_trail import note
 from bench.service.json_numbers import plain
 from bench.service.leases import LeaseOf
+from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import FieldProblem, InvalidFieldsError, field_problems, problems
 from bench.service.queue_models import Note, Tags
+from bench.service.repeated_start import Key, once
 from bench.service.services import RunnerOf, StoreOf
 from bench.service.trials import PARQUET, PARQUET_ANSWER
 from bench.store.errors import StoreError
@@ -98,13 +101,10 @@ class Experiment(BaseModel):
     results: dict[str, Any] = Field(description="what came out, units in the names")
 
 
-class Experiments(BaseModel):
+class Experiments(Page):
     """One page of experiments, newest first."""
 
     items: list[Experiment]
-    limit: int
-    offset: int
-    next_offset: int | None = Field(description="offset of the next page; null on the last")
 
 
 def represent(found: StoredExperiment) -> Experiment:
@@ -138,20 +138,26 @@ def start(
     request: Request,
     response: Response,
     body: NewExperiment,
+    key: Key = None,
 ) -> Started:
     """Refused before any motion (422, with value, limit and unit) where it would leave the limits.
 
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
-    try:
+
+    def begin() -> int:
         with lease.starting(caller.name):
-            experiment_id = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+            begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+        note(request, f"started experiment {begun} ({body.kind})")
+        return begun
+
+    try:
+        experiment_id = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
     except ParameterError as error:
         raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
     if body.tags:
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
             store.annotate(experiment_id, tags=body.tags)
-    note(request, f"started experiment {experiment_id} ({body.kind})")
     response.headers["Location"] = f"{request.url.path}/{experiment_id}"
     return Started(experiment_id=experiment_id, kind=body.kind)
 
@@ -171,19 +177,21 @@ def experiments(
     kind: Annotated[str, Query(max_length=100)] = "",
     outcome: Annotated[str, Query(max_length=20)] = "",
     tag: Annotated[str, Query(max_length=LONGEST_TAG, description="only those with this tag")] = "",
-    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: Limit = 100,
+    offset: Offset = 0,
 ) -> Experiments:
     """Newest first, failed starts included."""
     found = store.experiments(kind or None, outcome or None, tag=tag or None, limit=limit + 1, offset=offset)
-    more = offset + limit if len(found) > limit else None
-    return Experiments(items=[represent(one) for one in found[:limit]], limit=limit, offset=offset, next_offset=more)
+    items, page = cut(found, limit, offset)
+    return Experiments(items=[represent(one) for one in items], **page)
 
 
-@router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404))
-def experiment(store: StoreOf, experiment_id: ExperimentId) -> Experiment:
-    """Parameters, provenance, outcome and why, results."""
-    return represent(store.experiment(experiment_id))
+@router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404) | conditional.ANSWER)
+def experiment(store: StoreOf, request: Request, response: Response, experiment_id: ExperimentId) -> Experiment:
+    """Parameters, provenance, outcome and why, results. With an `ETag`, which changes when it does."""
+    found = represent(store.experiment(experiment_id))
+    response.headers.update(conditional.unless_known(request, found.model_dump()))
+    return found
 
 
 @router.patch(
@@ -209,10 +217,12 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
             "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
         },
         **problems(404, 409),
+        **conditional.ANSWER,
     },
 )
-def recording_set(store: StoreOf, experiment_id: ExperimentId) -> FileResponse:
-    """Written to a temporary file first, so that an error is an answer and not half a file."""
+def recording_set(store: StoreOf, request: Request, experiment_id: ExperimentId) -> FileResponse:
+    """Written to a temporary file first, so that an error is an answer and not half a file. With an `ETag`."""
+    headers = _known(store, request, experiment_id)
     folder = tempfile.TemporaryDirectory(prefix="friction-bench-")
     path = FilePath(folder.name) / f"experiment-{experiment_id}.zip"
     try:
@@ -221,7 +231,11 @@ def recording_set(store: StoreOf, experiment_id: ExperimentId) -> FileResponse:
         folder.cleanup()
         raise
     return FileResponse(
-        path, media_type="application/zip", filename=path.name, background=BackgroundTask(folder.cleanup)
+        path,
+        media_type="application/zip",
+        filename=path.name,
+        background=BackgroundTask(folder.cleanup),
+        headers=headers,
     )
 
 
@@ -229,10 +243,19 @@ def recording_set(store: StoreOf, experiment_id: ExperimentId) -> FileResponse:
     "/experiments/{experiment_id}/parquet",
     summary="All its trials as one Parquet table",
     response_class=StreamingResponse,
-    responses={200: PARQUET_ANSWER, **problems(404, 422)},
+    responses={200: PARQUET_ANSWER, **problems(404, 422), **conditional.ANSWER},
 )
-def parquet(store: StoreOf, experiment_id: ExperimentId) -> StreamingResponse:
+def parquet(store: StoreOf, request: Request, experiment_id: ExperimentId) -> StreamingResponse:
     """Columns trial_id, trial, one per channel and condition. 422 where it has no rows, or pyarrow is not installed."""
+    headers = _known(store, request, experiment_id)
     chunks = export_parquet(store, experiment_id)
-    headers = {"Content-Disposition": f'attachment; filename="experiment-{experiment_id}.parquet"'}
+    headers["Content-Disposition"] = f'attachment; filename="experiment-{experiment_id}.parquet"'
     return StreamingResponse(chunks, media_type=PARQUET, headers=headers)
+
+
+def _known(store: StoreOf, request: Request, experiment_id: int) -> dict[str, str]:
+    """Headers of what is made from a whole experiment: it does not change any more once that has ended."""
+    found = store.experiment(experiment_id)
+    if found.finished_utc is None:
+        return {}
+    return conditional.unless_known(request, found, store.trials(experiment_id))

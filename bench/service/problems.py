@@ -74,9 +74,11 @@ MEANINGS = {
     409: "it does not fit the present state (an experiment is running, somebody else has the bench)",
     413: "the upload is too large",
     415: "the body is not of the wanted type",
+    421: "the service does not answer to the name in `Host`",
     422: "a value is missing, of the wrong type or outside its range; nothing has moved",
     429: "too many wrong tokens came from this address; `Retry-After` says when the next is looked at",
     502: "the drive does not answer or reports a fault",
+    503: "the store cannot be written or read now: locked, full, or not reached",
 }
 
 
@@ -175,6 +177,8 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(HTTPException)
     async def http(_request: Request, error: HTTPException) -> JSONResponse:
+        if error.status_code == 400:  # FastAPI's word for a body that is no text
+            return problem_response(422, "the body is no JSON: it is not in UTF-8", kind="ValidationError")
         headers = dict(error.headers) if error.headers else None
         return problem_response(error.status_code, str(error.detail), headers=headers)
 

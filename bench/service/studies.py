@@ -6,10 +6,12 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from bench.service import conditional
 from bench.service.access import allow_read, require_token
 from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
+from bench.service.pages import Limit, Offset, cut
 from bench.service.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Studies, Study, StudyName
@@ -96,6 +98,16 @@ class UseModel(BaseModel):
     model_id: int | None = Field(default=None, ge=1, description="null: the newest of the study")
 
 
+def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId) -> None:
+    """Dependency of what is computed from a study: it stays the same as long as no model is added or removed.
+
+    The catalogue of effects is part of it too, which is read at the start of the service.
+    """
+    found = store.study(study_id)
+    models = [(model.id, model.created_utc) for model in store.models(study_id)]
+    response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
+
+
 async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
     def call() -> Any:
         from bench import study  # the lab is imported when it is first needed: `serve` starts at once
@@ -121,32 +133,54 @@ async def create(request: Request, response: Response, store: StoreOf, body: New
     return Study.model_validate(found)
 
 
-@router.get("", summary="All studies")
-def studies(store: StoreOf) -> Studies:
+@router.get("", summary="The studies", responses=problems(422))
+def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
     """Newest first."""
     rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
-    return Studies(items=[StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in rows])
+    found, page = cut(rows[offset : offset + limit + 1], limit, offset)
+    items = [StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in found]
+    return Studies(items=items, **page)
 
 
-@router.get("/{study_id}", summary="One study", responses=problems(404))
+@router.get(
+    "/{study_id}",
+    summary="One study",
+    dependencies=[Depends(kept)],
+    responses=problems(404) | conditional.ANSWER,
+)
 async def study(request: Request, store: StoreOf, study_id: StudyId) -> Study:
     """Its trials, their roles, and the newest model."""
     return Study.model_validate(await _lab(request, "describe", store, study_id))
 
 
-@router.get("/{study_id}/compare", summary="Measured against predicted", responses=problems(404, 422))
+@router.get(
+    "/{study_id}/compare",
+    summary="Measured against predicted",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
 async def compare(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Comparison:
     """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
     return Comparison.model_validate(await _lab(request, "compare", store, study_id, model_id=model_id))
 
 
-@router.get("/{study_id}/diagnose", summary="Which effect is missing", responses=problems(404, 422))
+@router.get(
+    "/{study_id}/diagnose",
+    summary="Which effect is missing",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
 async def diagnose(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
     return Diagnosis.model_validate(await _lab(request, "diagnose", store, study_id, model_id=model_id))
 
 
-@router.get("/{study_id}/ladder", summary="The error from model to model", responses=problems(404, 422))
+@router.get(
+    "/{study_id}/ladder",
+    summary="The error from model to model",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
 async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
     """Training and held-out error of every model of the study."""
     return Ladder.model_validate(await _lab(request, "ladder", store, study_id))

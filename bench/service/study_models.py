@@ -5,6 +5,8 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
+from bench.service.pages import Page
+
 Numbers = list[float | None]
 Condition = float | str | bool
 Role = Literal["training", "held_out"]
@@ -46,8 +48,8 @@ class StudyName(BaseModel):
     created_utc: datetime
 
 
-class Studies(BaseModel):
-    """All studies, newest first."""
+class Studies(Page):
+    """One page of studies, newest first."""
 
     items: list[StudyName]
 

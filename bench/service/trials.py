@@ -4,13 +4,15 @@ import math
 from datetime import datetime
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Path, Query
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 
 from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
+from bench.service import conditional
 from bench.service.access import allow_read
 from bench.service.json_numbers import column, plain
+from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
@@ -56,13 +58,10 @@ class TrialWithEvents(Trial):
     events: list[Event]
 
 
-class Trials(BaseModel):
+class Trials(Page):
     """One page of trials, in the order in which they were made."""
 
     items: list[Trial]
-    limit: int
-    offset: int
-    next_offset: int | None = Field(description="offset of the next page; null on the last")
 
 
 class Samples(BaseModel):
@@ -88,25 +87,33 @@ def trials(
     experiment_id: Annotated[int | None, Query(ge=1)] = None,
     kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
     outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
-    limit: Annotated[int, Query(ge=1, le=1000)] = 100,
-    offset: Annotated[int, Query(ge=0, le=2**31)] = 0,
+    limit: Limit = 100,
+    offset: Offset = 0,
 ) -> Trials:
     """In the order in which they were made. Without filters: all trials."""
     found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
-    items = [Trial.model_validate(represent(trial)) for trial in found[:limit]]
-    return Trials(items=items, limit=limit, offset=offset, next_offset=offset + limit if len(found) > limit else None)
+    items, page = cut(found, limit, offset)
+    return Trials(items=[Trial.model_validate(represent(trial)) for trial in items], **page)
 
 
-@router.get("/{trial_id}", summary="One trial with its events", responses=problems(404))
-def trial(store: StoreOf, trial_id: TrialId) -> TrialWithEvents:
-    """Conditions, outcome and why, results, channels, events."""
+@router.get("/{trial_id}", summary="One trial with its events", responses=problems(404) | conditional.ANSWER)
+def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialId) -> TrialWithEvents:
+    """Conditions, outcome and why, results, channels, events. With an `ETag`, which changes when it does."""
     events = [{"time_s": event.time_s, "name": event.name, "detail": event.detail} for event in store.events(trial_id)]
-    return TrialWithEvents.model_validate({**represent(store.trial(trial_id)), "events": events})
+    found = {**represent(store.trial(trial_id)), "events": events}
+    response.headers.update(conditional.unless_known(request, found))
+    return TrialWithEvents.model_validate(found)
 
 
-@router.get("/{trial_id}/samples", summary="Samples, down-sampled on request", responses=problems(404, 422))
+@router.get(
+    "/{trial_id}/samples",
+    summary="Samples, down-sampled on request",
+    responses=problems(404, 422) | conditional.ANSWER,
+)
 def samples(
     store: StoreOf,
+    request: Request,
+    response: Response,
     trial_id: TrialId,
     channels: Annotated[
         str,
@@ -120,6 +127,7 @@ def samples(
 ) -> Samples:
     """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
     found = store.trial(trial_id)
+    response.headers.update(_known(request, found))
     names = [name for name in channels.split(",") if name] or list(found.channels)
     # the store keeps rows for each channel; together they are to stay near `points`
     share = max(LEAST_PER_CHANNEL, points // len(names))
@@ -143,12 +151,13 @@ def _or(value: float | None, otherwise: float) -> float:
             "content": {"text/csv": {"example": "time_s,position_rad,current_a\n0.0,0.0,0.012\n"}},
         },
         **problems(404),
+        **conditional.ANSWER,
     },
 )
-def csv(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
+def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
     """The same file that a recording set holds for the trial: numbers are exact."""
     found = store.trial(trial_id)
-    headers = {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
+    headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
     return StreamingResponse(
         csv_chunks(stream_of_trial(store, found)), media_type="text/csv; charset=utf-8", headers=headers
     )
@@ -158,11 +167,16 @@ def csv(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
     "/{trial_id}/parquet",
     summary="The whole trial as Parquet",
     response_class=StreamingResponse,
-    responses={200: PARQUET_ANSWER, **problems(404, 422)},
+    responses={200: PARQUET_ANSWER, **problems(404, 422), **conditional.ANSWER},
 )
-def parquet(store: StoreOf, trial_id: TrialId) -> StreamingResponse:
+def parquet(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
     """One column per channel and condition; null where not measured. 422 where pyarrow is not installed."""
     found = store.trial(trial_id)
+    headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
     chunks = parquet_chunks([stream_of_trial(store, found)])
-    headers = {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
     return StreamingResponse(chunks, media_type=PARQUET, headers=headers)
+
+
+def _known(request: Request, found: StoredTrial) -> dict[str, str]:
+    """Headers of what is made from a trial's samples: they do not change any more once it has ended."""
+    return {} if found.finished_utc is None else conditional.unless_known(request, found)

@@ -38,6 +38,13 @@ def test_a_body_that_is_no_json_is_told_where(service):
     assert "the body is no JSON: Expecting value, at character 1" in answer.json()["detail"]
 
 
+def test_a_body_in_another_encoding_is_a_problem(service):
+    for sent in (b'{"kind": "\xff"}', '{"kind": "st\u00e9ps"}'.encode("latin-1"), '{"kind": "steps"}'.encode("cp037")):
+        answer = service.client.post("/experiments", content=sent, headers={"Content-Type": "application/json"})
+        assert answer.status_code == 422, sent
+        assert answer.headers["content-type"] == "application/problem+json"
+
+
 @pytest.mark.parametrize("body", [b"[", b'{"reason": 5}', b'{"reason": "\\ud800"}', b"\xff", b"x" * 100_000])
 def test_stop_works_whatever_its_body_is(idle, body):
     idle.start("steps", pace="real-time", repeats=3)

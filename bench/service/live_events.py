@@ -1,0 +1,130 @@
+"""The stream of /live: what was missed, then status and rows as they come."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import anyio.to_thread
+
+from bench.bench_control import BenchControl
+from bench.drive_factory import is_simulated
+from bench.lease import Lease
+from bench.live import LiveRows
+from bench.service.json_numbers import column
+from bench.service.leases import lease_now
+from bench.service.live_rows import Rows, rows_of
+from bench.service.replay import CHUNK_ROWS, GapError, Mark, Piece, missed, skipped_experiments
+from bench.service.status import status_of
+from bench.store import Store
+from bench.store.errors import StoreError
+
+PERIOD_S = 0.05
+STATUS_EVERY = 10  # periods; in between, only what is new is sent
+ALL_ROWS = 10**6  # more than the live buffer keeps
+
+
+@dataclass(frozen=True, slots=True)
+class LiveEvents:
+    """Makes the events for one listener.
+
+    Attributes:
+        state: of the application; `life` names this process, `ending` ends the stream.
+    """
+
+    state: Any
+    store: Store
+    runner: BenchControl
+    lease: Lease
+
+    async def stream(self, after_row: int, limit: int, last_event_id: str | None) -> AsyncIterator[str]:
+        """Events as text, until the listener goes or the service ends."""
+        if last_event_id is not None:
+            now = self.runner.live(-1, 1)
+            async for event in self._missed(last_event_id, now):
+                yield event
+            after_row = now.last_row
+        async for event in self._coming(after_row, limit):
+            yield event
+
+    async def _coming(self, after_row: int, limit: int) -> AsyncIterator[str]:
+        shown, period = "", 0
+        while not self.state.ending:
+            found = self.runner.live(after_row, limit)
+            if len(found.rows) or (found.restarted and found.last_row != after_row):
+                after_row = found.last_row
+                yield _event("rows", rows_of(found).model_dump_json(), Mark.of(self.state.life, found))
+            status = self._status()
+            key = _without_progress(status)
+            if key != shown or period % STATUS_EVERY == 0:
+                shown = key
+                yield _event("status", json.dumps(status))
+            period += 1
+            await asyncio.sleep(PERIOD_S)
+
+    async def _missed(self, last_event_id: str, now: LiveRows) -> AsyncIterator[str]:
+        """What came between an event and the live row `now`."""
+        mark = Mark.read(last_event_id)
+        if mark is None:
+            yield _gap("Last-Event-ID is none of this service; rows come from now on")
+            return
+        if mark.life == self.state.life and mark.row >= 0:
+            kept = self.runner.live(mark.row, ALL_ROWS)
+            if not kept.restarted:
+                for event in self._from_buffer(kept, now.last_row):
+                    yield event
+                return
+        try:
+            pieces = await anyio.to_thread.run_sync(missed, self.store, mark, now)
+            for piece in pieces:
+                yield await anyio.to_thread.run_sync(self._from_store, piece)
+            skipped = await anyio.to_thread.run_sync(skipped_experiments, self.store, mark, now)
+        except (GapError, StoreError) as error:
+            yield _gap(str(error))
+            return
+        if skipped:
+            yield _gap(skipped)
+
+    def _from_buffer(self, kept: LiveRows, last_row: int) -> list[str]:
+        wanted = kept.rows[: len(kept.rows) - (kept.last_row - last_row)]
+        first_row = last_row + 1 - len(wanted)
+        events = []
+        for start in range(0, len(wanted), CHUNK_ROWS):
+            rows = wanted[start : start + CHUNK_ROWS]
+            end = first_row + start + len(rows) - 1
+            part = replace(kept, rows=rows, last_row=end, trial_rows=kept.trial_rows - (kept.last_row - end))
+            events.append(_event("rows", rows_of(part).model_dump_json(), Mark.of(self.state.life, part)))
+        return events
+
+    def _from_store(self, piece: Piece) -> str:
+        found = self.store.part(piece.trial, piece.first_row, piece.rows)
+        rows = Rows(
+            channels=list(piece.trial.channels),
+            rows=[column(row) for row in found.T],
+            last_row=-1,
+            restarted=piece.first_row == 0,
+            trial_id=piece.trial.id,
+        )
+        mark = Mark(self.state.life, -1, piece.trial.id, piece.first_row + piece.rows)
+        return _event("rows", rows.model_dump_json(), mark)
+
+    def _status(self) -> dict[str, Any]:
+        simulated = is_simulated(self.runner.configuration)
+        return status_of(self.runner.status(), simulated, lease_now(self.lease.current()))
+
+
+def _without_progress(status: dict[str, Any]) -> str:
+    """What makes a status new."""
+    run, holder = status["run"], status["lease"]
+    still = run and run | {"progress": 0, "left_s": 0}
+    return json.dumps([status["state"], status["prompt"], still, holder and holder["token"]])
+
+
+def _gap(detail: str) -> str:
+    return _event("gap", json.dumps({"detail": detail}))
+
+
+def _event(name: str, data: str, mark: Mark | None = None) -> str:
+    label = "" if mark is None else f"id: {mark}\n"
+    return f"event: {name}\n{label}data: {data}\n\n"

@@ -1,0 +1,106 @@
+"""Uploads that are broken on purpose: a clear refusal, and nothing is kept of them."""
+
+import io
+import os
+import random
+import tempfile
+import zipfile
+
+import pytest
+
+RIG = b'name = "r"\n'
+TABLE = b"time_s,duty\n" + b"".join(b"%d.0,0.1\n" % row for row in range(50))
+TYPE = {"Content-Type": "application/zip"}
+MUTATIONS = 60
+
+
+def zipped(*members: tuple[str | zipfile.ZipInfo, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in members:
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def with_table(text: bytes) -> bytes:
+    return zipped(("rig.toml", RIG), ("a.csv", text))
+
+
+def link(target: str) -> tuple[zipfile.ZipInfo, bytes]:
+    info = zipfile.ZipInfo("a.csv")
+    info.create_system, info.external_attr = 3, 0o120777 << 16
+    return info, target.encode()
+
+
+def many_entries() -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for number in range(100_000):
+            archive.writestr(zipfile.ZipInfo(f"{number}.csv"), b"")
+    return buffer.getvalue()
+
+
+UPLOADS = {
+    "path traversal": lambda: zipped(("rig.toml", RIG), ("../a.csv", TABLE)),
+    "absolute path": lambda: zipped(("rig.toml", RIG), ("/tmp/a.csv", TABLE)),
+    "path of Windows": lambda: zipped(("rig.toml", RIG), ("..\\a.csv", TABLE)),
+    "traversal in trials.csv": lambda: zipped(
+        ("rig.toml", RIG), ("trials.csv", b"file,kind\n../../a.csv,steps\n"), ("a.csv", TABLE)
+    ),
+    "link": lambda: zipped(("rig.toml", RIG), link("/etc/passwd")),
+    "bomb": lambda: zipped(("rig.toml", RIG), ("a.csv", TABLE), ("b.csv", b"0" * 100_000_000)),
+    "100000 entries": many_entries,
+    "infinite": lambda: with_table(b"time_s,duty\n0,1e999\n"),
+    "number of 100000 digits": lambda: with_table(b"time_s,duty\n0," + b"9" * 100_000 + b"\n"),
+    "huge time": lambda: with_table(b"time_s,duty\n0,0\n1e308,0\n1e309,0\n"),
+    "time backwards": lambda: with_table(b"time_s,duty\n1,0\n0,0\n"),
+    "UTF-16 table": lambda: with_table(TABLE.decode().encode("utf-16")),
+    "Latin-1 rig": lambda: zipped(("rig.toml", 'name = "é"'.encode("latin-1")), ("a.csv", TABLE)),
+    "huge number in the rig": lambda: zipped(("rig.toml", RIG + b"[gear]\nratio = 1e400\n"), ("a.csv", TABLE)),
+    "deep TOML": lambda: zipped(("rig.toml", b"a = " + b"[" * 20_000), ("a.csv", TABLE)),
+    "NUL in the table": lambda: with_table(b"time_s,duty\n0,\x000\n"),
+    "columns without end": lambda: with_table(b"time_s," + b"x," * 200_000 + b"\n"),
+    "one endless line": lambda: with_table(b"time_s,duty\n" + b"1" * 5_000_000),
+    "empty zip": zipped,
+    "truncated": lambda: with_table(TABLE)[:-30],
+}
+
+
+def refused(service, body: bytes) -> str:
+    before = service.store.experiments(limit=1), set(os.listdir(tempfile.gettempdir()))
+    answer = service.client.post("/recording-sets?name=fuzzed", content=body, headers=TYPE)
+    assert 400 <= answer.status_code < 500, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert service.store.experiments(limit=1) == before[0]
+    left = {name for name in os.listdir(tempfile.gettempdir()) if name.startswith("friction-bench-")} - before[1]
+    assert not left
+    return str(answer.json()["detail"])
+
+
+@pytest.mark.parametrize("what", UPLOADS)
+def test_a_hostile_upload_is_refused_and_leaves_nothing(service, what):
+    detail = refused(service, UPLOADS[what]())
+    assert 10 < len(detail) < 2000
+    assert "/tmp" not in detail.replace("/tmp/a.csv", "")
+
+
+def test_the_same_set_unbroken_comes_in(service):
+    answer = service.client.post("/recording-sets?name=whole", content=with_table(TABLE), headers=TYPE)
+    assert (answer.status_code, answer.json()["rows"]) == (201, 50)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_damaged_at_random_it_comes_in_whole_or_not_at_all(service, seed):
+    generator, whole = random.Random(seed), with_table(TABLE)
+    for _ in range(MUTATIONS // 4):
+        body = bytearray(whole)
+        for _ in range(generator.randint(1, 8)):
+            body[generator.randrange(len(body))] = generator.randrange(256)
+        cut = bytes(body[: generator.randint(1, len(body))] if generator.random() < 0.3 else body)
+        before = service.store.experiments(limit=1)
+        answer = service.client.post("/recording-sets?name=mutated", content=cut, headers=TYPE)
+        assert answer.status_code in (201, 422), answer.text
+        if answer.status_code == 422:
+            assert service.store.experiments(limit=1) == before
+        else:  # a byte that changes nothing that is read
+            assert (answer.json()["trials"], answer.json()["rows"]) == (1, 50)
