@@ -15,5 +15,5 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService
 def idle(service: RunningService) -> RunningService:
     """The service with nothing running."""
     service.runner.stop("the next test begins")
-    assert service.runner.wait(10.0)
+    assert service.runner.wait(90.0)  # the first run of all compiles the plant
     return service

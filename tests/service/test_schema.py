@@ -23,6 +23,7 @@ TAGS = [
     "audit",
     "bench",
     "calibrations",
+    "challenges",
     "effects",
     "experiments",
     "lease",
@@ -41,7 +42,7 @@ def bytes_as_they_are(_context, value):
 @pytest.fixture(scope="module")
 def recorded(service):
     """Something to read: with it, small numbers in paths name what is there."""
-    assert service.runner.wait(30.0)
+    assert service.runner.wait(90.0)
     service.run("steps", repeats=1)
     return service
 
@@ -77,6 +78,6 @@ def ask(operation, mode, recorded) -> None:
             case.call_and_validate(headers=HEADERS, checks=CHECKS, timeout=30)
         finally:
             recorded.runner.stop("the next request comes")
-            assert recorded.runner.wait(30.0)
+            assert recorded.runner.wait(90.0)
 
     send()
