@@ -1,0 +1,57 @@
+"""A study: which physical effect is missing in the model."""
+
+from typing import Any
+
+from bench.client.answer import Answer, Answers
+from bench.client.connection import Connection
+
+
+class Study:
+    """What `Bench.new_study` returns.
+
+    Attributes:
+        study_id: its number.
+    """
+
+    def __init__(self, connection: Connection, study_id: int) -> None:
+        self._connection = connection
+        self.study_id = study_id
+
+    @property
+    def facts(self) -> Answer:
+        """Trials and their roles, effort, the model that it stands at."""
+        return Answer(self._get(""))
+
+    def compare(self, model_id: int | None = None) -> Answer:
+        """Measured against predicted: series, residuals, errors, parameters."""
+        return Answer(self._get("/compare", model_id=model_id))
+
+    def diagnose(self, model_id: int | None = None) -> Answer:
+        """What is missing, how sure that is, and what adding it would bring."""
+        return Answer(self._get("/diagnose", model_id=model_id))
+
+    def add(self, effect: str, model_id: int | None = None) -> Answer:
+        """One effect more: refit; the error before and after."""
+        return self._change(effect, "add", model_id)
+
+    def drop(self, effect: str, model_id: int | None = None) -> Answer:
+        """One effect less."""
+        return self._change(effect, "drop", model_id)
+
+    def ladder(self) -> Answers:
+        """Error of every model of the study, on the trials of the fit and on the others."""
+        return Answers(self._get("/ladder")["rungs"])
+
+    def _get(self, path: str, **query: Any) -> Any:
+        return self._connection.get(f"/studies/{self.study_id}{path}", **query)
+
+    def _change(self, effect: str, action: str, model_id: int | None) -> Answer:
+        body = {"effect": effect, "action": action, "model_id": model_id}
+        return Answer(self._connection.post(f"/studies/{self.study_id}/models", body))
+
+    def __repr__(self) -> str:
+        facts = self.facts
+        return f"<Study {self.study_id} {facts['name']}: {len(facts['trials'])} trials, model {facts['model_id']}>"
+
+    def _repr_html_(self) -> str:
+        return self.facts._repr_html_()

@@ -1,0 +1,145 @@
+"""The client against a live service."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from bench import station
+from bench.client import Bench, Refused, Unreachable, connection
+from bench.drive_factory import Equipment
+from bench.technician import PersonTechnician
+from tests.bench.fake_drive import FakeDrive
+from tests.service.running_service import TOKEN
+
+
+def test_a_run_from_start_to_arrays(bench, service):
+    run = bench.start("steps", repeats=2, load_kg=0.05, operator="Ada", note="from a notebook").wait(90.0)
+    assert (run.outcome, run.reason, run.record["operator"]) == ("completed", "", "Ada")
+    assert repr(run) == f"<Run {run.experiment_id} steps: completed>"
+    trials = run.trials()
+    assert [trial.conditions["repeat"] for trial in trials] == [1, 2]
+    channels = trials[0].channels()
+    kept = service.store.samples(trials[0].trial_id)
+    assert set(channels) == set(kept)
+    for name, values in kept.items():
+        assert np.array_equal(channels[name], values, equal_nan=True), name
+    some = trials[0].channels("position_rad", "time_s")
+    assert list(some) == ["position_rad", "time_s"]
+    few = trials[0].channels("position_rad", points=100)
+    assert len(few["time_s"]) < 150
+    with pytest.raises(KeyError, match="no channel colour"):
+        trials[0].channels("colour")
+    assert f"<Trial {trials[0].trial_id} step-001" in repr(bench.trial(trials[0].trial_id))
+
+
+def test_lists_are_read_to_their_end(bench, service, monkeypatch):
+    monkeypatch.setattr("bench.client.connection.PAGE", 1)
+    assert [run.experiment_id for run in bench.experiments()] == [one.id for one in service.store.experiments()]
+    assert len(bench.trials(kind="steps")) == len(service.store.trials(kind="steps"))
+
+
+def test_what_can_be_started_shows_as_a_table(bench):
+    kinds = bench.kinds()
+    assert "steps" in [kind["name"] for kind in kinds]
+    assert kinds._repr_html_().startswith("<table><tr><th>name</th>")
+    assert "<th>state</th><td>idle</td>" in bench.status()._repr_html_()
+
+
+def test_refusals_are_exceptions_with_the_words_of_the_service(bench, service):
+    with pytest.raises(Refused, match="load_kg is 5 kg; allowed is at most") as refused:
+        bench.start("steps", load_kg=5)
+    assert (refused.value.status, refused.value.kind) == (422, "LimitError")
+    with pytest.raises(Refused) as refused:
+        bench.start("steps", repeats="many")
+    assert refused.value.errors[0]["field"] == "parameters.repeats"
+    with Bench(service.url, "wrong-token-0123456789") as stranger, pytest.raises(Refused, match="needs a token"):
+        stranger.stop()
+
+
+def test_a_service_that_is_not_there_is_named(monkeypatch):
+    monkeypatch.setattr(connection, "PAUSE_S", 0.0)
+    with Bench("http://127.0.0.1:9", TOKEN) as nobody, pytest.raises(Unreachable, match=r"127.0.0.1:9 does not answer"):
+        nobody.status()
+
+
+def test_a_start_whose_answer_is_lost_starts_once(bench, service, monkeypatch):
+    monkeypatch.setattr(connection, "PAUSE_S", 0.0)
+    before = service.store.experiments(limit=1)[0].id
+    request, lost = bench._connection._http.request, []
+
+    def losing(method, path, **how):
+        answer = request(method, path, **how)
+        if not lost:
+            lost.append(answer)
+            raise connection.httpx.ReadTimeout("the answer was lost")
+        return answer
+
+    monkeypatch.setattr(bench._connection._http, "request", losing)
+    run = bench.start("steps", repeats=1).wait(90.0)
+    assert lost[0].json()["experiment_id"] == run.experiment_id == before + 1
+    assert service.store.experiments(limit=1)[0].id == run.experiment_id
+
+
+def test_stop(bench):
+    run = bench.start("steps", pace="real-time", repeats=5)
+    assert run.status()["outcome"] == "running"
+    with pytest.raises(TimeoutError, match="runs still after"):
+        run.wait(0.1)
+    assert run.stop("cable is caught").outcome == "stopped"
+    assert "cable is caught" in run.reason
+
+
+def test_live_rows_are_the_recorded_ones(bench, service):
+    run = bench.start("steps", pace="real-time", repeats=1)
+    heard = []
+    for rows in bench.live():
+        if rows.trial_id is not None and rows.restarted and not heard:
+            heard = []
+        heard += rows.channels["time_s"].tolist()
+        if len(heard) > 200:
+            break
+    run.stop()
+    recorded = service.store.samples(run.trials()[0].trial_id)["time_s"].tolist()
+    begin = recorded.index(heard[-1]) - 199
+    assert heard[-200:] == recorded[begin : begin + 200]
+
+
+def test_the_person_at_the_bench_is_asked(bench, service, monkeypatch):
+    drive = FakeDrive()
+    monkeypatch.setattr(station, "make_equipment", lambda _configuration, ask: Equipment(drive, PersonTechnician(ask)))
+    asked = []
+    run = bench.start("steps", repeats=1)
+    waiting = threading.Thread(target=run.wait, kwargs={"timeout_s": 60.0, "on_prompt": asked.append}, daemon=True)
+    waiting.start()
+    deadline_s = time.monotonic() + 30.0
+    while drive.exchanges == 0:
+        assert time.monotonic() < deadline_s
+        time.sleep(0.02)
+    assert asked == ["Hang 100 g at the tip of the arm, and stand clear."]
+    run.stop()
+    waiting.join(30.0)
+
+
+def test_a_lease_is_kept_while_the_block_runs(bench, service):
+    with service.with_token("other client", "operator") as other:
+        with bench.lease("Ada", duration_s=5.0):
+            assert bench.status()["lease"]["holder"] == "Ada"
+            time.sleep(3.0)
+            assert bench.status()["lease"]["remaining_s"] > 2.5
+            assert other.post("/lease").status_code == 409
+        assert other.post("/lease").status_code == 201
+        assert other.delete("/lease").status_code == 204
+
+
+def test_a_study_names_what_is_missing(bench, study):
+    assert repr(study).startswith("<Study 1 arm: 6 trials")
+    found = study.diagnose()
+    assert found["verdict"] == "missing"
+    assert "viscous_asymmetry" in found["classes"][0]["effects"]
+    assert found["sentence"] in repr(found)
+    changed = study.add("viscous_asymmetry")
+    assert changed["after"]["held_out"] < changed["before"]["held_out"]
+    assert [len(rung["effects"]) for rung in study.ladder()][:2] != []
+    assert study.compare()["model_id"] == changed["model_id"]
