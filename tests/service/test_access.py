@@ -33,9 +33,12 @@ CHANGES = [
     ("POST", "/studies"),
     ("POST", "/studies/1/models"),
     ("POST", "/studies/1/search"),
+    ("POST", "/studies/1/use"),
     ("POST", "/studies/1/trials"),
     ("POST", "/studies/1/suggest"),
     ("DELETE", "/studies/1/models/1"),
+    ("POST", "/challenges"),
+    ("POST", "/challenges/1/reveal"),
 ]
 
 

@@ -31,6 +31,7 @@ TAGS = [
     "experiments",
     "lease",
     "live",
+    "queue",
     "recording sets",
     "studies",
     "trials",
@@ -87,6 +88,8 @@ def ask(operation, mode, recorded) -> None:
         try:
             case.call_and_validate(headers=HEADERS, checks=CHECKS, timeout=30)
         finally:
+            recorded.client.post("/queue/pause")
+            recorded.client.delete("/queue")
             recorded.runner.stop("the next request comes")
             assert recorded.runner.wait(90.0)
 
