@@ -45,7 +45,7 @@ def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
         page.emulate_media(color_scheme=scheme)
         if token:
             page.add_init_script(WITH_TOKEN)
-        page.set_default_timeout(20_000)
+        page.set_default_timeout(45_000)  # of a loaded machine; nothing here takes a second by itself
         page.on("console", lambda message: complaints.append(message.text) if is_complaint(message) else None)
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.goto(f"{service.url}/{view}")

@@ -7,17 +7,20 @@ import { nameOf, number } from "./format.js";
 import { leasePanel } from "./lease.js";
 import { livePlot } from "./liveplot.js";
 import { attempt } from "./problem.js";
+import { queuePanel } from "./queue.js";
 
 const UNITS = { degC: "°C" };
 
 export function benchView(place, { live }) {
   const start = h("div");
   const lease = h("div");
+  const queue = h("div");
   const drive = h("div");
   const plot = h("div");
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, start), h("div", { class: "wide" }, panel("Live", plot)),
-    panel("Drive and limits", drive)));
-  startForm(start, live);
+    panel("Queue", queue), panel("Drive and limits", drive)));
+  const waiting = queuePanel(queue);
+  startForm(start, live, () => waiting.refresh());
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
   let shown = live.status?.run?.experiment_id;
   const changed = () => {
@@ -31,6 +34,7 @@ export function benchView(place, { live }) {
   const leaveLease = leasePanel(lease, live);
   return () => {
     leaveLease();
+    waiting.leave();
     live.removeEventListener("status", changed);
     leave();
   };

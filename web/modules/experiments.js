@@ -5,7 +5,8 @@ import { h, replace } from "./dom.js";
 import { Form } from "./form.js";
 import { attempt, problemBox } from "./problem.js";
 
-export async function startForm(place, live) {
+// queued(): something was put into the queue
+export async function startForm(place, live, queued) {
   const kinds = await attempt(place, async () => (await get("/experiment-kinds")).items);
   if (!kinds) return;
   const choice = h("select", { id: "kind" }, kinds.map((kind) => h("option", { value: kind.name }, kind.title)));
@@ -14,7 +15,9 @@ export async function startForm(place, live) {
   const operator = h("input", { id: "operator", autocomplete: "name" });
   const note = h("input", { id: "note", autocomplete: "off" });
   const pace = h("input", { type: "checkbox", id: "fast" });
+  const tags = h("input", { id: "tags", autocomplete: "off", placeholder: "separated by commas" });
   const button = h("button", { class: "primary" }, "Start");
+  const later = h("button", { type: "button" }, "Queue");
   const answer = h("div");
   let form;
 
@@ -24,28 +27,37 @@ export async function startForm(place, live) {
     summary.textContent = kind.summary;
     replace(parameters, form.element);
   };
-  const submit = async (event) => {
-    event.preventDefault();
+  const wanted = () => {
     form.showProblems([], "parameters");
     const body = { kind: choice.value, parameters: form.values(), operator: operator.value, note: note.value };
     if (live.status?.simulated) body.pace = pace.checked ? "fast" : "real-time";
-    const started = await attempt(answer, () => send(body, form, answer), { button });
+    return { ...body, tags: tags.value.split(",").map((one) => one.trim()).filter(Boolean) };
+  };
+  later.addEventListener("click", async () => {
+    const added = await attempt(answer, () => send("/queue", { items: [wanted()] }, form, answer), { button: later });
+    if (!added) return;
+    replace(answer, h("div", { class: "good", role: "status" }, "It is in the queue; it starts when it is its turn."));
+    queued();
+  });
+  const submit = async (event) => {
+    event.preventDefault();
+    const started = await attempt(answer, () => send("/experiments", wanted(), form, answer), { button });
     if (started) replace(answer, h("div", { class: "good", role: "status" }, `Experiment ${started.experiment_id} has started.`));
   };
   choice.addEventListener("change", choose);
   choose();
   replace(place, h("form", { class: "form", onsubmit: submit, novalidate: true },
     h("label", { for: "kind" }, "What to do", choice), summary, parameters,
-    h("details", {}, h("summary", {}, "Operator, note, pace"),
+    h("details", {}, h("summary", {}, "Operator, note, tags, pace"),
       h("div", { class: "form" },
-        h("label", { for: "operator" }, "Operator", operator), h("label", { for: "note" }, "Note", note),
+        h("label", { for: "operator" }, "Operator", operator), h("label", { for: "note" }, "Note", note), h("label", { for: "tags" }, "Tags", tags),
         h("label", { class: "inline" }, pace, "as fast as the computer can (simulated drive only)"))),
-    h("div", { class: "row" }, button), answer));
+    h("div", { class: "row" }, button, later), answer));
 }
 
-async function send(body, form, answer) {
+async function send(path, body, form, answer) {
   try {
-    return await post("/experiments", body);
+    return await post(path, body);
   } catch (error) {
     const elsewhere = error.errors ? form.showProblems(error.errors, "parameters") : [];
     if (error.errors?.length && !elsewhere.length) {

@@ -64,7 +64,7 @@ function experimentTable(items, choose) {
     { title: "Source", cell: (one) => h("span", { class: `badge ${one.source}` }, one.source) },
     { title: "Started", cell: (one) => when(one.started_utc) },
     { title: "Outcome", cell: (one) => outcome(one) },
-    { title: "Note", cell: (one) => one.note || one.parameters.name },
+    { title: "Note", cell: (one) => [one.note || one.parameters.name || "", one.tags?.length > 0 && h("div", { class: "hint" }, one.tags.join(", "))].filter(Boolean) },
     { title: "", cell: (one) => withFiles(
       [h("button", { class: "small", type: "button", "aria-label": `Trials of experiment ${one.experiment_id}`, onclick: () => choose(one.experiment_id) }, "Trials")],
       [["Export", `Recording set of experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/recording-set`, `experiment-${one.experiment_id}.zip`],
