@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from bench.cli.output import console, say
 from bench.cli.prompt import attend
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from bench.runner import Runner, RunnerStatus
 
 _POLL_S = 0.1
+_SOON_S = 0.01
 
 
 def watch(runner: "Runner", quiet: bool) -> None:
@@ -20,6 +21,8 @@ def watch(runner: "Runner", quiet: bool) -> None:
         runner: has been started.
         quiet: show nothing.
     """
+    if not quiet:
+        _announce(runner)
     if quiet:
         while not runner.wait(_POLL_S):
             attend(runner)
@@ -29,8 +32,17 @@ def watch(runner: "Runner", quiet: bool) -> None:
         _lines(runner)
 
 
+def _announce(runner: "Runner") -> None:
+    """How many trials are to come, and how long they take."""
+    while not runner.status().trial_count and not runner.wait(_SOON_S):
+        continue
+    found = runner.status()
+    say(f"{found.kind}: {found.trial_count} trials, about {found.duration_s:.0f} s of the joint's time")
+
+
 def _bar(runner: "Runner") -> None:
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    times = (TimeElapsedColumn(), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), *times)
     with Progress(*columns, console=console()) as progress:
         task = progress.add_task("starting", total=1.0)
         ended = False

@@ -43,6 +43,7 @@ def test_an_experiment_from_start_to_record(runner, store):
     experiment_id = runner.start("steps", {"repeats": 2}, operator="R. Saini", note="first")
     status = finished(runner)
     assert (status.outcome, status.reason, status.progress, status.trial_count) == ("completed", "", 1.0, 2)
+    assert status.left_s == 0.0 < status.duration_s
     experiment = store.experiment(experiment_id)
     assert (experiment.outcome, experiment.source, experiment.operator) == ("completed", "simulated", "R. Saini")
     assert experiment.parameters["load_kg"] == 0.1  # defaults are on record too

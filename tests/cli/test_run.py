@@ -34,6 +34,7 @@ def test_a_run_and_what_is_listed_afterwards(command):
 
 def test_plain_lines_where_there_is_no_terminal(command):
     shown = command("run", "steps", "--repeats", 1).stdout
+    assert "steps: 1 trials, about " in shown
     assert "steps: trial 1 of 1" in shown
     assert "experiment 1: completed" in shown
     assert "\x1b" not in shown
@@ -106,6 +107,7 @@ def test_a_signal_stops_the_joint_and_is_recorded(tmp_path, number, times, code)
     words = [sys.executable, "-m", "bench.cli", "run", "steps", "--pace", "real-time"]
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
+        assert "steps: 25 trials, about " in process.stdout.readline()
         assert "trial 1 of 25" in process.stdout.readline()
         wait_for_rows(tmp_path / "friction-bench.sqlite", 21)
         for _ in range(times):
