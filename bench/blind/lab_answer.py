@@ -17,6 +17,7 @@ from compensator.lab.validation import held_out
 Classes = tuple[tuple[str, ...], ...]
 CHAIN = "measurement_delay"  # a sample is taken at the end of the cycle whose effort it holds: half a cycle, at least
 STRUCTURE = "structure over"  # how a diagnosis says that something remains once the best effect is in
+MORE = "times the effort's own noise"  # and where nothing is confirmed
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,4 +78,6 @@ def ask_lab(fit: Fit, steps: int) -> LabAnswer:
 
 
 def _flags(found: Diagnosis) -> bool:
+    if found.verdict == "nothing":
+        return MORE in found.sentence
     return found.verdict == "unknown-effect" or any(STRUCTURE in note for note in found.notes)

@@ -10,8 +10,9 @@ from compensator.lab.evidence import Evidence, Screening, screen
 from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
 from compensator.lab.fit import Fit, with_columns
 from compensator.lab.gain import held_out_gain
+from compensator.lab.remainder import Remainder, remainder_of
 from compensator.lab.validation import held_out
-from compensator.lab.wording import answer_in_words
+from compensator.lab.wording import answer_in_words, unexplained_in_words
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
@@ -61,6 +62,12 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         return Answer("unknown-effect", sentence, generic.p_value, examined, driver, [], curve.noncentrality)
     found = named.p_value <= SIGNIFICANT and is_confirmed(examined[0])
     verdict: Verdict = "missing" if found else "nothing"
+    if not found and generic is not None:
+        remainder = _more_than_noise(fit, gathered)
+        if remainder is not None:
+            nearest = _nearest_driver(generic)
+            words = unexplained_in_words(remainder, nearest)
+            return Answer("nothing", words, named.p_value, examined, None, [], best.noncentrality)
     sentence = answer_in_words(verdict, named.p_value, examined, None)
     notes = _what_remains(gathered, best) if found else []
     return Answer(verdict, sentence, named.p_value, examined, None, notes, best.noncentrality)
@@ -95,13 +102,32 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidenc
     return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
 
 
+def _more_than_noise(fit: Fit, gathered: Candidates) -> Remainder | None:
+    """What the model leaves, where it is more than noise; None where it is not."""
+    found = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
+    return found if found.is_more_than_noise else None
+
+
+def _nearest_driver(generic: Screening) -> str | None:
+    """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
+    best = generic.evidence[0] if generic.evidence else None
+    return best.block.name if best is not None and best.score > 0.0 else None
+
+
 def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
     """What remains once the best effect is in the model."""
     left = gathered.with_block(best.block)
-    rest = screen(left.bases, left.generic, gathered.fit.dataset.block_index[gathered.rows])
+    dataset, rows = gathered.fit.dataset, gathered.rows
+    remainder = remainder_of(dataset, left.bases[best.block.base].residual / gathered.weights, rows)
+    if not remainder.is_more_than_noise:
+        return []
+    rest = screen(left.bases, left.generic, dataset.block_index[rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         name = rest.evidence[0].block.name
         driver = DRIVERS[name.removesuffix(" against motion")]
         how = " against the motion" if name.endswith("against motion") else ""
         return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
-    return []
+    return [
+        f"After {best.block.name}, what is left is still {remainder.over_noise:.1f} times the effort's own noise, and "
+        "has structure over no variable that is measured; add it and diagnose again."
+    ]

@@ -1,7 +1,10 @@
 """What a diagnosis says in words."""
 
+from math import isfinite
+
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.examination import SIGNIFICANT
+from compensator.lab.remainder import Remainder
 
 
 def answer_in_words(verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None) -> str:
@@ -31,4 +34,18 @@ def _nothing(p_value: float) -> str:
     return (
         f"No effect of the catalogue is confirmed: the residual is not mere noise (p = {p_value:.3g}), but none lowers "
         "the held-out error for sure."
+    )
+
+
+def unexplained_in_words(remainder: Remainder, driver: str | None) -> str:
+    """The answer where much is left that no effect and no curve explains."""
+    if isfinite(remainder.frequency_hz):
+        how = f"it swings at about {remainder.frequency_hz:.2g} Hz in most trials: look at the supply and at what turns"
+    elif driver is not None:
+        how = f"it varies with {driver}, most of all that is measured"
+    else:
+        how = "it varies with nothing that is measured"
+    return (
+        f"No effect of the catalogue is confirmed, yet what is left is {remainder.over_noise:.1f} times the effort's "
+        f"own noise; {how}. Repeat a trial: what comes again is the joint's, what does not has changed since."
     )
