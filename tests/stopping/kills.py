@@ -10,6 +10,7 @@ record says.
 
 import argparse
 import re
+import signal
 import socket
 import sqlite3
 import sys
@@ -186,6 +187,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--way", action="append", help="only this one; repeatable")
     arguments = parser.parse_args()
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell has it for what it starts in the background
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     ways = [way for way in WAYS if not arguments.way or way.name in arguments.way]
     endings = []
     with tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder, kills_bench(Path(folder)) as bench:
