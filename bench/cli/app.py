@@ -8,6 +8,7 @@ from typer.core import TyperGroup
 
 from bench.cli import (
     audit,
+    bench_report,
     blind,
     calibrate,
     campaign,
@@ -61,6 +62,7 @@ _ORDER = (
     "challenge",
     "reveal",
     "blind",
+    "bench-report",
 )
 
 
@@ -139,6 +141,7 @@ app.add_typer(simulate_device.app, name="simulate-device")
 app.command("challenge")(challenge.challenge)
 app.command("reveal")(challenge.reveal)
 app.command("blind")(blind.blind)
+app.command("bench-report")(bench_report.bench_report)
 
 
 def main() -> None:
