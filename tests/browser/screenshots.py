@@ -13,7 +13,7 @@ from typing import Any
 from tests.browser.browser import WITH_TOKEN, browser
 from tests.service.running_service import running_service
 
-SEED = 7  # of the challenge; another one hides something else
+SEED = 13  # of the challenge: one that the lab explains; of 7 it names what is not there (see the blind benchmark)
 SIZES = ((1280, "light"), (400, "dark"))
 WAIT_MS = 120_000
 
