@@ -20,7 +20,8 @@ export function queuePanel(place) {
     const queue = await attempt(answer, () => get("/queue"));
     if (!queue) return;
     pause.hidden = !queue.running || queue.state !== "running";
-    resume.hidden = !["paused", "held"].includes(queue.state);
+    // with nothing waiting there is nothing to go on with, but for a trial that is paused
+    resume.hidden = !["paused", "held"].includes(queue.state) || !(queue.waiting.length || queue.running);
     const key = JSON.stringify(queue.waiting.map((one) => one.item_id).concat(queue.state, queue.reason, queue.running?.item_id));
     if (key === shown) return;
     shown = key;
