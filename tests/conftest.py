@@ -1,4 +1,4 @@
-"""What holds for all tests: one thread for linear algebra, Ctrl-C that is heard, which tests the wall clock times."""
+"""What holds for all tests: one thread for linear algebra, signals that are heard, which tests the wall clock times."""
 
 import os
 import signal
@@ -12,6 +12,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # a shell that starts the tests in the background lets them, and every process of theirs, ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:  # nohup
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HERE = Path(__file__).parent
 # devices, services and browsers in processes of their own: they run one after the other, nothing beside them

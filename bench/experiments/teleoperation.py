@@ -121,6 +121,7 @@ def _refuse(parameters: TeleoperationParameters, configuration: BenchConfigurati
     master = configuration.of_master()
     if configuration.servo.closed_by == "drive":
         raise ConfigurationError("teleoperation closes the slave's position loop itself; set servo.closed_by = 'bench'")
+    refuse_currents(configuration)
     LoadFollower(configuration)
     torque_n_m_a(configuration.rig)
     refuse_load("load_kg", parameters.load_kg, configuration)
@@ -133,7 +134,6 @@ def _refuse(parameters: TeleoperationParameters, configuration: BenchConfigurati
     refuse_speed("the peak speed of a reach", peak_rad_s, master)
     refuse_speed("motion_scale times the peak speed of a reach", parameters.motion_scale * peak_rad_s, configuration)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
     asked_a = configuration.require_master().reflection.torque_n_m / torque_n_m_a(master.rig)
     if asked_a > master.limits.current_a:
         allowed = f"at most master.limits.current_a, {master.limits.current_a:g}"

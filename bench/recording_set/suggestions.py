@@ -4,6 +4,7 @@ import difflib
 
 from compensator.lab.channels import CHANNELS
 
+MASTER = "master_"
 # suffix of a name -> (suffix of the SI unit, factor)
 _UNITS: dict[str, tuple[str, float]] = {
     "deg_s": ("rad_s", 0.017453292519943295),
@@ -38,8 +39,10 @@ def suggestion(name: str) -> str:
         if lower.endswith(f"_{unit}") and channel in CHANNELS:
             entry = f'columns.{channel} = {{ from = "{name}", scale = {factor:.10g} }}'
             return f"{channel} is known; convert with a mapping: {entry}"
-    near = [channel for channel in CHANNELS if channel in lower or channel.startswith(f"{lower}_")]
-    near += difflib.get_close_matches(lower, CHANNELS, n=2, cutoff=0.7)
+    # the other joint of a pair is meant only where its name is in it
+    known = [channel for channel in CHANNELS if channel.startswith(MASTER) == lower.startswith(MASTER)]
+    near = [channel for channel in known if channel in lower or channel.startswith(f"{lower}_")]
+    near += difflib.get_close_matches(lower, known, n=2, cutoff=0.7)
     if not near:
         return ""
     names = " or ".join(dict.fromkeys(near))

@@ -66,7 +66,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         remainder = _more_than_noise(fit, gathered)
         if remainder is not None:
             nearest = _nearest_driver(generic)
-            words = unexplained_in_words(remainder, nearest)
+            words = unexplained_in_words(remainder, nearest, named.p_value)
             return Answer("nothing", words, named.p_value, examined, None, [], best.noncentrality)
     sentence = answer_in_words(verdict, named.p_value, examined, None)
     notes = _what_remains(gathered, best) if found else []

@@ -37,7 +37,7 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(remainder: Remainder, driver: str | None) -> str:
+def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: float) -> str:
     """The answer where much is left that no effect and no curve explains."""
     if isfinite(remainder.frequency_hz):
         how = f"it swings at about {remainder.frequency_hz:.2g} Hz in most trials: look at the supply and at what turns"
@@ -46,6 +46,7 @@ def unexplained_in_words(remainder: Remainder, driver: str | None) -> str:
     else:
         how = "it varies with nothing that is measured"
     return (
-        f"No effect of the catalogue is confirmed, yet what is left is {remainder.over_noise:.1f} times the effort's "
-        f"own noise; {how}. Repeat a trial: what comes again is the joint's, what does not has changed since."
+        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left is {remainder.over_noise:.1f} "
+        f"times the effort's own noise; {how}. Repeat a trial: what comes again is the joint's, what does not has "
+        "changed since."
     )
