@@ -22,13 +22,13 @@ def test_a_stop_whose_request_hangs_is_asked_for_again_until_the_drive_confirms(
     start(page)
     hung = []
 
-    def hang_once(route) -> None:
-        if hung:
+    def hang_twice(route) -> None:
+        if len(hung) == 2:
             route.continue_()
         else:
-            hung.append(route)  # never answered
+            hung.append(route)  # never answered; the sentence stands while the second one is waited for
 
-    page.route("**/api/v1/stop", hang_once)
+    page.route("**/api/v1/stop", hang_twice)
     page.keyboard.press("Escape")
     page.get_by_text(re.compile("Stop NOT confirmed: no answer within .* Asking again")).wait_for()
     page.get_by_text("Stop accepted and confirmed: the drive is powered off").wait_for()
