@@ -2,6 +2,7 @@
 
 from bench.pair.cycle import PAIR_RECORDED
 from tests.bench.calibrated import calibrated_configuration
+from tests.service.running_service import running_service
 
 
 def test_a_pair_is_teleoperated_watched_and_exported(idle, monkeypatch):
@@ -17,8 +18,9 @@ def test_a_pair_is_teleoperated_watched_and_exported(idle, monkeypatch):
     assert exported.headers["content-type"] == "application/zip"
 
 
-def test_without_friction_curves_it_is_refused_with_what_to_do(idle):
-    answer = idle.client.post("/experiments", json={"kind": "teleoperation"})
+def test_without_friction_curves_it_is_refused_with_what_to_do(tmp_path):
+    with running_service(tmp_path) as new:
+        answer = new.client.post("/experiments", json={"kind": "teleoperation"})
     assert answer.status_code == 422
     assert "calibrate run" in answer.json()["detail"]
 
