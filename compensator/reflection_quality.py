@@ -59,12 +59,12 @@ def delay_s(reflected: FloatArray, truth: FloatArray, period_s: float, longest_s
 
     Returns:
         The delay [s], between samples by a parabola; None where the two correlate by less than `LEAST_CORRELATION`
-        everywhere, or best at the edge.
+        everywhere, or best at the edge, or where what is reflected comes a sample or more before its cause.
     """
     most = min(round(longest_s / period_s), len(truth) // 2)
     alike = np.array([_correlation(*_shifted(reflected, truth, lag)) for lag in range(-most, most + 1)])
     best = int(np.argmax(alike))
-    if not alike[best] >= LEAST_CORRELATION or best in (0, len(alike) - 1):
+    if not alike[best] >= LEAST_CORRELATION or best < most or best == len(alike) - 1:
         return None
     before, at, after = alike[best - 1 : best + 2]
     bend = before - 2.0 * at + after

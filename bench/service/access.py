@@ -163,6 +163,6 @@ def _unauthorised(what: str, found: str) -> HTTPException:
         status_code=401,
         detail=f"{what} needs a token, and {found}; "
         "send 'Authorization: Bearer <token>' with the token that 'friction-bench serve' printed at its first start, "
-        "or make one with: friction-bench token new NAME",
+        "or make one with: friction-bench token new NAME. Commands send the one in FRICTION_BENCH_TOKEN",
         headers={"WWW-Authenticate": "Bearer"},
     )

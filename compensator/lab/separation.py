@@ -105,9 +105,22 @@ class Separation:
         remains = self._remains(equations.gram, true, rival)
         return float(np.sqrt(remains / (self._inflation[true] * self.noise_power)))
 
-    def difference(self, equations: Equations, true: int, rival: int | None) -> float:
-        """Root mean square of what remains when the rival is fitted to the effort that the truth predicts."""
-        return float(np.sqrt(self._remains(equations.gram, true, rival) / max(equations.rows, 1)))
+    def difference(self, known: Equations, brings: Equations, true: int, rival: int | None) -> float:
+        """What a trial adds to what remains when the rival is fitted to the effort that the truth predicts.
+
+        Fitted to that trial alone, the model would take up nearly all of it: what is known holds the model in place.
+
+        Args:
+            known: without the trial.
+            brings: what the trial adds.
+            true: index of the rival taken for the truth.
+            rival: of the one that is fitted; None: nothing being missing.
+
+        Returns:
+            Root mean square over the rows of the trial, in the effort's unit.
+        """
+        after = self._remains((known + brings).gram, true, rival)
+        return float(np.sqrt(max(after - self._remains(known.gram, true, rival), 0.0) / max(brings.rows, 1)))
 
     def _remains(self, gram: FloatArray, true: int, rival: int | None) -> float:
         """The least power that the model and the rival, at any of its shapes, leave of the truth's part."""

@@ -201,7 +201,7 @@ class _Choice:
             before=self._smallest(known),
             after=self._smallest(after),
             pair=self._names(most),
-            difference=self._separation.difference(brings, *most),
+            difference=self._separation.difference(known, brings, *most),
         )
 
     def _pair(self, pair: tuple[int, int | None], before: Equations, after: Equations) -> Pair:

@@ -74,7 +74,12 @@ def test_the_delay_is_found_between_samples():
     truth = np.sin(2 * pi * 0.5 * time_s)
     late = 0.7 * np.sin(2 * pi * 0.5 * (time_s - 0.0432)) + 0.2  # scale and offset are no delay
     assert delay_s(late, truth, 0.005) == pytest.approx(0.0432, abs=1e-3)
-    assert delay_s(truth, late, 0.005) == pytest.approx(-0.0432, abs=1e-3)
+
+
+def test_what_comes_before_its_cause_is_no_image_of_it():
+    time_s = np.arange(0.0, 4.0, 0.005)
+    truth = np.sin(2 * pi * 0.5 * time_s)
+    assert delay_s(np.sin(2 * pi * 0.5 * (time_s + 0.0432)), truth, 0.005) is None
 
 
 def test_noise_has_no_delay():

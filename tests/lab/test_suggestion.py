@@ -91,7 +91,16 @@ def test_heavier_loads_are_chosen_where_friction_grows_with_the_load(fit, diagno
     smallest = [min(pair.before for pair in found.pairs), *(pick.after for pick in found.picks)]
     assert all(after > before for before, after in pairwise(smallest))
     assert found.picks[-1].after == pytest.approx(min(pair.after for pair in found.pairs))
-    assert found.picks[0].difference > 0.0
+
+
+def test_a_pick_tells_by_how_much_the_rivals_differ_in_it_given_what_is_known(fit):
+    separation = separated(fit, ("load_friction", "load_friction_quadratic"))
+    known, brings = separation.measured, separation.of_trials(more_trials(fit.dataset, options(HEAVY)[0].recordings))
+    pairs = ((0, 1), (0, None))
+    rises = [separation.d_prime(known + brings, *pair) ** 2 - separation.d_prime(known, *pair) ** 2 for pair in pairs]
+    powers = [separation.difference(known, brings, *pair) ** 2 for pair in pairs]
+    assert powers[0] > 0.0
+    assert powers[0] / powers[1] == pytest.approx(rises[0] / rises[1], rel=1e-6)
 
 
 def test_of_equal_trials_the_shorter_is_chosen(fit, diagnosis):
