@@ -1,5 +1,6 @@
 """Challenges in a store: the recordings as an experiment, the sealed answer among its parameters."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -41,13 +42,12 @@ def keep_challenge(store: Store, seed: int, difficulty: str) -> KeptChallenge:
     return _shown(store.experiment(number))
 
 
-def kept_challenges(store: Store) -> list[KeptChallenge]:
-    """All of them, newest first."""
-    found, offset = [], 0
+def kept_challenges(store: Store) -> Iterator[KeptChallenge]:
+    """All of them, newest first; read as far as they are asked for."""
+    offset = 0
     while page := store.experiments(kind=IMPORT_KIND, limit=PAGE, offset=offset):
-        found += [_shown(one) for one in page if SEALED in one.parameters]
+        yield from (_shown(one) for one in page if SEALED in one.parameters)
         offset += PAGE
-    return found
 
 
 def answer_of(store: Store, challenge_id: int) -> Answer:

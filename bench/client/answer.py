@@ -1,6 +1,6 @@
 """Answers of the service as dicts that show themselves well in a notebook."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 from typing import Any
 
@@ -36,7 +36,7 @@ class Answer(dict[str, Any]):
 class Answers(list[Answer]):
     """A list of answers; a table in a notebook."""
 
-    def __init__(self, items: list[dict[str, Any]]) -> None:
+    def __init__(self, items: Iterable[dict[str, Any]]) -> None:
         super().__init__(map(Answer, items))
 
     def _repr_html_(self) -> str:

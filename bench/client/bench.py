@@ -42,7 +42,7 @@ class Bench:
 
     def kinds(self) -> Answers:
         """What can be started; `parameters` is the JSON schema of each."""
-        return Answers(self._connection.get("/experiment-kinds")["items"])
+        return Answers(self._connection.items("/experiment-kinds"))
 
     def start(
         self, kind: str, *, operator: str = "", note: str = "", pace: str | None = None, **parameters: Any

@@ -2,6 +2,7 @@
 
 import secrets
 from datetime import datetime
+from itertools import islice
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Request, Response
@@ -11,6 +12,7 @@ from bench.errors import ParameterError
 from bench.service.access import allow_read, require_token
 from bench.service.audit_trail import note
 from bench.service.compute import in_worker
+from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
 from bench.service.services import StoreOf
 from bench.store import Store
@@ -40,8 +42,8 @@ class Challenge(BaseModel):
     created_utc: datetime
 
 
-class Challenges(BaseModel):
-    """All challenges, newest first."""
+class Challenges(Page):
+    """One page of challenges, newest first."""
 
     items: list[Challenge]
 
@@ -105,12 +107,13 @@ async def create(request: Request, response: Response, store: StoreOf, body: New
     return made
 
 
-@router.get("", summary="All challenges")
-def challenges(store: StoreOf) -> Challenges:
-    """Without their answers."""
+@router.get("", summary="The challenges there are", responses=problems(422))
+def challenges(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Challenges:
+    """Newest first, without their answers."""
     from bench.challenge.kept import kept_challenges
 
-    return Challenges(items=[_represent(one) for one in kept_challenges(store)])
+    items, page = cut(list(islice(kept_challenges(store), offset, offset + limit + 1)), limit, offset)
+    return Challenges(items=[_represent(one) for one in items], **page)
 
 
 @router.post(

@@ -8,6 +8,7 @@ from pydantic import BaseModel, Field
 from bench.service.access import allow_read
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
+from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
 
 router = APIRouter(prefix="/effects", tags=["effects"], dependencies=[Depends(allow_read)])
@@ -37,8 +38,8 @@ class Effect(BaseModel):
     source: str
 
 
-class Catalogue(BaseModel):
-    """All effects."""
+class Catalogue(Page):
+    """One page of effects."""
 
     items: list[Effect]
 
@@ -63,13 +64,14 @@ class Example(BaseModel):
     trials: list[ExampleTrial]
 
 
-@router.get("", summary="All effects of the catalogue")
-def catalogue() -> Catalogue:
+@router.get("", summary="The effects of the catalogue", responses=problems(422))
+def catalogue(limit: Limit = 100, offset: Offset = 0) -> Catalogue:
     """Physics, equation, parameters, what excites each effect and what it is confused with."""
     from bench.study import effects_catalogue  # the lab is imported when it is first needed: `serve` starts at once
 
-    found: list[dict[str, Any]] = plain(effects_catalogue())
-    return Catalogue(items=[Effect.model_validate(one) for one in found])
+    found: list[dict[str, Any]] = plain(effects_catalogue()[offset : offset + limit + 1])
+    items, page = cut(found, limit, offset)
+    return Catalogue(items=[Effect.model_validate(one) for one in items], **page)
 
 
 @router.get("/{name}/example", summary="A small simulated example", responses=problems(404, 422))

@@ -16,6 +16,7 @@ from bench.experiments.registry import KINDS, find_kind
 from bench.recording_set import export_experiment, export_parquet
 from bench.service import conditional
 from bench.service.access import Operator, allow_read, require_operator
+from bench.service.attachment import attachment
 from bench.service.audit_trail import note
 from bench.service.json_numbers import plain
 from bench.service.leases import LeaseOf
@@ -42,8 +43,8 @@ class Kind(BaseModel):
     parameters: dict[str, Any] = Field(description="JSON schema; each property has its `unit`, bounds and default")
 
 
-class Kinds(BaseModel):
-    """All kinds."""
+class Kinds(Page):
+    """One page of kinds, by name."""
 
     items: list[Kind]
 
@@ -113,15 +114,15 @@ def represent(found: StoredExperiment) -> Experiment:
     return Experiment(experiment_id=found.id, **fields)
 
 
-@router.get("/experiment-kinds", summary="What can be started")
-def kinds() -> Kinds:
+@router.get("/experiment-kinds", summary="What can be started", responses=problems(422))
+def kinds(limit: Limit = 100, offset: Offset = 0) -> Kinds:
     """Each kind with the JSON schema of its parameters: units, bounds, defaults."""
-    return Kinds(
-        items=[
-            Kind(name=kind.name, title=kind.title, summary=kind.summary, parameters=kind.parameters.model_json_schema())
-            for kind in KINDS.values()
-        ]
-    )
+    found, page = cut(list(KINDS.values())[offset : offset + limit + 1], limit, offset)
+    items = [
+        Kind(name=kind.name, title=kind.title, summary=kind.summary, parameters=kind.parameters.model_json_schema())
+        for kind in found
+    ]
+    return Kinds(items=items, **page)
 
 
 @router.post(
@@ -145,16 +146,17 @@ def start(
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
 
-    def begin() -> int:
+    def begin() -> dict[str, Any]:
         with lease.starting(caller.name):
             begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
-        return begun
+        return {"experiment_id": begun}
 
     try:
-        experiment_id = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
+        answer = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
     except ParameterError as error:
         raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
+    experiment_id = int(answer["experiment_id"])
     if body.tags:
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
             store.annotate(experiment_id, tags=body.tags)
@@ -215,6 +217,7 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
         200: {
             "description": "rig.toml, trials.csv and one CSV per trial; importing it gives the same numbers.",
             "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+            "headers": attachment("experiment-1.zip"),
         },
         **problems(404, 409),
         **conditional.ANSWER,

@@ -5,6 +5,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from bench.service.examples import examples, key
 from bench.service.problems import MEANINGS, MEDIA_TYPE, Problem
 
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
@@ -53,9 +54,13 @@ def _problem_schemas() -> dict[str, Any]:
     return {**found.pop("$defs", {}), "Problem": found}
 
 
-def _complete(_path: str, method: str, route: dict[str, Any]) -> None:
-    """Every problem as problem+json with an example; those that may come from every route."""
+def _complete(path: str, method: str, route: dict[str, Any]) -> None:
+    """An example of what is answered; every problem as problem+json with one; those that may come from every route."""
     responses = route["responses"]
+    if (example := examples().get(key(method, path))) is not None:
+        for status, answer in responses.items():
+            if status.startswith("2"):
+                answer["content"]["application/json"]["example"] = example
     statuses = {int(status) for status in responses if int(status) >= 400}
     statuses |= {421, 503}
     if route.get("security"):

@@ -1,6 +1,6 @@
 """/queue: experiments one after the other. /campaigns: many of them at once."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 
@@ -22,7 +22,8 @@ from bench.service.queue_models import (
     planned,
     queue_of,
 )
-from bench.service.services import ConductorOf, RunnerOf
+from bench.service.repeated_start import Key, once
+from bench.service.services import ConductorOf, RunnerOf, StoreOf
 
 router = APIRouter(tags=["queue"], dependencies=[Depends(allow_read)])
 ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
@@ -46,12 +47,19 @@ def queue(
     dependencies=HOLDER,
     responses=problems(401, 403, 404, 409, 422),
 )
-def add(conductor: ConductorOf, request: Request, caller: Operator, body: NewQueueItems) -> Added:
+def add(
+    conductor: ConductorOf, store: StoreOf, request: Request, caller: Operator, body: NewQueueItems, key: Key = None
+) -> Added:
     """All or none: one that would be refused refuses the request. While the queue is held they wait."""
-    orders = [Order(**one.model_dump()) for one in body.items]
-    found = conductor.add(orders, by=caller.name)
-    note(request, f"added {len(found)} to the queue")
-    return Added(item_ids=found)
+
+    def take_in() -> dict[str, Any]:
+        orders = [Order(**one.model_dump()) for one in body.items]
+        found = conductor.add(orders, by=caller.name)
+        note(request, f"added {len(found)} to the queue")
+        return {"item_ids": found}
+
+    asked = {"queue": body.model_dump(mode="json")}
+    return Added.model_validate(once(store.access.start_keys, caller.name, key, asked, take_in))
 
 
 @router.get("/queue/{item_id}", summary="One item", responses=problems(404))
@@ -148,15 +156,25 @@ def plan(runner: RunnerOf, body: Campaign) -> Plan:
     responses=problems(401, 403, 404, 409, 422),
 )
 def start(
-    conductor: ConductorOf, runner: RunnerOf, request: Request, caller: Operator, body: Campaign
+    conductor: ConductorOf,
+    runner: RunnerOf,
+    store: StoreOf,
+    request: Request,
+    caller: Operator,
+    body: Campaign,
+    key: Key = None,
 ) -> StartedCampaign:
     """All of its experiments, or none where one would be refused."""
-    found = plan_campaign(body, runner.configuration)
     kept = body.model_dump(mode="json")
-    common = {name: kept[name] for name in ("name", "operator", "note", "tags")}
-    item_ids = conductor.add_items(found.items, {**common, "definition": kept}, by=caller.name)
-    note(request, f"started campaign '{body.name}': {len(item_ids)} experiments")
-    return StartedCampaign(item_ids=item_ids, **_answer(body.name, found).model_dump())
+
+    def take_in() -> dict[str, Any]:
+        found = plan_campaign(body, runner.configuration)
+        common = {name: kept[name] for name in ("name", "operator", "note", "tags")}
+        item_ids = conductor.add_items(found.items, {**common, "definition": kept}, by=caller.name)
+        note(request, f"started campaign '{body.name}': {len(item_ids)} experiments")
+        return {"item_ids": item_ids, **_answer(body.name, found).model_dump(mode="json")}
+
+    return StartedCampaign.model_validate(once(store.access.start_keys, caller.name, key, {"campaign": kept}, take_in))
 
 
 def _answer(name: str, found: CampaignPlan) -> Plan:

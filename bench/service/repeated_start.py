@@ -36,8 +36,10 @@ class KeyInUseError(BenchError, RuntimeError):
     """Raised when the start with that key has not been answered yet."""
 
 
-def once(keys: StartKeys, token: str, key: str | None, body: dict[str, Any], start: Callable[[], int]) -> int:
-    """Start, unless this was asked for before. Returns the number of the experiment.
+def once(
+    keys: StartKeys, token: str, key: str | None, body: dict[str, Any], start: Callable[[], dict[str, Any]]
+) -> dict[str, Any]:
+    """Start, unless this was asked for before. Returns what is answered.
 
     A start that was refused is not remembered: it may be sent again with the same key.
 
@@ -45,8 +47,8 @@ def once(keys: StartKeys, token: str, key: str | None, body: dict[str, Any], sta
         keys: those of the store.
         token: name of the token that sends it; each token has keys of its own.
         key: None: just start.
-        body: what is asked for.
-        start: starts, or raises.
+        body: what is asked for, JSON-able. Bodies of different routes differ.
+        start: starts, or raises; returns what is answered, JSON-able.
 
     Raises:
         KeyReusedError: the key was used with another body.
@@ -65,20 +67,20 @@ def once(keys: StartKeys, token: str, key: str | None, body: dict[str, Any], sta
     if found.answer is None:
         raise KeyInUseError(
             f"a start with Idempotency-Key '{key}' is under way, or its service ended before the answer; "
-            "look at GET /experiments"
+            "look at GET /experiments and GET /queue"
         )
-    return int(found.answer["experiment_id"])
+    return found.answer
 
 
-def _first(keys: StartKeys, token: str, key: str, start: Callable[[], int]) -> int:
+def _first(keys: StartKeys, token: str, key: str, start: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     try:
-        experiment_id = start()
+        answer = start()
     except BaseException:
         with suppress(StoreError):  # then the key stays in use until it is removed, and nothing has moved
             keys.forget(token, key)
         raise
     try:
-        keys.answer(token, key, 201, {"experiment_id": experiment_id})
-    except StoreError as error:  # it runs: that is the answer, whatever became of the key
+        keys.answer(token, key, 201, answer)
+    except StoreError as error:  # it has begun: that is the answer, whatever became of the key
         _log.warning("Idempotency-Key '%s' could not be kept: %s", key, error)
-    return experiment_id
+    return answer

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench.service import conditional
 from bench.service.access import allow_read, require_token
+from bench.service.attachment import attachment
 from bench.service.audit_trail import note
 from bench.service.compute import in_worker
 from bench.service.json_numbers import plain
@@ -19,6 +20,7 @@ from bench.service.suggestion_models import Extended, Suggested, Used
 from bench.store import Store
 from bench.store.errors import NotFoundError
 
+REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
@@ -191,7 +193,11 @@ async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
     summary="One HTML file to be filed",
     response_class=Response,
     responses={
-        200: {"description": "Needs no network.", "content": {"text/html": {"schema": {"type": "string"}}}},
+        200: {
+            "description": "Needs no network.",
+            "content": {"text/html": REPORT},
+            "headers": attachment("study-1.html"),
+        },
         **problems(404, 422),
     },
 )

@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service import conditional
 from bench.service.access import allow_read
+from bench.service.attachment import attachment
 from bench.service.json_numbers import column, plain
 from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
@@ -23,6 +24,7 @@ PARQUET = "application/vnd.apache.parquet"
 PARQUET_ANSWER = {
     "description": "SI, the unit in the column's name; numbers are exact.",
     "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
+    "headers": attachment("trial-1.parquet"),
 }
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
 
@@ -149,6 +151,7 @@ def _or(value: float | None, otherwise: float) -> float:
         200: {
             "description": "One line per row; SI, the unit in the column's name, empty where not measured.",
             "content": {"text/csv": {"example": "time_s,position_rad,current_a\n0.0,0.0,0.012\n"}},
+            "headers": attachment("trial-1.csv"),
         },
         **problems(404),
         **conditional.ANSWER,

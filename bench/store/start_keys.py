@@ -20,7 +20,7 @@ class StartKey:
     Attributes:
         body_digest: of what it was asked with.
         status: of the answer; None while there is none yet.
-        answer: `{"headers": {...}, "body": {...}}`.
+        answer: its body.
     """
 
     body_digest: str

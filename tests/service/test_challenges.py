@@ -33,6 +33,14 @@ def test_it_is_listed_and_its_answer_is_not_told(service, challenge):
     assert service.stranger.get(f"/trials?experiment_id={number}").json()["items"]
 
 
+def test_the_list_is_paged(service, challenge):
+    whole = service.stranger.get("/challenges").json()
+    first = service.stranger.get("/challenges?limit=1").json()
+    assert first["items"] == whole["items"][:1]
+    beyond = service.stranger.get("/challenges", params={"offset": len(whole["items"])}).json()
+    assert (beyond["items"], beyond["next_offset"]) == ([], None)
+
+
 def test_a_right_guess_is_right_and_a_wrong_one_tells_what_was_missed(service, challenge):
     path = f"/challenges/{challenge['challenge_id']}/reveal"
     first = service.client.post(path, json={"guess": "nothing"}).json()

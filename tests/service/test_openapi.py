@@ -4,6 +4,7 @@ import json
 import re
 
 import httpx
+import jsonschema_rs
 import pytest
 
 from compensator.lab.catalogue import catalogue
@@ -28,6 +29,41 @@ def test_every_change_asks_for_the_token_and_declares_its_refusal(document):
             if method != "get":
                 assert route["security"] == [{"token": []}], (method, path)
                 assert "401" in route["responses"], (method, path)
+
+
+def answers(document):
+    """(route, status, answer) of every answer that is no problem and has a body."""
+    for path, item in document["paths"].items():
+        for method, route in item.items():
+            for status, answer in route["responses"].items():
+                if status.startswith("2") and status != "204":
+                    yield f"{method} {path}", status, answer
+
+
+def test_every_answer_has_an_example(document):
+    for route, status, answer in answers(document):
+        for media_type, said in answer["content"].items():
+            if said.get("schema", {}).get("format") == "binary":
+                assert "attachment" in answer["headers"]["Content-Disposition"]["example"], (route, status)
+            else:
+                assert said.get("example") is not None, (route, status, media_type)
+
+
+def test_examples_are_answers_as_they_are_now(document):
+    """Where this fails after a change of an answer: python -m tests.service.make_examples."""
+    tried = 0
+    for route, _status, answer in answers(document):
+        said = answer["content"].get("application/json")
+        if said is not None:
+            schema = {**said["schema"], "components": document["components"]}
+            errors = [
+                error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(said["example"])
+            ]
+            assert not errors, route
+            fields = document["components"]["schemas"][said["schema"]["$ref"].rpartition("/")[2]]["properties"]
+            assert set(said["example"]) == set(fields), route
+            tried += 1
+    assert tried > 50
 
 
 def test_every_property_name_or_text_says_its_unit(document):

@@ -56,6 +56,45 @@ def test_keys_of_different_tokens_do_not_meet(idle):
     assert idle.runner.wait(60.0)
 
 
+STEPS_ITEM = {"kind": "steps", "parameters": {"repeats": 1}, "pace": "fast"}
+LOADS = {"name": "loads", "kind": "steps", "parameters": {"repeats": 1}, "grid": {"load_kg": [0.0, 0.05]}}
+
+
+@pytest.fixture
+def held(idle):
+    """The service with an empty queue that is held."""
+    idle.client.post("/queue/pause")
+    idle.client.delete("/queue")
+    yield idle
+    idle.client.delete("/queue")
+    idle.client.post("/queue/resume")
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "other"),
+    [
+        ("/queue", {"items": [STEPS_ITEM]}, {"items": [STEPS_ITEM] * 2}),
+        ("/campaigns", LOADS, LOADS | {"note": "other"}),
+    ],
+)
+def test_what_goes_into_the_queue_goes_in_once(held, path, body, other):
+    headers = {"Idempotency-Key": f"a-key-of{path}"}
+    first = held.client.post(path, json=body, headers=headers)
+    assert first.status_code == 201
+    again = held.client.post(path, json=body, headers=headers)
+    assert (again.status_code, again.json()) == (201, first.json())
+    waiting = [item["item_id"] for item in held.client.get("/queue").json()["waiting"]]
+    assert waiting == first.json()["item_ids"]
+    assert held.client.post(path, json=other, headers=headers).status_code == 422
+    assert [item["item_id"] for item in held.client.get("/queue").json()["waiting"]] == waiting
+
+
+def test_a_key_of_another_route_is_refused(held):
+    headers = {"Idempotency-Key": "one-key-for-two-routes"}
+    assert held.client.post("/queue", json={"items": [STEPS_ITEM]}, headers=headers).status_code == 201
+    assert held.client.post("/campaigns", json=LOADS, headers=headers).status_code == 422
+
+
 @pytest.mark.parametrize("key", ["", "a b", "ü".encode(), "x" * 201])
 def test_keys_that_cannot_be_used(idle, key):
     assert idle.client.post("/experiments", json=BODY, headers={"Idempotency-Key": key}).status_code == 422
@@ -70,11 +109,11 @@ def store(tmp_path):
 def test_of_many_at_once_one_starts(store):
     started = []
 
-    def start() -> int:
+    def start() -> dict:
         started.append(1)
-        return 7
+        return {"experiment_id": 7}
 
-    def ask(_number: int) -> int | None:
+    def ask(_number: int) -> dict | None:
         try:
             return once(store.access.start_keys, "ada", "key", {}, start)
         except KeyInUseError:
@@ -83,7 +122,8 @@ def test_of_many_at_once_one_starts(store):
     with ThreadPoolExecutor(8) as pool:
         found = list(pool.map(ask, range(16)))
     assert len(started) == 1
-    assert set(found) <= {7, None}
+    assert {"experiment_id": 7} in found
+    assert all(one in (None, {"experiment_id": 7}) for one in found)
 
 
 def test_a_start_without_an_answer_is_not_begun_again(store):
@@ -93,7 +133,7 @@ def test_a_start_without_an_answer_is_not_begun_again(store):
 
 
 def test_keys_are_kept_for_a_day(store, monkeypatch):
-    assert once(store.access.start_keys, "ada", "key", {}, lambda: 7) == 7
-    assert once(store.access.start_keys, "ada", "key", {}, lambda: 8) == 7
+    assert once(store.access.start_keys, "ada", "key", {}, lambda: {"n": 7}) == {"n": 7}
+    assert once(store.access.start_keys, "ada", "key", {}, lambda: {"n": 8}) == {"n": 7}
     monkeypatch.setattr(start_keys, "now", lambda: now() + timedelta(hours=25))
-    assert once(store.access.start_keys, "ada", "key", {}, lambda: 9) == 9
+    assert once(store.access.start_keys, "ada", "key", {}, lambda: {"n": 9}) == {"n": 9}
