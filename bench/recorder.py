@@ -72,9 +72,9 @@ class Recorder:
             and STOP to look at. A simulation is faster than any disk, and waits.
     """
 
-    BLOCK_S = 0.1  # of wall time
+    BLOCK_S = 0.04  # of wall time: what is not committed cannot be seen, and a plot is watched at 20 updates a second
     BLOCK_ROWS = 4000
-    BACKLOG = 64  # blocks that may wait for the sink
+    BACKLOG = 160  # blocks that may wait for the sink
     LAST_PATIENCE_S = 60.0  # how long the end is waited for: the joint is off by then, and the rows are worth it
 
     def __init__(self, sink: Sink, patience_s: float = 0.0) -> None:

@@ -20,8 +20,9 @@ from bench.service.status import status_of
 from bench.store import Store
 from bench.store.errors import StoreError
 
-PERIOD_S = 0.05
-STATUS_EVERY = 10  # periods; in between, only what is new is sent
+PERIOD_S = 0.025  # shorter than a block of the recorder: each is told by itself
+STATUS_LOOKED_AT = 2  # periods: whether it is new
+STATUS_EVERY = 20  # periods; in between, only what is new is sent
 ALL_ROWS = 10**6  # more than the live buffer keeps
 
 
@@ -55,11 +56,12 @@ class LiveEvents:
             if len(found.rows) or (found.restarted and found.last_row != after_row):
                 after_row = found.last_row
                 yield _event("rows", rows_of(found).model_dump_json(), Mark.of(self.state.life, found))
-            status = self._status()
-            key = _without_progress(status)
-            if key != shown or period % STATUS_EVERY == 0:
-                shown = key
-                yield _event("status", json.dumps(status))
+            if period % STATUS_LOOKED_AT == 0:
+                status = self._status()
+                key = _without_progress(status)
+                if key != shown or period % STATUS_EVERY == 0:
+                    shown = key
+                    yield _event("status", json.dumps(status))
             period += 1
             await asyncio.sleep(PERIOD_S)
 

@@ -60,6 +60,36 @@ def test_few_points_are_all_drawn_and_the_line_leaves_the_picture(call):
     assert call("thin", "m.firstFrom([1, 2, 2, 5], 6)") == 4
 
 
+def test_a_line_becomes_bars_that_join_and_keep_its_gaps(call):
+    box = "{left: 10, right: 20}"
+    low, high = call(
+        "trace", f"(({{low, high}}) => [[...low], [...high]])(m.columns({{x: [10, 13.5], y: [0, 7]}}, {box}))"
+    )
+    # a slope of 2: each column reaches from where the line comes in to where it goes out
+    assert low[:4] == [0, 2, 4, 6]
+    assert high[:4] == [2, 4, 6, 7]
+    assert all(low[at] > high[at] for at in range(4, 10))
+    interrupted = "{x: [10.5, NaN, 14.5], y: [1, NaN, 1]}"
+    gap = call("trace", f"(({{low, high}}) => [...low].map((v, i) => v <= high[i]))(m.columns({interrupted}, {box}))")
+    assert gap == [at in (0, 4) for at in range(10)]
+    outside = call("trace", f"(({{low, high}}) => [low[0], high[9]])(m.columns({{x: [0, 30], y: [0, 30]}}, {box}))")
+    assert outside == [10, 20]
+
+
+def test_a_spike_of_one_sample_is_drawn_however_many_there_are(call):
+    painted = call(
+        "trace",
+        "{ const canvas = document.createElement('canvas'); canvas.width = 100; canvas.height = 100;"
+        " const context = canvas.getContext('2d', {willReadFrequently: true});"
+        " const x = Float64Array.from({length: 5000}, (_, i) => i / 50);"
+        " const y = x.map((_, i) => 50 + 5 * (i % 2)); y[2510] = 5;"
+        " m.drawTrace(context, {x, y}, {colour: '#000'}, {left: 0, right: 100});"
+        " const dark = (at, row) => context.getImageData(at, row, 1, 1).data[3] > 200;"
+        " return [dark(50, 20), dark(52, 20), dark(10, 52), dark(10, 60)]; }",
+    )
+    assert painted == [True, False, True, False]
+
+
 def test_ticks_are_round_and_inside(call):
     assert call("ticks", "m.ticks(-0.31, 1.02, 5)") == [0.0, 0.5, 1.0]
     assert call("ticks", "m.ticks(0, 0.007, 5)") == [0, 0.002, 0.004, 0.006]

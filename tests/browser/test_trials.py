@@ -25,7 +25,8 @@ def test_trials_are_found_laid_over_each_other_and_read_closer(service, open_pag
     group = page.get_by_role("group", name="Channels of trial")
     group.locator(".legend-entry").nth(5).wait_for()
     with page.expect_request(re.compile("samples.*from_s=")) as asked:
-        group.get_by_role("button", name="Zoom in").click()
+        for _ in range(3):
+            group.get_by_role("button", name="Zoom in").click()
     assert asked.value.response().status == 200
     group.get_by_role("img").hover()
     group.get_by_text(re.compile("position −?[0-9.]+, ")).wait_for()

@@ -15,6 +15,8 @@ export class Chart extends EventTarget {
   #view = null; // null: all there is
   #pointer = null;
   #pending = false;
+  #width = 0; // asked of the page when it changes: to ask in each frame makes the browser lay the page out each time
+  #theme = null;
 
   // label: what a screen reader says of the picture; the numbers stand in the table or facts beside it
   constructor(place, { label, height = 420 }) {
@@ -30,10 +32,17 @@ export class Chart extends EventTarget {
     this.element = h("div", { class: "chart-box" }, h("div", { class: "row centre between" }, this.legend, tools), this.canvas, this.values);
     place.append(this.element);
     gestures(this.canvas, this);
-    this.observer = new ResizeObserver(() => this.redraw());
+    this.observer = new ResizeObserver(() => {
+      this.#width = this.canvas.clientWidth;
+      this.#theme = null;
+      this.redraw();
+    });
     this.observer.observe(this.canvas);
     this.scheme = matchMedia("(prefers-color-scheme: dark)");
-    this.recolour = () => this.show(this.#content);
+    this.recolour = () => {
+      this.#theme = null;
+      this.redraw();
+    };
     this.scheme.addEventListener("change", this.recolour);
   }
 
@@ -46,7 +55,7 @@ export class Chart extends EventTarget {
   }
 
   get plotWidth() {
-    const box = frame(0, 1, this.canvas.clientWidth, this.height);
+    const box = frame(0, 1, this.#width, this.height);
     return box.right - box.left;
   }
 
@@ -73,14 +82,14 @@ export class Chart extends EventTarget {
 
   zoom(factor, pixel = null) {
     const [from, to] = this.view;
-    const centre = pixel === null ? (from + to) / 2 : valueAt(pixel, this.view, frame(0, 1, this.canvas.clientWidth, this.height));
+    const centre = pixel === null ? (from + to) / 2 : valueAt(pixel, this.view, frame(0, 1, this.#width, this.height));
     const next = zoomed(this.view, factor, centre, this.limits);
     const [low, high] = this.limits;
     this.#setView(next[0] <= low && next[1] >= high ? null : next);
   }
 
   point(pixel) {
-    this.#pointer = pixel === null ? null : valueAt(pixel, this.view, frame(0, 1, this.canvas.clientWidth, this.height));
+    this.#pointer = pixel === null ? null : valueAt(pixel, this.view, frame(0, 1, this.#width, this.height));
     this.redraw();
   }
 
@@ -106,17 +115,19 @@ export class Chart extends EventTarget {
 
   #draw() {
     const { canvas, height } = this;
-    const width = canvas.clientWidth;
+    const width = this.#width;
     if (!width) return;
     const ratio = devicePixelRatio || 1;
     const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
     if (canvas.width !== wide || canvas.height !== high) Object.assign(canvas, { width: wide, height: high });
     const context = canvas.getContext("2d");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    const content = { ...this.#content, lines: this.#content.lines.map((line) => ({ ...line, colour: colour(line.colour) })),
-      bands: this.#content.bands?.map((band) => ({ ...band, colour: faded(band.colour, 0.25) })) };
-    paint(context, { width, height, view: this.view, content, theme: theme(), pointer: this.#pointer });
-    this.values.textContent = this.#pointer === null ? "\u00a0" : this.#valuesAt(this.#pointer);
+    this.#theme ??= theme();
+    const content = { ...this.#content, lines: this.#content.lines.map((line) => ({ ...line, colour: this.#theme[line.colour] })),
+      bands: this.#content.bands?.map((band) => ({ ...band, colour: this.#theme.faded[band.colour] })) };
+    paint(context, { width, height, view: this.view, content, theme: this.#theme, pointer: this.#pointer, pixel: 1 / ratio });
+    const values = this.#pointer === null ? "\u00a0" : this.#valuesAt(this.#pointer);
+    if (this.values.textContent !== values) this.values.textContent = values;
   }
 
   #valuesAt(x) {
@@ -134,8 +145,10 @@ function entry(line) {
   return h("span", { class: "legend-entry" }, mark, line.name);
 }
 
+const COLOURS = ["text", "soft", "line", "blue", "orange", "green", "red", "purple", "sky"];
+
 function theme() {
   const narrow = matchMedia("(max-width: 760px)").matches;
-  const names = ["text", "soft", "line", "blue", "orange", "green", "red", "purple", "sky"];
-  return { ...Object.fromEntries(names.map((name) => [name, colour(name)])), shade: faded("orange", 0.25), font: `${narrow ? 11 : 12}px system-ui, sans-serif` };
+  return { ...Object.fromEntries(COLOURS.map((name) => [name, colour(name)])), shade: faded("orange", 0.25), font: `${narrow ? 11 : 12}px system-ui, sans-serif`,
+    faded: Object.fromEntries(COLOURS.map((name) => [name, faded(name, 0.25)])) };
 }

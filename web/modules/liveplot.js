@@ -1,4 +1,4 @@
-// Live: what the joint does, twenty times a second, over the rows that arrive; frozen, zoomed, channel by channel.
+// Live: what the joint does, drawn whenever rows arrive (more than twenty times a second); frozen, zoomed, channel by channel.
 
 import { Chart } from "./chart.js";
 import { h, replace } from "./dom.js";
@@ -7,7 +7,7 @@ import { LatestTrials } from "./latesttrials.js";
 import { loadBands } from "./loadbands.js";
 import { markLegend, marksOf } from "./marks.js";
 
-const REDRAW_MS = 50;
+const STALE_EVERY_MS = 500;
 const SECONDS = [["0", "all of the trial"], ["5", "last 5 s"], ["20", "last 20 s"]];
 const CHANNELS = [
   { name: "target_rad", text: "target", unit: "rad", colour: "orange", dash: [5, 4] },
@@ -37,10 +37,8 @@ export function livePlot(place, live) {
   const chart = new Chart(picture, { label: "Position, speed, current and duty of the trial that runs", height: 520 });
   const latest = new LatestTrials(live);
 
-  let changed = true;
   let frozen = null;
   let shownLength = 0;
-  const mark = () => { changed = true; };
   const show = () => {
     const chosen = CHANNELS.filter((one, index) => boxes[index].checked);
     const content = frozen ? contentOf(frozen.rows, chosen, frozen.marks, Number(seconds.value)) : contentOf(live.rows, chosen, marksOf(latest.events), Number(seconds.value));
@@ -55,14 +53,11 @@ export function livePlot(place, live) {
     outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment.";
     replace(readings, readingsOf(live.status?.reading));
   };
-  const timer = setInterval(() => {
-    place.classList.toggle("stale", live.stale);
-    if (!changed || freeze.checked || document.hidden) return;
-    changed = false;
-    show();
-  }, REDRAW_MS);
+  const timer = setInterval(() => place.classList.toggle("stale", live.stale), STALE_EVERY_MS);
+  // the chart draws once a frame, however often it is told
+  const update = () => { if (!freeze.checked && !document.hidden) show(); };
   const trials = () => {
-    changed = true;
+    update();
     loadBands(loads, latest.trials);
   };
   freeze.addEventListener("change", () => {
@@ -70,15 +65,16 @@ export function livePlot(place, live) {
     show();
   });
   for (const box of [...boxes, seconds]) box.addEventListener("change", show);
-  live.addEventListener("rows", mark);
+  live.addEventListener("rows", update);
   live.addEventListener("status", status);
   latest.addEventListener("change", trials);
+  show();
   status();
   return () => {
     clearInterval(timer);
     latest.close();
     chart.close();
-    live.removeEventListener("rows", mark);
+    live.removeEventListener("rows", update);
     live.removeEventListener("status", status);
   };
 }

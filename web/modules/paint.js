@@ -1,7 +1,8 @@
 // Draws rows of lines over a common axis onto a canvas. Pure: what is drawn follows from the arguments.
 
-import { extremes, GAP, thinned } from "./thin.js";
+import { extremes, thinned } from "./thin.js";
 import { label, ticks, widened } from "./ticks.js";
+import { drawTrace, points } from "./trace.js";
 
 const LEFT = 58;
 const RIGHT = 10;
@@ -24,8 +25,8 @@ export function valueAt(x, [from, to], box) {
   return from + ((x - box.left) / (box.right - box.left)) * (to - from);
 }
 
-// content: {rows: [{title}], lines: [{row, x, y, colour, dash, width}], bands, marks, shades, xTitle}; theme: colours and font
-export function paint(context, { width, height, view, content, theme, pointer }) {
+// content: {rows: [{title}], lines: [{row, x, y, colour, dash, width}], bands, marks, shades, xTitle}; theme: colours and font; pixel: how large one of the screen is
+export function paint(context, { width, height, view, content, theme, pointer, pixel = 1 }) {
   context.clearRect(0, 0, width, height);
   context.font = theme.font;
   content.rows.forEach((row, index) => {
@@ -39,7 +40,7 @@ export function paint(context, { width, height, view, content, theme, pointer })
       for (const shade of content.shades ?? []) shaded(context, shade, view, box, theme);
       for (const band of bands) banded(context, band, view, range, box);
       for (const mark of content.marks ?? []) marked(context, mark, view, box, theme);
-      for (const line of lines) stroke(context, line, view, range, box);
+      for (const line of lines) drawn(context, line, view, range, box, pixel);
       if (pointer !== null) vertical(context, xOf(pointer, view, box), box, theme.soft, []);
     });
     if (index === 0) for (const mark of content.marks ?? []) flag(context, mark, view, box, theme);
@@ -112,26 +113,9 @@ function clipped(context, box, draw) {
   context.restore();
 }
 
-function stroke(context, line, view, range, box) {
-  context.strokeStyle = line.colour;
-  context.fillStyle = line.colour;
-  context.lineWidth = line.width ?? 1.6;
-  context.setLineDash(line.dash ?? []);
-  context.beginPath();
-  let down = false;
-  for (const index of thinned(line.x, line.y, view, box.right - box.left)) {
-    if (index === GAP) down = false;
-    else {
-      const [x, y] = [xOf(line.x[index], view, box), yOf(line.y[index], range, box)];
-      if (down) context.lineTo(x, y);
-      else context.moveTo(x, y);
-      if (line.dots) context.rect(x - 3, y - 3, 6, 6);
-      if (line.dots) context.moveTo(x, y);
-      down = true;
-    }
-  }
-  context.stroke();
-  if (line.dots) context.fill();
+function drawn(context, line, view, range, box, pixel) {
+  const wanted = thinned(line.x, line.y, view, (box.right - box.left) / pixel);
+  drawTrace(context, points(wanted, line, (value) => xOf(value, view, box), (value) => yOf(value, range, box)), line, box, pixel);
 }
 
 function banded(context, band, view, range, box) {

@@ -58,7 +58,7 @@ async function confirmation(accepted, tell) {
   tell(`${accepted.detail} Waiting for the drive …`);
   const deadline = performance.now() + CONFIRMED_WITHIN_MS;
   while (performance.now() < deadline) {
-    const run = await get("/bench", {}, TIMEOUT_MS).then((bench) => bench.run, () => null);
+    const run = await get("/bench", {}, { timeout_ms: TIMEOUT_MS }).then((bench) => bench.run, () => null);
     if (run && run.outcome !== "running") return verdict(run);
     await pause(ASK_EVERY_MS);
   }

@@ -1,0 +1,46 @@
+"""`friction-bench serve` as its users have it: a process of its own, and the bench process that it starts."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+
+from tests.service.running_service import TOKEN
+
+UP_WITHIN_S = 60.0
+
+
+@contextmanager
+def served_process(folder: Path) -> Iterator[str]:
+    """Its address; `TOKEN` may all. The store is `bench.sqlite` in the folder, and may be there already."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-m", "bench.cli", "--store", str(folder / "bench.sqlite"), "serve", "--port", str(port)]
+    environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN, "PYTHONPATH": os.pathsep.join(sys.path)}
+    process = subprocess.Popen(command, env=environment, cwd=folder, stdout=subprocess.DEVNULL)
+    url = f"http://127.0.0.1:{port}"
+    try:
+        _wait_until_up(url)
+        yield url
+    finally:
+        process.send_signal(signal.SIGTERM)
+        process.wait(UP_WITHIN_S)
+
+
+def _wait_until_up(url: str) -> None:
+    deadline_s = time.monotonic() + UP_WITHIN_S
+    while True:
+        try:
+            httpx.get(f"{url}/api/v1/bench")
+            return
+        except httpx.TransportError:
+            if time.monotonic() > deadline_s:
+                raise
+            time.sleep(0.1)
