@@ -1,10 +1,13 @@
 """Every effect and driver spline that could be missing from a fitted model, as blocks to be screened."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from compensator.lab import catalogue
+from compensator.lab.dataset import Dataset
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.evidence import Base, Block
@@ -19,6 +22,29 @@ from compensator.lab.weights import row_weights
 TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
 
 
+class Curves:
+    """Driver splines, made when they are first asked for: effects with memory are judged without them.
+
+    Args:
+        dataset: of the rows.
+        weighted: picks and weights the tested rows of columns (N, k).
+    """
+
+    def __init__(self, dataset: Dataset, weighted: Callable[[FloatArray], FloatArray]) -> None:
+        self._dataset, self._weighted = dataset, weighted
+
+    @cached_property
+    def splines(self) -> dict[str, DriverBlock]:
+        """By block name."""
+        found = driver_blocks(self._dataset)
+        return {f"{one.driver}{' against motion' if one.against_motion else ''}": one for one in found}
+
+    @cached_property
+    def blocks(self) -> list[Block]:
+        """The splines as blocks to be screened."""
+        return [Block(name, self._weighted(spline.columns), 0, 1) for name, spline in self.splines.items()]
+
+
 @dataclass(frozen=True)
 class Candidates:
     """What a fitted model may be missing, over the rows that are tested.
@@ -30,8 +56,7 @@ class Candidates:
         weights: of those rows, shape (n,).
         bases: what blocks are judged on top of.
         named: blocks of catalogue effects, all shapes.
-        splines: driver splines by block name.
-        generic: blocks of the driver splines.
+        curves: of every driver, free.
         left_out: effect name -> why it cannot be judged on these trials.
     """
 
@@ -41,8 +66,7 @@ class Candidates:
     weights: FloatArray
     bases: list[Base]
     named: list[Block]
-    splines: dict[str, DriverBlock]
-    generic: list[Block]
+    curves: "Curves"
     left_out: dict[str, str]
 
     def with_block(self, block: Block) -> "Candidates":
@@ -63,9 +87,7 @@ def gather(fit: Fit, show_in: EffectRows = "sliding") -> Candidates:
     weights = row_weights(dataset, fit.residual, rows)
     builder = _Builder(fit, show_in, rows, weights)
     named, left_out = builder.named()
-    splines = {f"{b.driver}{' against motion' if b.against_motion else ''}": b for b in driver_blocks(dataset)}
-    generic = [Block(name, builder.weighted(b.columns), 0, 1) for name, b in splines.items()]
-    return Candidates(fit, show_in, rows, weights, builder.bases, named, splines, generic, left_out)
+    return Candidates(fit, show_in, rows, weights, builder.bases, named, Curves(dataset, builder.weighted), left_out)
 
 
 class _Builder:
@@ -81,8 +103,21 @@ class _Builder:
         return columns[self._rows] * self._weights[:, None]
 
     def named(self) -> tuple[list[Block], dict[str, str]]:
-        blocks, left_out = [], {}
-        for effect in catalogue.candidates(self._fit.names, self._fit.dataset.facts):
+        """Blocks of all effects that can be judged, and why the others cannot."""
+        dataset = self._fit.dataset
+        wanted, left_out = self._judged()
+        made = dataset.columns_of_effects([(effect, shapes) for effect, shapes in wanted])
+        blocks = [
+            Block(effect.name, self.weighted(columns), self._base_without(effect.standing_in), len(shapes), shape)
+            for (effect, shapes), found in zip(wanted, made, strict=True)
+            for shape, columns in zip(shapes, found, strict=True)
+        ]
+        return blocks, left_out
+
+    def _judged(self) -> tuple[list[tuple[Effect, list[Shape]]], dict[str, str]]:
+        dataset = self._fit.dataset
+        wanted, left_out = [], {}
+        for effect in catalogue.candidates(self._fit.names, dataset.facts):
             if effect.rows != self._show_in:
                 continue
             hiding = [name for name in effect.hidden_by if name in self._fit.names]
@@ -90,19 +125,12 @@ class _Builder:
                 left_out[effect.name] = _hidden(effect, hiding)
                 continue
             try:
-                blocks += self._blocks(effect)
+                dataset.check_applicable(effect)
             except NotApplicableError as reason:
                 left_out[effect.name] = str(reason)
-        return blocks, left_out
-
-    def _blocks(self, effect: Effect) -> list[Block]:
-        dataset = self._fit.dataset
-        shapes: list[Shape] = effect.shapes(dataset.trials[0].motion)
-        base = self._base_without(effect.standing_in)
-        return [
-            Block(effect.name, self.weighted(columns), base, len(shapes), shape)
-            for shape, columns in zip(shapes, dataset.columns_of_shapes(effect, shapes), strict=True)
-        ]
+                continue
+            wanted.append((effect, effect.shapes(dataset.trials[0].motion)))
+        return wanted, left_out
 
     def _base_without(self, nuisances: frozenset[str]) -> int:
         if nuisances not in self._index:

@@ -1,6 +1,6 @@
 """The rows of a study: every trial's signals, and columns of any effect filtered and thinned like the effort."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -21,6 +21,7 @@ RowChoice = Literal["sliding", "moving", "all"]
 IntArray = NDArray[np.int64]
 ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds the one before
 
+MOST_VALUES = 2**20  # of one trial, at the full rate, that are filtered at once
 BLOCK_S = 2.0  # rows closer than this are not independent
 
 
@@ -161,17 +162,36 @@ class Dataset:
 
     def unchecked_columns(self, effect: Effect, shapes: Sequence[Shape]) -> list[FloatArray]:
         """As `columns_of_shapes`, where it is known that the effect can be judged, or other trials decide that."""
-        missing = [shape for shape in shapes if (effect.name, shape) not in self.cache]
-        made: dict[Shape, FloatArray] = {}
-        if missing:
-            stacks = [np.concatenate([effect.columns(t.motion, shape) for shape in missing]) for t in self.trials]
-            made = dict(zip(missing, np.split(self.stack(stacks), len(missing), axis=1), strict=True))
-            if not effect.uses_prediction:
-                self.cache.update({(effect.name, shape): columns for shape, columns in made.items()})
-        return [made[shape] if shape in made else self.cache[effect.name, shape] for shape in shapes]
+        return self.columns_of_effects([(effect, shapes)])[0]
 
-    def stack(self, full_rate: Sequence[FloatArray]) -> FloatArray:
-        """Filter and thin arrays (k, n) given per trial; shape (N, k)."""
+    def columns_of_effects(self, wanted: Sequence[tuple[Effect, Sequence[Shape]]]) -> list[list[FloatArray]]:
+        """The columns of many effects, for each of their shapes, (N, k) each: all are filtered in one pass per trial.
+
+        A filter's call costs more than its work on a short trial, so that many columns cost little more than one.
+        Unchecked: see `unchecked_columns`.
+        """
+        missing = [(e, shape) for e, shapes in wanted for shape in shapes if (e.name, shape) not in self.cache]
+        made: dict[tuple[str, Shape], FloatArray] = {}
+        for some in self._portions(missing):
+            ends = np.cumsum([len(effect.parameters) for effect, _ in some])[:-1]
+            full_rate = (np.concatenate([e.columns(t.motion, shape) for e, shape in some]) for t in self.trials)
+            blocks = np.split(self.stack(full_rate), ends, axis=1)
+            made.update({(effect.name, shape): block for (effect, shape), block in zip(some, blocks, strict=True)})
+            self.cache.update({(e.name, shape): made[e.name, shape] for e, shape in some if not e.uses_prediction})
+        return [
+            [made[e.name, shape] if (e.name, shape) in made else self.cache[e.name, shape] for shape in shapes]
+            for e, shapes in wanted
+        ]
+
+    def _portions(self, wanted: Sequence[tuple[Effect, Shape]]) -> Iterator[Sequence[tuple[Effect, Shape]]]:
+        """So many at a time that their columns at the full rate stay small beside the recordings themselves."""
+        longest = max((len(trial.motion.time_s) for trial in self.trials), default=1)
+        at_once = max(1, MOST_VALUES // longest)
+        for start in range(0, len(wanted), at_once):
+            yield wanted[start : start + at_once]
+
+    def stack(self, full_rate: Iterable[FloatArray]) -> FloatArray:
+        """Filter and thin arrays (k, n) given per trial, one after the other; shape (N, k)."""
         parts = [self._filtered(trial, rows) for trial, rows in zip(self.trials, full_rate, strict=True)]
         return np.concatenate(parts, axis=1).T
 

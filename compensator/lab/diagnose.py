@@ -39,7 +39,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         raise UnusableDataError(
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
-    generic = screen(gathered.bases, gathered.generic, stretch)
+    generic = screen(gathered.bases, gathered.curves.blocks, stretch)
     steady = answer_of(fit, gathered, screen(gathered.bases, physical, stretch), generic)
     chain = answer_of(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
     memory, not_judged = _memory(fit)

@@ -8,7 +8,6 @@ import numpy as np
 from compensator.lab.dataset import Dataset, Trial
 from compensator.lab.facts import Facts
 from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import since_rest, strokes_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +36,11 @@ def _constant(condition: str) -> Callable[[Trial], FloatArray]:
 
 
 def _since_reversal(trial: Trial) -> FloatArray:
-    return strokes_of(trial.motion.position).travel
+    return trial.motion.strokes.travel
 
 
 def _rest(trial: Trial) -> FloatArray:
-    motion = trial.motion
-    return since_rest(motion.position, motion.velocity, motion.time_s, motion.slow)[0]
+    return trial.motion.last_rest[0]
 
 
 DRIVERS: dict[str, Driver] = {

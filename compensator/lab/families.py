@@ -98,7 +98,7 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidenc
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
-    with_curve = with_columns(fit, best.block.name, gathered.splines[best.block.name].columns)
+    with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
 
 
@@ -121,7 +121,7 @@ def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
     remainder = remainder_of(dataset, left.bases[best.block.base].residual / gathered.weights, rows)
     if not remainder.is_more_than_noise:
         return []
-    rest = screen(left.bases, left.generic, dataset.block_index[rows])
+    rest = screen(left.bases, left.curves.blocks, dataset.block_index[rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         name = rest.evidence[0].block.name
         driver = DRIVERS[name.removesuffix(" against motion")]

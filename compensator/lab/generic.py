@@ -4,15 +4,17 @@ A seven-knot linear spline of each driving variable, once plain and once against
 Ljung's sense. It names the variable, not the mechanism.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.dataset import Dataset
+from compensator.lab.dataset import Dataset, Trial
 from compensator.lab.drivers import DRIVERS, available
 from compensator.lab.recording import FloatArray
 
 KNOTS = 7
+KNOT_SHARES = np.linspace(0.0, 1.0, KNOTS)
 SPLINED = ("position", "velocity", "acceleration", "load", "load_kg", "temperature", "time")
 
 
@@ -36,18 +38,20 @@ class DriverBlock:
 def driver_blocks(dataset: Dataset) -> list[DriverBlock]:
     """The splines of every driver that varies over the rows."""
     values = available(dataset)
-    blocks = []
-    for name in SPLINED:
-        if name not in values:
-            continue
-        knots = np.unique(np.quantile(values[name], np.linspace(0.0, 1.0, KNOTS)))
-        for against in (False, True):
-            full = [
-                _hats(DRIVERS[name].of(trial), knots) * (trial.motion.direction if against else 1.0)
-                for trial in dataset.trials
-            ]
-            blocks.append(DriverBlock(name, against, dataset.stack(full), knots))
-    return blocks
+    knots = {name: np.unique(np.quantile(values[name], KNOT_SHARES)) for name in SPLINED if name in values}
+    stacked = dataset.stack(_all_hats(trial, knots) for trial in dataset.trials)
+    ways = [(name, against) for name in knots for against in (False, True)]
+    ends = np.cumsum([len(knots[name]) for name, _ in ways])[:-1]
+    return [
+        DriverBlock(name, against, columns, knots[name])
+        for (name, against), columns in zip(ways, np.split(stacked, ends, axis=1) if ways else [], strict=True)
+    ]
+
+
+def _all_hats(trial: Trial, knots: Mapping[str, FloatArray]) -> FloatArray:
+    """Hats of every driver of one trial, plain and against the motion, shape (k, n)."""
+    hats = [_hats(DRIVERS[name].of(trial), places) for name, places in knots.items()]
+    return np.concatenate([way for plain in hats for way in (plain, plain * trial.motion.direction)])
 
 
 def _hats(values: FloatArray, knots: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from compensator.lab.candidates import Candidates
+from compensator.lab.candidates import Candidates, Curves
 from compensator.lab.evidence import Base, Block
 from compensator.lab.recording import FloatArray
 
@@ -17,7 +17,7 @@ def gathered(effort: FloatArray, blocks: dict[str, FloatArray]) -> Candidates:
     base = Base.of(np.ones((len(effort), 1)), effort)
     named = [Block(name, columns[:, None], 0, 1) for name, columns in blocks.items()]
     fit = cast(Any, _Fit(effort))
-    return Candidates(fit, "sliding", rows, np.ones(len(effort)), [base], named, {}, [], {})
+    return Candidates(fit, "sliding", rows, np.ones(len(effort)), [base], named, Curves(fit, np.asarray), {})
 
 
 class _Fit:

@@ -4,7 +4,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import in_free_play, strokes_of
+from compensator.lab.reversals import in_free_play
 
 
 def shapes(motion: Motion) -> list[Shape]:
@@ -14,7 +14,7 @@ def shapes(motion: Motion) -> list[Shape]:
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """Friction and inertia that the motor does not feel in the gap, for shape (gap,)."""
-    strokes = strokes_of(motion.position)
+    strokes = motion.strokes
     free = in_free_play(strokes, shape[0])
     return np.array([-strokes.sign[strokes.index] * free, -motion.acceleration * free])
 

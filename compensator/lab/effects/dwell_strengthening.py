@@ -4,7 +4,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import REST_S, since_rest
+from compensator.lab.reversals import REST_S
 
 
 def shapes(motion: Motion) -> list[Shape]:
@@ -14,7 +14,7 @@ def shapes(motion: Motion) -> list[Shape]:
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """Logarithm of the last rest, forgotten over a distance, for shape (x_d,)."""
-    dwell_s, travel = since_rest(motion.position, motion.velocity, motion.time_s, motion.slow)
+    dwell_s, travel = motion.last_rest
     return (np.log1p(dwell_s / REST_S) * np.exp(-travel / shape[0]) * motion.direction)[None]
 
 

@@ -2,19 +2,21 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from compensator.lab.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
 from compensator.lab.recording import Condition, FloatArray
+from compensator.lab.reversals import Strokes, since_rest, strokes_of
 
 Shape = tuple[float, ...]
 EffectRows = Literal["sliding", "moving"]
 SESSION_START = "session_s"  # condition: time from the start of the session to that of the trial [s]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Motion:
     """One trial at its full, uniform rate: what columns are computed from. Arrays have shape (n,).
 
@@ -55,6 +57,16 @@ class Motion:
         """A numeric condition of the trial, or the default where it is not given."""
         value = self.conditions.get(name, default)
         return float(value) if isinstance(value, int | float) else default
+
+    @cached_property
+    def strokes(self) -> Strokes:
+        """The motion cut at its turning points."""
+        return strokes_of(self.position)
+
+    @cached_property
+    def last_rest(self) -> tuple[FloatArray, FloatArray]:
+        """Length of the last rest [s] and distance travelled since it, shape (n,) each."""
+        return since_rest(self.position, self.velocity, self.time_s, self.slow)
 
     @property
     def session_s(self) -> FloatArray:

@@ -4,7 +4,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import deflection, strokes_of
+from compensator.lab.reversals import deflection
 
 
 def shapes(motion: Motion) -> list[Shape]:
@@ -14,7 +14,7 @@ def shapes(motion: Motion) -> list[Shape]:
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """What friction lacks while the surfaces still give, for shape (x_s,)."""
-    strokes = strokes_of(motion.position)
+    strokes = motion.strokes
     return (deflection(strokes, shape[0]) - strokes.sign[strokes.index])[None]
 
 
