@@ -6,6 +6,7 @@ band where it falls below one half there is mostly noise, of the encoder after d
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -95,7 +96,13 @@ def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:
     with_load = [load_kg * column for column in (trial.acceleration, direction, sine)]
     stack = np.array([*plain, *with_load, trial.effort])
     top = min(high_hz, 0.45 * trial.rate_hz)
-    sections = butter(2, (low_hz, top), btype="bandpass", fs=trial.rate_hz, output="sos")
+    sections = _band_pass(low_hz, top, trial.rate_hz)
     filtered: FloatArray = sosfiltfilt(sections, np.nan_to_num(stack), axis=-1)
     moving = np.abs(trial.velocity) > speed
     return filtered[:, trial.usable & moving]
+
+
+@lru_cache(maxsize=256)  # trials of one bench have one rate, and the design takes longer than the filtering
+def _band_pass(low_hz: float, high_hz: float, rate_hz: float) -> FloatArray:
+    sections: FloatArray = butter(2, (low_hz, high_hz), btype="bandpass", fs=rate_hz, output="sos")
+    return sections

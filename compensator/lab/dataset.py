@@ -1,6 +1,6 @@
 """The rows of a study: every trial's signals, and columns of any effect filtered and thinned like the effort."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -163,6 +163,17 @@ class Dataset:
     def unchecked_columns(self, effect: Effect, shapes: Sequence[Shape]) -> list[FloatArray]:
         """As `columns_of_shapes`, where it is known that the effect can be judged, or other trials decide that."""
         return self.columns_of_effects([(effect, shapes)])[0]
+
+    def columns_of_model(self, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> FloatArray:
+        """The columns of a model's effects, each of its shape, beside each other; shape (N, K).
+
+        Raises:
+            NotApplicableError: as `columns`.
+        """
+        for effect in effects:
+            self.check_applicable(effect)
+        made = self.columns_of_effects([(effect, [shapes.get(effect.name, ())]) for effect in effects])
+        return np.concatenate([block for (block,) in made], axis=1)
 
     def columns_of_effects(self, wanted: Sequence[tuple[Effect, Sequence[Shape]]]) -> list[list[FloatArray]]:
         """The columns of many effects, for each of their shapes, (N, k) each: all are filtered in one pass per trial.

@@ -178,8 +178,7 @@ def fit_linear(
     dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape], weight: FloatArray
 ) -> Fit:
     """Fit the coefficients of effects of given shapes to the given rows, weighted (N,)."""
-    blocks = [dataset.columns(effect, shapes.get(effect.name, ())) for effect in effects]
-    columns = np.concatenate(blocks, axis=1)
+    columns = dataset.columns_of_model(effects, shapes)
     if int(rows.sum()) < 2 * columns.shape[1]:
         raise UnusableDataError(
             f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
