@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from compensator.lab.fit import Fit
-from compensator.lab.linear import solve_normal
+from compensator.lab.linear import solve_without
 from compensator.lab.recording import FloatArray
 from compensator.lab.validation import independent_units
 
@@ -79,7 +79,7 @@ def _half_widths(fit: Fit) -> FloatArray:
     without = []
     for label in np.unique(unit):
         inside, own = columns[unit == label], effort[unit == label]
-        without.append(solve_normal(gram - inside.T @ inside, moment - inside.T @ own, bounds))
+        without.append(solve_without((gram, moment), (inside.T @ inside, inside.T @ own), bounds))
     half = np.full(len(kept), np.nan)
     count = len(without)
     if count > 2:

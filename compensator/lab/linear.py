@@ -86,3 +86,19 @@ def solve_normal(gram: FloatArray, moment: FloatArray, bounds: Bounds) -> FloatA
     found = lsq_linear(root.T, wanted, (bounds.low * scale, bounds.high * scale), method="bvls")
     bounded: FloatArray = np.clip(found.x / scale, bounds.low, bounds.high)
     return bounded
+
+
+def solve_without(
+    whole: tuple[FloatArray, FloatArray], part: tuple[FloatArray, FloatArray], bounds: Bounds
+) -> FloatArray:
+    """Coefficients from normal equations (gram, moment) once a part of the rows is taken out of them.
+
+    A column that only these rows excite is undetermined without them, and gets the coefficient nearest to 0: what
+    rounding leaves of its power would give it any other.
+    """
+    gram, moment = whole[0] - part[0], whole[1] - part[1]
+    left = np.diag(gram) > DEPENDENT**2 * np.diag(whole[0])
+    coefficients = np.clip(np.zeros(len(moment)), bounds.low, bounds.high)
+    if left.any():
+        coefficients[left] = solve_normal(gram[np.ix_(left, left)], moment[left], bounds.of(left))
+    return coefficients

@@ -11,7 +11,7 @@ import numpy as np
 
 from compensator.lab.dataset import IntArray, RowChoice
 from compensator.lab.fit import Fit
-from compensator.lab.linear import solve_normal
+from compensator.lab.linear import solve_without
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
 
@@ -104,7 +104,7 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
     for label in np.unique(unit):
         own = unit == label
         inside = columns[own]
-        rest = solve_normal(gram - inside.T @ inside, moment - inside.T @ effort[own], bounds)
+        rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
         seen = rows & (units == label)
         residual[seen] = fit.dataset.effort[seen] - fit.columns[seen][:, kept] @ rest
     return _result(fit, kind, rows, residual[rows], units[rows])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from compensator.lab.linear import Bounds, independent, orthonormal, solve, solve_normal
+from compensator.lab.linear import Bounds, independent, orthonormal, solve, solve_normal, solve_without
 
 
 def free(count: int) -> Bounds:
@@ -75,3 +75,16 @@ def test_normal_equations_of_a_left_out_direction_stay_finite():
     found = solve_normal(columns.T @ columns, columns.T @ (4.0 * np.ones(20)), free(2))
     assert found.sum() == pytest.approx(4.0)
     assert np.isfinite(found).all()
+
+
+def test_a_column_that_only_the_left_out_rows_excite_counts_nothing_without_them():
+    random = np.random.default_rng(8)
+    columns = random.standard_normal((300, 3))
+    columns[100:, 2] = 0.0
+    effort = columns @ np.array([1.0, 2.0, 3.0]) + 0.01 * random.standard_normal(300)
+    whole = columns.T @ columns, columns.T @ effort
+    whole[0][2, 2] += 1e-13  # what another order of the same sums would leave
+    part = columns[:100].T @ columns[:100], columns[:100].T @ effort[:100]
+    found = solve_without(whole, part, free(3))
+    assert found[:2] == pytest.approx(np.linalg.lstsq(columns[100:, :2], effort[100:], rcond=None)[0], rel=1e-6)
+    assert found[2] == 0.0
