@@ -1,15 +1,13 @@
-"""Judges items on all cores, keeps every result as it comes, and goes on where an earlier run was ended."""
+"""Judges items on all cores or a cluster, keeps every result as it comes, and goes on where a run was ended."""
 
 import json
-import multiprocessing
-import os
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from bench.blind.items import Item
 from bench.blind.judge import Result, judge
 from bench.errors import BenchError
+from bench.over_cores import as_they_end
 
 Shown = Callable[[int, int], None]
 """Called with (items done, items in all) as results come."""
@@ -19,41 +17,32 @@ class ResultsError(BenchError, OSError):
     """Raised when a file of results cannot be read or written, or holds something else."""
 
 
-def run_items(items: Sequence[Item], kept: Path | None, shown: Shown, workers: int | None = None) -> list[Result]:
+def run_items(
+    items: Sequence[Item], kept: Path | None, shown: Shown, workers: int | None = None, cluster: str | None = None
+) -> list[Result]:
     """Judge items, in the order given whatever order they end in.
 
     Args:
         items: to be judged.
         kept: file of results, one JSON object a line; what it holds is not done again. None: nothing is kept.
         shown: told of the progress.
-        workers: processes; 0 judges in this one; None takes all cores.
+        workers: processes; 0 or 1 judges in this one; None takes all cores.
+        cluster: address of a Dask scheduler, whose workers judge instead.
 
     Raises:
+        ClusterError: the cluster cannot be used.
         ResultsError: the file cannot be used.
     """
     done = {} if kept is None else _read(kept)
     open_items = [item for item in items if item.key not in done]
     shown(len(items) - len(open_items), len(items))
-    for result in _judged(open_items, os.cpu_count() if workers is None else workers):
+    alone = workers == 0 or len(open_items) < 2
+    for result in as_they_end(judge, open_items, 1 if alone else workers, cluster):
         done[result.key] = result
         if kept is not None:
             _append(kept, result)
         shown(sum(item.key in done for item in items), len(items))
     return [done[item.key] for item in items]
-
-
-def _judged(items: Sequence[Item], workers: int | None) -> Iterator[Result]:
-    if not workers or len(items) < 2:
-        yield from map(judge, items)
-        return
-    # started afresh, not forked: threads and compiled code do not survive a fork
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(workers, len(items)), mp_context=context) as executor:
-        try:
-            for future in as_completed([executor.submit(judge, item) for item in items]):
-                yield future.result()
-        finally:
-            executor.shutdown(wait=False, cancel_futures=True)
 
 
 def _read(path: Path) -> dict[str, Result]:

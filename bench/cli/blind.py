@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from bench.cli.cores import Cluster, Workers, progress
 from bench.cli.output import Json, complain, print_json, say, table
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
@@ -23,7 +24,8 @@ def blind(
     only: Annotated[
         list[str] | None, typer.Option(help="Ask this family of items alone, for instance complete; repeatable.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(min=0, help="Processes; without it, one for each core.")] = None,
+    workers: Workers = None,
+    cluster: Cluster = None,
     as_json: Json = False,
 ) -> None:
     """Draw joints, hide mechanisms or nothing in them, record them, and ask the model lab what is missing.
@@ -34,15 +36,11 @@ def blind(
     from bench.blind.pool import run_items
 
     items = items_of(seed, plants, only or ())
-    done = run_items(items, results, _progress, workers)
+    done = run_items(items, results, progress, workers, cluster)
     if as_json:
         print_json(_as_json(done, seed, plants))
     else:
         _print(done)
-
-
-def _progress(done: int, whole: int) -> None:
-    typer.echo(f"\r{done} of {whole} items", nl=done == whole, err=True)
 
 
 def _as_json(results: "list[Result]", seed: int, plants: int) -> dict[str, object]:

@@ -8,6 +8,7 @@ import typer
 
 from bench.cli import study_tables as tables
 from bench.cli.bench_session import session_of
+from bench.cli.cores import Cluster, Workers
 from bench.cli.output import Json, print_json, say, table, write_whole
 
 app = typer.Typer(no_args_is_help=True)
@@ -77,6 +78,21 @@ def compare(context: typer.Context, study: StudyId, model: Model = None, as_json
 def diagnose(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Which physical effect is missing, how sure is that, and what would adding it bring."""
     _show(context, as_json, tables.diagnosis, "diagnose", study, model_id=model)
+
+
+@app.command("diagnose-many")
+def diagnose_many(
+    context: typer.Context,
+    studies: Annotated[list[int] | None, typer.Argument(metavar="[STUDY]...", help="Without any, all.")] = None,
+    workers: Workers = None,
+    cluster: Cluster = None,
+    as_json: Json = False,
+) -> None:
+    """Diagnose the newest models of many studies, on all cores or on a cluster."""
+    from bench.cli.study_many import diagnose_studies, show
+
+    found = diagnose_studies(session_of(context), studies or [], workers, cluster)
+    print_json(found) if as_json else show(found)
 
 
 @app.command("add")

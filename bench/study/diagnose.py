@@ -4,11 +4,13 @@ from typing import Any
 
 from bench.store import Store
 from bench.study.errors import lab_errors
-from bench.study.material import Material, load_model
+from bench.study.material import load_model
 from compensator.lab import diagnosis
 from compensator.lab.catalogue import effect_named
+from compensator.lab.dataset import Dataset
 from compensator.lab.diagnose import diagnose as diagnose_fit
 from compensator.lab.drivers import DRIVERS
+from compensator.lab.fit import Fit
 
 
 def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:
@@ -23,21 +25,29 @@ def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[s
         StudyError: no such model, or no effect can be judged on these trials.
     """
     material, model = load_model(store, study_id, model_id)
-    fit = material.fit_of(model)
+    return diagnosis_of(material.fit_of(model), study_id, model.id)
+
+
+def diagnosis_of(fit: Fit, study_id: int, model_id: int) -> dict[str, Any]:
+    """What a model of a study may be missing, given its fit.
+
+    Raises:
+        StudyError: no effect can be judged on these trials.
+    """
     with lab_errors():
         found = diagnose_fit(fit)
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
     left_out = [f"Not judged: {reason}." for reason in found.left_out.values()]
     return {
         "study_id": study_id,
-        "model_id": model.id,
+        "model_id": model_id,
         "verdict": found.verdict,
         "sentence": found.sentence,
         "p_value": found.p_value,
         "notes": [*found.notes, *left_out],
         "data_problems": found.data_problems,
         "classes": [_class(members) for members in found.classes[:1]] if named else [],
-        "ranking": [_ranked(material, candidate, named) for candidate in found.candidates],
+        "ranking": [_ranked(fit.dataset, candidate, named) for candidate in found.candidates],
     }
 
 
@@ -52,7 +62,7 @@ def _class(members: tuple[str, ...]) -> dict[str, Any]:
     }
 
 
-def _ranked(material: Material, candidate: diagnosis.Candidate, named: set[str]) -> dict[str, Any]:
+def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -> dict[str, Any]:
     effect = candidate.effect
     return {
         "effect": effect.name,
@@ -69,7 +79,7 @@ def _ranked(material: Material, candidate: diagnosis.Candidate, named: set[str])
         "d_prime": candidate.detectability,
         "physical": candidate.physical,
         "sentence": _sentence(candidate),
-        "picture": _picture(material, candidate.picture),
+        "picture": _picture(dataset, candidate.picture),
     }
 
 
@@ -88,11 +98,11 @@ def _sentence(candidate: diagnosis.Candidate) -> str:
     return "; ".join(parts) + "."
 
 
-def _picture(material: Material, picture: diagnosis.Picture | None) -> dict[str, Any] | None:
+def _picture(dataset: Dataset, picture: diagnosis.Picture | None) -> dict[str, Any] | None:
     if picture is None:
         return None
     driver = DRIVERS[picture.driver]
-    unit = driver.unit_in(material.dataset.effort_definition.unit, material.definition.facts)
+    unit = driver.unit_in(dataset.effort_definition.unit, dataset.facts)
     return {
         "driver": driver.title,
         "unit": unit,

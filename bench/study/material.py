@@ -130,9 +130,12 @@ def load_model(store: Store, study_id: int, model_id: int | None) -> tuple[Mater
     """
     row = store.study(study_id)
     model = model_of(store, study_id, model_id)
-    definition = Definition.from_json(row.definition)
-    used = int(model.result.get("trials") or len(definition.trial_ids))
-    return material_of(store, study_id, row.name, definition.first(used)), model
+    return material_of(store, study_id, row.name, trials_of(model, Definition.from_json(row.definition))), model
+
+
+def trials_of(model: ModelRow, definition: Definition) -> Definition:
+    """A study's definition as it was when this model was fitted."""
+    return definition.first(int(model.result.get("trials") or len(definition.trial_ids)))
 
 
 def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:

@@ -70,3 +70,19 @@ def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):
     assert "this bench has no calibration" in refused.stderr
     assert "no calibration to begin with" in command("study", "ladder", 1, "--bench").stderr
     assert f"the same, {found['extended']['trials']} trials" in command("study", "ladder", 1).stdout
+
+
+def test_the_command_asks_all_studies_in_processes_and_prints_one_line_for_each(command, tmp_path):
+    (tmp_path / "known joint.zip").write_bytes(recording_set_zip())
+    assert command("import", "known joint.zip").exit_code == 0
+    for name in ("one", "two"):
+        assert command("study", "new", name, "--experiment", 1, "--hold-out", "amplitude_rad=0.9").exit_code == 0
+    told = command("study", "diagnose-many", "--workers", 2, "--json")
+    assert told.exit_code == 0, told.stderr
+    assert [one["study_id"] for one in json.loads(told.stdout)] == [1, 2]
+    assert "2 of 2 items" in told.stderr
+    shown = command("study", "diagnose-many", 2, "--workers", 1).stdout
+    assert "viscous_asymmetry" in shown
+    refused = command("study", "diagnose-many", "--cluster", "nowhere")
+    assert refused.exit_code != 0
+    assert "wanted is a scheduler's address" in refused.stderr

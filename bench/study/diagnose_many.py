@@ -1,0 +1,78 @@
+"""Diagnoses of many studies: on all cores, or on a cluster whose workers need neither the store nor its disk."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from bench.over_cores import over_cores
+from bench.store import Store
+from bench.store.records import ModelRow
+from bench.study.diagnose import diagnosis_of
+from bench.study.errors import StudyError, lab_errors
+from bench.study.material import Definition, Material, model_of, trials_of
+from compensator.lab.assembly import make_dataset
+from compensator.lab.dataset import Processing
+from compensator.lab.recording import Recording
+
+Shown = Callable[[int, int], None]
+"""Called with (studies done, studies in all) as answers come."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """All that a diagnosis depends on, wherever it is made."""
+
+    study_id: int
+    model: ModelRow
+    definition: Definition
+    recordings: list[Recording]
+
+
+def diagnose_many(
+    store: Store, study_ids: Sequence[int], shown: Shown, workers: int | None = None, cluster: str | None = None
+) -> list[dict[str, Any]]:
+    """The diagnosis of the newest model of each study, as `diagnose` gives it, in the order given.
+
+    A study that cannot be judged has `error` in place of an answer.
+
+    Args:
+        store: with the studies.
+        study_ids: which.
+        shown: told of the progress.
+        workers: processes; None takes all cores, 0 and 1 work in this one.
+        cluster: address of a Dask scheduler, whose workers are used instead.
+
+    Raises:
+        NotFoundError: no such study, or one of its trials is gone.
+        ClusterError: the cluster cannot be used.
+    """
+    found = []
+    shown(0, len(study_ids))
+    questions = _questions(store, study_ids)
+    alone = workers == 0 or len(study_ids) < 2
+    for answer in over_cores(answer_to, questions, 1 if alone else workers, cluster):
+        found.append(answer)
+        shown(len(found), len(study_ids))
+    return found
+
+
+def answer_to(question: Question) -> dict[str, Any]:
+    """Diagnose, in whatever process this is."""
+    definition, model = question.definition, question.model
+    try:
+        with lab_errors():
+            dataset = make_dataset(
+                question.recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows)
+            )
+        material = Material(question.study_id, "", definition, (), dataset)
+        return diagnosis_of(material.fit_of(model), question.study_id, model.id)
+    except StudyError as error:
+        return {"study_id": question.study_id, "model_id": model.id, "error": str(error)}
+
+
+def _questions(store: Store, study_ids: Sequence[int]) -> Iterator[Question]:
+    """One after the other, so that only those under way are in memory."""
+    for study_id in study_ids:
+        model = model_of(store, study_id, None)
+        definition = trials_of(model, Definition.from_json(store.study(study_id).definition))
+        yield Question(study_id, model, definition, [store.recording(trial) for trial in definition.trial_ids])

@@ -1,0 +1,48 @@
+"""One diagnosis in a process of its own, timed from its first import: `python -m tests.lab.timed_diagnosis STORE`.
+
+Prints JSON: seconds of the wall clock and of one core for each part, pictures drawn, bytes of the report, peak memory.
+"""
+
+import json
+import resource
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+
+def main() -> None:
+    """Time the diagnosis of the store's first experiment."""
+    laps: dict[str, tuple[float, float]] = {}
+
+    def timed(name: str, work: Callable[[], Any]) -> Any:
+        wall_s, cpu_s = time.perf_counter(), time.process_time()
+        result = work()
+        laps[name] = (time.perf_counter() - wall_s, time.process_time() - cpu_s)
+        return result
+
+    study = timed("import", _imported)
+    with study.Store.open(sys.argv[1]) as store:
+        study_id = timed("study", lambda: study.create_study(store, "rates", [1]))["study_id"]
+        timed("comparison", lambda: study.compare(store, study_id))
+        found = timed("diagnosis", lambda: study.diagnose(store, study_id))
+        page = timed("report", lambda: study.report_html(store, study_id))
+    pictures = sum(bool(one["picture"]) for one in found["ranking"])
+    peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+    print(json.dumps({"laps": laps, "pictures": pictures, "page": len(page), "peak_mb": peak_mb}))
+
+
+def _imported() -> Any:
+    import bench.store
+    import bench.study
+
+    class Names:
+        Store = bench.store.Store
+        create_study, compare = bench.study.create_study, bench.study.compare
+        diagnose, report_html = bench.study.diagnose, bench.study.report_html
+
+    return Names
+
+
+if __name__ == "__main__":
+    main()
