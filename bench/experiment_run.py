@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -13,7 +14,7 @@ from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.live import LiveBuffer
 from bench.loop import Outcome, OutcomeName, Reading
-from bench.recorder import Sink
+from bench.recorder import Event, Sink
 from bench.session import Session
 from bench.station import Station
 from bench.stop_request import StopRequest
@@ -207,12 +208,10 @@ class _WatchedSink:
         self._sink = sink
         self._live = live
 
-    def append(self, rows: NDArray[np.float64]) -> None:
-        self._sink.append(rows)
-        self._live.append(rows)
-
-    def event(self, time_s: float, name: str, detail: str) -> None:
-        self._sink.event(time_s, name, detail)
+    def append(self, rows: NDArray[np.float64], events: Sequence[Event] = ()) -> None:
+        self._sink.append(rows, events)
+        if len(rows):
+            self._live.append(rows)
 
 
 def _worse(outcome: OutcomeName, reason: str, problem: str) -> tuple[OutcomeName, str]:

@@ -1,5 +1,6 @@
 """Trials through the ordinary control loop as fast as they go, kept in memory: for joints that are only computed."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
@@ -61,11 +62,9 @@ class _Memory:
     blocks: list[NDArray[np.float64]] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
 
-    def append(self, rows: NDArray[np.float64]) -> None:
+    def append(self, rows: NDArray[np.float64], events: Sequence[tuple[float, str, str]] = ()) -> None:
         self.blocks.append(rows)
-
-    def event(self, time_s: float, name: str, detail: str) -> None:
-        self.events.append(Event(time_s, name, detail))
+        self.events += [Event(*event) for event in events]
 
     def channels(self) -> dict[str, FloatArray]:
         """The channels that were measured."""

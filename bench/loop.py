@@ -93,7 +93,7 @@ class ControlLoop:
         Returns:
             The outcome. Errors of the procedure, the drive and the sink are outcomes, not exceptions.
         """
-        recorder = Recorder(sink, self._clock.patience_s)
+        recorder = Recorder(sink, len(self.channels), self._clock.patience_s)
         lost_before = self._clock.overruns
         ending = Outcome("failed", "the run was torn down")
         try:

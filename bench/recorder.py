@@ -3,6 +3,7 @@
 import queue
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from struct import Struct
 from typing import Protocol
@@ -20,54 +21,52 @@ Event = tuple[float, str, str]
 class Sink(Protocol):
     """Where rows and events go. Called from one thread, in order; every call returns when its data are committed."""
 
-    def append(self, rows: Rows) -> None:
-        """Commit rows of shape (n, number of channels)."""
-
-    def event(self, time_s: float, name: str, detail: str) -> None:
-        """Commit one event."""
+    def append(self, rows: Rows, events: Sequence[Event] = ()) -> None:
+        """Commit rows of shape (n, number of channels), and what happened while they came; either may be none."""
 
 
 class RowBuffer:
     """Rows of one length, packed as they come: half the work of an array made of tuples later.
 
     Args:
+        width: values in a row.
         rows: how many to make room for at a time.
     """
 
-    def __init__(self, rows: int) -> None:
-        self._more = rows
+    def __init__(self, width: int, rows: int) -> None:
+        self._width, self._more = width, rows
         self._room = self._filled = 0
-        self._row = Struct("")
+        self._row = Struct(f"={width}d")
         self._memory = bytearray()
 
     def append(self, row: Row) -> int:
         """Take one row; return how many there are."""
         if self._filled == self._room:
-            self._make_room(len(row))
+            self._room += self._more
+            self._memory.extend(bytes(self._more * self._row.size))
         self._row.pack_into(self._memory, self._filled * self._row.size, *row)
         self._filled += 1
         return self._filled
 
     def rows(self) -> Rows:
         """A copy of all rows, shape (n, values in a row)."""
-        width = self._row.size // 8
-        return np.frombuffer(self._memory, count=self._filled * width).reshape(self._filled, width).copy()
+        values = np.frombuffer(self._memory, count=self._filled * self._width)
+        return values.reshape(self._filled, self._width).copy()
 
     def clear(self) -> None:
         """Forget the rows."""
         self._filled = 0
 
-    def _make_room(self, width: int) -> None:
-        self._row = Struct(f"={width}d")
-        self._room += self._more
-        self._memory.extend(bytes(self._more * self._row.size))
-
 
 class Recorder:
-    """Gathers rows into blocks and hands them over. A killed process loses the block in hand, `BLOCK_S` at most.
+    """Gathers rows and events into blocks and hands them over.
+
+    A killed process loses the block in hand, `BLOCK_S` at most. A block is one transaction of the store, events and
+    all: a search has thirty events, and a transaction of their own would cost each as much as a hundred cycles.
 
     Args:
         sink: where they go.
+        channels: values in a row.
         patience_s: how long a full backlog is waited for. None at all where the loop moves a real joint: it has limits
             and STOP to look at. A simulation is faster than any disk, and waits.
     """
@@ -77,14 +76,15 @@ class Recorder:
     BACKLOG = 160  # blocks that may wait for the sink
     LAST_PATIENCE_S = 60.0  # how long the end is waited for: the joint is off by then, and the rows are worth it
 
-    def __init__(self, sink: Sink, patience_s: float = 0.0) -> None:
+    def __init__(self, sink: Sink, channels: int, patience_s: float = 0.0) -> None:
         self.error: BaseException | None = None
         self._sink = sink
         self._patience_s = patience_s
-        self._rows = RowBuffer(self.BLOCK_ROWS)
+        self._rows = RowBuffer(channels, self.BLOCK_ROWS)
+        self._events: list[Event] = []
         self._handed_s = time.monotonic()
         self._ending = False
-        self._queue: queue.Queue[Rows | Event | None] = queue.Queue(self.BACKLOG)
+        self._queue: queue.Queue[tuple[Rows, list[Event]] | None] = queue.Queue(self.BACKLOG)
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
 
@@ -98,9 +98,8 @@ class Recorder:
             self._hand_over()
 
     def event(self, time_s: float, name: str, detail: str) -> None:
-        """Take one event; it follows the rows before it."""
-        self._hand_over()
-        self._put((time_s, name, detail))
+        """Take one event; it is handed over with the rows round it."""
+        self._events.append((time_s, name, detail))
 
     def close(self) -> None:
         """Hand over what is left and wait until it is committed.
@@ -126,20 +125,20 @@ class Recorder:
         self._check()
         self._handed_s = time.monotonic()
         rows = self._rows.rows()
-        if len(rows):
-            self._put(rows)
-            self._rows.clear()
-
-    def _put(self, item: Rows | Event) -> None:
+        if len(rows) == 0 and not self._events:
+            return
+        block = rows, self._events
         try:
             if self._patience_s > 0.0:
-                self._queue.put(item, timeout=self._patience_s)
+                self._queue.put(block, timeout=self._patience_s)
             else:
-                self._queue.put_nowait(item)
+                self._queue.put_nowait(block)
         except queue.Full:
             raise RecordingError(
                 f"the store does not keep up: {self.BACKLOG} blocks are waiting for it; look for a full or failing disk"
             ) from None
+        self._rows.clear()
+        self._events = []
 
     def _check(self) -> None:
         if self.error is not None:
@@ -147,15 +146,12 @@ class Recorder:
 
     def _write(self) -> None:
         while not (self._ending and self._queue.empty()):
-            item = self._queue.get()
-            if item is None:
+            block = self._queue.get()
+            if block is None:
                 return
             if self.error is not None:
                 continue  # drain, so that the loop is never blocked by a sink that is gone
             try:
-                if isinstance(item, tuple):
-                    self._sink.event(*item)
-                else:
-                    self._sink.append(item)
+                self._sink.append(*block)
             except BaseException as error:  # whatever it is, the loop has to hear of it
                 self.error = error

@@ -1,5 +1,6 @@
 """One experiment through the ordinary loop, into memory, with what the arm truly leans on beside each row."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,11 +68,9 @@ class _Memory:
         self.blocks: list[FloatArray] = []
         self.events: list[Event] = []
 
-    def append(self, rows: FloatArray) -> None:
+    def append(self, rows: FloatArray, events: Sequence[tuple[float, str, str]] = ()) -> None:
         self.blocks.append(rows)
-
-    def event(self, time_s: float, name: str, detail: str) -> None:
-        self.events.append(Event(time_s, name, detail))
+        self.events += [Event(*event) for event in events]
 
 
 def _run(

@@ -1,5 +1,6 @@
 """Where the rows and events of a running trial go."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy import Connection
@@ -12,7 +13,7 @@ from compensator.lab.recording import FloatArray
 
 
 class TrialWriter:
-    """A trial that is being recorded. What `append` and `event` were given is committed when they return.
+    """A trial that is being recorded. What `append` was given is committed when it returns.
 
     Attributes:
         trial_id: the trial in the store.
@@ -27,31 +28,27 @@ class TrialWriter:
         self._pending: FloatArray | None = None  # the newest rows, which the overview does not cover yet
         self._finished = False
 
-    def append(self, rows: FloatArray) -> None:
-        """Write rows.
+    def append(self, rows: FloatArray, events: Sequence[tuple[float, str, str]] = ()) -> None:
+        """Write rows, and what happened meanwhile, in one transaction.
 
         Args:
             rows: shape (n, channels), columns in the order of the trial's channels.
+            events: each a time of the trial [s], a name and a detail.
 
         Raises:
             StoreValueError: the shape does not fit.
             StoreStateError: the trial is finished.
-            StoreLockedError, StoreFullError, StoreReadOnlyError: nothing of these rows is kept.
+            StoreLockedError, StoreFullError, StoreReadOnlyError: nothing of all this is kept.
         """
         samples.check_shape(rows, len(self._channels))
         self._check_running()
-        if len(rows) == 0:
+        if len(rows) == 0 and not events:
             return
         with self._database.writing() as connection:
             pending = samples.add(connection, self.trial_id, self.rows, rows, self._pending)
+            trials.add_events(connection, self.trial_id, [Event(*event) for event in events])
         self._pending = pending
         self.rows += len(rows)
-
-    def event(self, time_s: float, name: str, detail: str = "") -> None:
-        """Write something that happened at a time of the trial [s]."""
-        self._check_running()
-        with self._database.writing() as connection:
-            trials.add_events(connection, self.trial_id, [Event(time_s, name, detail)])
 
     def finish(self, outcome: str, reason: str = "", results: dict[str, Any] | None = None) -> None:
         """Close the trial.

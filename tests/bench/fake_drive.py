@@ -115,10 +115,9 @@ class ListSink:
         self.events: list[tuple[float, str, str]] = []
         self._fail_on_block = fail_on_block
 
-    def append(self, rows) -> None:
+    def append(self, rows, events=()) -> None:
         if len(self.blocks) == self._fail_on_block:
             raise OSError("No space left on device")
-        self.blocks.append(rows)
-
-    def event(self, time_s: float, name: str, detail: str) -> None:
-        self.events.append((time_s, name, detail))
+        if len(rows):
+            self.blocks.append(rows)
+        self.events += events

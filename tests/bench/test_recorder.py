@@ -11,27 +11,33 @@ from bench.recorder import Recorder
 from tests.bench.fake_drive import ListSink
 
 
-def test_rows_and_events_arrive_in_order():
+def test_rows_and_events_arrive_together_and_in_order():
     arrived = []
 
     class Sink:
-        def append(self, rows):
-            arrived.extend(rows[:, 0].tolist())
+        def append(self, rows, events):
+            arrived.append((rows[:, 0].tolist(), events))
 
-        def event(self, time_s, name, detail):
-            arrived.append(name)
-
-    recorder = Recorder(Sink())
+    recorder = Recorder(Sink(), 2)
     recorder.row((1.0, 2.0))
     recorder.event(1.0, "a", "")
     recorder.row((3.0, 4.0))
+    recorder.event(3.0, "b", "up")
     recorder.close()
-    assert arrived == [1.0, "a", 3.0]
+    assert arrived == [([1.0, 3.0], [(1.0, "a", ""), (3.0, "b", "up")])]
+
+
+def test_an_event_without_rows_arrives_too():
+    sink = ListSink()
+    recorder = Recorder(sink, 2)
+    recorder.event(0.0, "end", "refused")
+    recorder.close()
+    assert sink.events == [(0.0, "end", "refused")]
 
 
 def test_rows_are_handed_over_while_the_trial_runs():
     sink = ListSink()
-    recorder = Recorder(sink)
+    recorder = Recorder(sink, 1)
     deadline_s = time.monotonic() + 10.0
     while len(sink.blocks) < 2 and time.monotonic() < deadline_s:
         recorder.row((time.monotonic(),))
@@ -44,7 +50,7 @@ def test_rows_are_handed_over_while_the_trial_runs():
 
 def test_many_rows_do_not_wait_for_the_clock():
     sink = ListSink()
-    recorder = Recorder(sink)
+    recorder = Recorder(sink, 1)
     for row in range(Recorder.BLOCK_ROWS * 2):
         recorder.row((float(row),))
     recorder.close()
@@ -54,7 +60,7 @@ def test_many_rows_do_not_wait_for_the_clock():
 
 def test_a_failure_is_raised_and_the_thread_ends():
     threads = threading.active_count()
-    recorder = Recorder(ListSink(fail_on_block=0))
+    recorder = Recorder(ListSink(fail_on_block=0), 1)
     recorder.row((1.0,))
     with pytest.raises(RecordingError, match="No space left on device"):
         recorder.close()
@@ -68,10 +74,10 @@ def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience
     release = threading.Event()
 
     class Hanging(ListSink):
-        def append(self, rows):
+        def append(self, rows, events=()):
             release.wait(30.0)
 
-    recorder = Recorder(Hanging(), patience_s)
+    recorder = Recorder(Hanging(), 1, patience_s)
     began_s = time.monotonic()
     with pytest.raises(RecordingError, match="2 blocks are waiting"):
         fill(recorder)
@@ -92,12 +98,12 @@ def test_a_full_backlog_is_worked_through_at_the_end(monkeypatch):
     monkeypatch.setattr(Recorder, "BLOCK_ROWS", 1)
 
     class Slow(ListSink):
-        def append(self, rows):
+        def append(self, rows, events=()):
             time.sleep(0.01)
-            super().append(rows)
+            super().append(rows, events)
 
     sink = Slow()
-    recorder = Recorder(sink, patience_s=10.0)
+    recorder = Recorder(sink, 1, patience_s=10.0)
     fill(recorder)
     recorder.close()
     assert len(sink.blocks) == 100
@@ -110,13 +116,13 @@ def test_a_block_that_the_backlog_has_no_room_for_waits_and_loses_nothing(monkey
     in_hand, release = threading.Event(), threading.Event()
 
     class Slow(ListSink):
-        def append(self, rows):
+        def append(self, rows, events=()):
             in_hand.set()
             assert release.wait(30.0)
-            super().append(rows)
+            super().append(rows, events)
 
     sink = Slow()
-    recorder = Recorder(sink)
+    recorder = Recorder(sink, 1)
     fill(recorder, range(4))
     assert in_hand.wait(30.0)
     fill(recorder, range(4, 11))

@@ -214,7 +214,7 @@ def test_a_technician_who_gives_up_ends_the_experiment(runner, store, fake):
 
 
 def test_a_store_that_fails_in_mid_trial_ends_in_power_off(runner, store, monkeypatch):
-    def full(_self, _rows):
+    def full(_self, _rows, _events):
         raise OSError("No space left on device")
 
     monkeypatch.setattr(TrialWriter, "append", full)

@@ -35,8 +35,7 @@ def experiment_id(store: Store) -> Iterator[int]:
     rows = np.column_stack([np.arange(ROWS) / 3.0, generator.normal(size=ROWS), np.full(ROWS, np.nan)])
     rows[-1, 2] = 41.5
     writer = store.begin_trial(found, "a", "step", {"load_kg": 0.1, "balanced": False, "grease": "=2+3"}, CHANNELS)
-    writer.append(rows)
-    writer.event(1.0, "=cmd|' /C calc'!A0", "up, slowly")
+    writer.append(rows, [(1.0, "=cmd|' /C calc'!A0", "up, slowly")])
     writer.finish("completed")
     other = store.begin_trial(found, "b", "step", {"load_kg": 0.05, "grease": 7.0}, ("time_s", "duty"))
     other.append(np.column_stack([np.arange(5.0), np.full(5, 0.25)]))

@@ -32,8 +32,7 @@ def fill(store: Store) -> None:
         conditions = {"load_kg": 0.1, "balanced": False, "grease": "NLGI 2", "repeat": repeat}
         writer = store.begin_trial(steps, f"step {repeat}", "steps", conditions, CHANNELS)
         for block in range(3):
-            writer.append(rows(40 * block, 40))
-        writer.event(0.5, "breakaway", "up")
+            writer.append(rows(40 * block, 40), [(0.5, "breakaway", "up")] if block == 0 else [])
         writer.finish("completed", "", {"current_a": 0.25})
     store.finish_experiment(steps, "completed", "", {"spread_a": None})
     running = store.begin_experiment("load-sweep", {}, "real", {}, {"name": "paper"})

@@ -65,7 +65,7 @@ def test_rows_of_another_shape_are_refused(store: Store, shape: tuple[int, ...])
 def test_nothing_follows_the_end_of_a_trial(store: Store) -> None:
     writer = begin_trial(store, begin(store))
     writer.finish("stopped", "stop was pressed", {"spread_a": 0.1})
-    for call in (lambda: writer.append(rows(0, 1)), lambda: writer.event(0.0, "x"), lambda: writer.finish("completed")):
+    for call in (lambda: writer.append(rows(0, 1)), lambda: writer.finish("completed")):
         with pytest.raises(StoreStateError, match="is finished"):
             call()
     found = store.trial(writer.trial_id)
@@ -149,8 +149,8 @@ def test_long_lists_carry_their_conditions(store: Store) -> None:
 
 def test_events_are_in_order_of_time(store: Store) -> None:
     writer = begin_trial(store, begin(store))
-    for event in (Event(2.0, "breakaway", "up"), Event(1.0, "settled"), Event(2.0, "breakaway", "down")):
-        writer.event(*event)
+    writer.append(rows(0, 2), [Event(2.0, "breakaway", "up"), Event(1.0, "settled")])
+    writer.append(rows(0, 0), [Event(2.0, "breakaway", "down")])
     assert store.events(writer.trial_id) == [
         Event(1.0, "settled", ""),
         Event(2.0, "breakaway", "up"),
