@@ -14,7 +14,7 @@ def diagnose_studies(
     from bench.study.diagnose_many import diagnose_many
 
     with session.open_store() as store:
-        chosen = studies or [row.id for row in store.studies()]
+        chosen = studies or sorted(row.id for row in store.studies())
         return diagnose_many(store, chosen, progress, workers, cluster)
 
 
