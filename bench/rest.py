@@ -22,6 +22,7 @@ class RestSettings(Section):
     )
     slope: float = quantity(0.0, "", "b: what eq. (10) grows by with the current of the load")
     offset_a: float = quantity(0.0, "A", "e: what eq. (10) gives too much under any load")
+    offset_sd_a: float = quantity(0.0, "A", "Standard deviation of offset_a", ge=0)
     delay: Row = Field(default=(0.0, 0.0, 0.0), description="k0, k1, k2: what a ramp gains before motion is seen")
     floor_a: float = quantity(1e-6, "A", "Least scatter of one breakaway", gt=0)
     scatter: float = quantity(0.0, "", "Scatter of one breakaway, as a share of friction", ge=0)

@@ -13,11 +13,15 @@ together, since one alone tells it badly. It grows with what is set in motion: w
 r: friction is (1 + r) F forwards, (1 - r) F backwards. a, b, c: gear loss (`gear_loss`); the teeth lose b L on average,
 (a - 1) L more in driving than in being driven, and pass on c of the friction behind them. e: friction behind the teeth,
 which does not show where they are free. L = 0 shows r and F alone; another angle under the same loads shows the rest.
+
+With free play the arm's own friction e holds any load below e by itself: the teeth are free, the motor lets go alone,
+and M = r F whatever the load. The least that teeth in touch can show is M = a e + c + r F. So what is seen tells either
+that the load lies within -e .. e, or how large it is beyond.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import copysign, sqrt
+from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +35,7 @@ from compensator.interval import Interval
 BAND = 1.959964
 FLOOR_A = 1e-6  # least scatter, where a joint shows none
 LEAST_POINTS = 6
-FREE_SHARE = 0.5  # of what is left of eq. (9), where the teeth may be free
+SPREAD = 0.95  # of what a free arm may carry, either way: all of it is equally likely
 
 
 class RestPoint(NamedTuple):
@@ -67,7 +71,7 @@ class RestCalibration:
     Attributes:
         gain, step_a, asymmetry: a, c, r.
         covariance: of the three, in that order; rows of A, A, 1.
-        slope, offset_a: b, e.
+        slope, offset_a, offset_sd_a: b, e and the standard deviation of e.
         delay: k0, k1, k2.
         floor_a, scatter: standard deviation of one breakaway: sqrt(floor^2 + (scatter F)^2).
         asymmetry_told: 95 % interval of r.
@@ -79,6 +83,7 @@ class RestCalibration:
     covariance: tuple[tuple[float, ...], ...] = ((0.0,) * 3,) * 3
     slope: float = 0.0
     offset_a: float = 0.0
+    offset_sd_a: float = 0.0
     delay: tuple[float, ...] = (0.0, 0.0, 0.0)
     floor_a: float = FLOOR_A
     scatter: float = 0.0
@@ -102,26 +107,48 @@ class RestCalibration:
 
     def estimate(self, found: BreakawayFit) -> RestEstimate:
         """Load and friction from the breakaways of one search."""
-        mean_a = found.load_current_a.value
-        free_a = mean_a - self.asymmetry * found.friction_current_a.value
-        # less than that, and friction behind the teeth explains it: they may be free
-        touches = 1.0 if abs(free_a) > 2.0 * self.step_a else 0.0
+        free_a = found.load_current_a.value - self.asymmetry * found.friction_current_a.value
+        touches = 1.0 if abs(free_a) > self._least_a / 2.0 else 0.0
         half_a = self._half_a(found, touches, abs(free_a))
-        load_a = self._load_a(mean_a, half_a) if touches else FREE_SHARE * free_a / self.gain
+        load_a = self._load_a(found.load_current_a.value, half_a) if touches else 0.0
         friction_a = max(half_a - self.slope * abs(load_a) - self.offset_a * touches, 0.0)
         # as many one way as the other: mean and half difference are equally sure
         noise_a = self.scatter_a(half_a) / sqrt(found.breakaways)
-        gradient = np.array([load_a, copysign(touches, load_a), friction_a])
-        known_a2 = float(gradient @ np.array(self.covariance) @ gradient)
-        # of teeth that may be free, everything from 0 to `free_a` may be load: half of it is taken, evenly spread round
-        share, unsure_a = (1.0, 0.0) if touches else (FREE_SHARE, free_a / sqrt(12.0))
-        told_a2 = (1.0 + self.asymmetry**2) * noise_a**2 + known_a2
-        width_a = BAND * sqrt(share**2 * told_a2 + unsure_a**2) / self.gain
         friction_width_a = BAND * sqrt(1.0 + self.slope**2) * noise_a
         return RestEstimate(
-            Interval(load_a, load_a - width_a, load_a + width_a),
+            self._load(found, load_a, friction_a, noise_a),
             Interval(friction_a, friction_a - friction_width_a, friction_a + friction_width_a),
         )
+
+    @property
+    def _least_a(self) -> float:
+        """The least that eq. (9) shows of teeth that carry a load, asymmetry aside [A]."""
+        return self.gain * self._held_a + abs(self.step_a)
+
+    @property
+    def _held_a(self) -> float:
+        """The load that the arm's own friction holds [A]."""
+        return max(self.offset_a, 0.0)
+
+    def _load(self, found: BreakawayFit, load_a: float, friction_a: float, noise_a: float) -> Interval:
+        """I_load with every load that the search does not contradict: of teeth in touch, of free ones, or of both."""
+        mean_a = found.load_current_a.value
+        free_a = mean_a - self.asymmetry * found.friction_current_a.value
+        unseen_a, ends_a = self._width_a(0.0, friction_a, noise_a), [load_a]
+        if load_a == 0.0 or abs(free_a) <= unseen_a:
+            half_a = max(SPREAD * hypot(self._held_a, BAND * self.offset_sd_a), unseen_a / self.gain)
+            ends_a += [-half_a, half_a]
+        touching_a = self._load_a(mean_a, self._half_a(found, 1.0, abs(free_a)))
+        width_a = self._width_a(touching_a, friction_a, noise_a) / self.gain
+        if abs(touching_a) + width_a >= self._held_a:
+            ends_a += [touching_a - width_a, touching_a + width_a]
+        return Interval(load_a, min(ends_a), max(ends_a))
+
+    def _width_a(self, load_a: float, friction_a: float, noise_a: float) -> float:
+        """Half of the 95 % interval of M under a load, by the scatter of breakaways and by what was calibrated."""
+        gradient = np.array([load_a, float(np.sign(load_a)), friction_a])
+        known_a2 = float(gradient @ np.array(self.covariance) @ gradient)
+        return BAND * sqrt((1.0 + self.asymmetry**2) * noise_a**2 + known_a2)
 
     def _half_a(self, found: BreakawayFit, touches: float, load_a: float) -> float:
         """D: what the ramps gained taken off."""
@@ -150,11 +177,12 @@ def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
     weights = np.sqrt(_column(found, "breakaways")) / np.hypot(floor_a, scatter * ramped_a)
     delay, _ = _fit([ones, touches, np.abs(load_a)], _column(found, "delay"), weights)
     half_a = ramped_a - (np.column_stack([ones, touches, np.abs(load_a)]) @ delay) * ramp
-    (f0, f1, slope, offset_a), _ = _fit([ones, weight_kg, np.abs(load_a), touches], half_a, weights)
+    (f0, f1, slope, offset_a), told = _fit([ones, weight_kg, np.abs(load_a), touches], half_a, weights)
     mean_a = np.array([one.load_current_a.value for one in found])
     (gain, step_a, asymmetry), covariance = _fit([load_a, np.sign(load_a), f0 + f1 * weight_kg], mean_a, weights)
     known = tuple(map(tuple, covariance.tolist()))
-    return RestCalibration(gain, step_a, asymmetry, known, slope, offset_a, tuple(delay), floor_a, scatter)
+    offset_sd_a = sqrt(float(told[3, 3]))
+    return RestCalibration(gain, step_a, asymmetry, known, slope, offset_a, offset_sd_a, tuple(delay), floor_a, scatter)
 
 
 def _column(items: Sequence[RestPoint] | Sequence[BreakawayFit], name: str) -> NDArray[np.float64]:

@@ -97,7 +97,8 @@ def result_of(trial: Recorded) -> RestResult | None:
     if found.get("load_current_a") is None:
         return None
     low_a, high_a = found.get("load_interval_a") or (found["load_current_a"], found["load_current_a"])
-    return RestResult(found["load_current_a"], (high_a - low_a) / 2.0, found["friction_current_a"])
+    half_a = max(high_a - found["load_current_a"], found["load_current_a"] - low_a)
+    return RestResult(found["load_current_a"], half_a, found["friction_current_a"])
 
 
 def steady_rows(trial: Recorded) -> Mask:
