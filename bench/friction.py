@@ -21,6 +21,7 @@ class FrictionCurve(Section):
     shape: float = quantity(2.0, "", "Shape of the Stribeck curve", gt=0)
     viscous_a_s_rad: float = quantity(0.0, "A s/rad", "Viscous friction", ge=0)
     offset_a: float = quantity(0.0, "A", "Friction forwards over that backwards, half of it; no part of the curve")
+    rise_offset_a: float = quantity(0.0, "A", "What offset_a rises by towards rest; no part of the curve")
     inertia_a_s2_rad: float = quantity(0.0, "A s2/rad", "Of motor, arm and load; no part of the curve", ge=0)
 
     def curve(self) -> KineticFriction:

@@ -21,18 +21,20 @@ SCALE_PASSES = 5
 SOFTNESS = 2.0  # scale of the loss over the spread: 95 % as efficient as least squares where there are no outliers
 MOST_LEVERAGE = 0.9  # of one point, in the covariance: beyond, its own residual tells nothing
 PLAIN = (0, 4, 5)  # parameters without the Stribeck shape
-WHOLE = (0, 1, 2, 3, 4, 5)
+RISE_OFFSET = 7
+WHOLE = (0, 1, 2, 3, 4, 5, RISE_OFFSET)
 INERTIA = 6  # fitted where accelerations are known
-COUNT = 7
+COUNT = 8
 
 
 class Solution(NamedTuple):
     """What was found.
 
     Attributes:
-        p: Fc, Fs - Fc [A], ln vs [ln rad/s], ln ds, b [A s/rad], offset [A], inertia [A s2/rad].
-        covariance: of p, shape (7, 7); 0 for what was not fitted or lies at a bound.
-        free: shape (7,); whether it was fitted and lies within its bounds.
+        p: Fc, Fs - Fc [A], ln vs [ln rad/s], ln ds, b [A s/rad], offset [A], inertia [A s2/rad], offset
+            of the rise [A].
+        covariance: of p, shape (8, 8); 0 for what was not fitted or lies at a bound.
+        free: shape (8,); whether it was fitted and lies within its bounds.
         scatter_a: standard deviation of the bulk of the residuals.
         fitted: number of parameters that were fitted.
     """
@@ -51,16 +53,18 @@ class _Problem:
         self.magnitude, self.direction, self.current = np.abs(speed), np.sign(speed), current
         self.acceleration, quickest = acceleration, float(np.max(np.abs(acceleration)))
         self.fastest, self.largest = float(np.max(self.magnitude)), float(np.max(np.abs(current)))
-        self.fitted = np.array([*(WHOLE if stribeck else PLAIN), *((INERTIA,) if quickest > 0.0 else ())])
+        self.fitted = np.array(sorted([*(WHOLE if stribeck else PLAIN), *((INERTIA,) if quickest > 0.0 else ())]))
         per_speed, per_acceleration = self.largest / self.fastest, self.largest / (quickest or 1.0)
-        self.scales = np.array([self.largest, self.largest, 1.0, 1.0, per_speed, self.largest, per_acceleration])
-        self.low = np.array([0.0, 0.0, np.log(1e-3 * self.fastest), np.log(SHAPES[0]), 0.0, -np.inf, 0.0])
-        self.high = np.array([np.inf, np.inf, np.log(self.fastest), np.log(SHAPES[1]), np.inf, np.inf, np.inf])
+        self.scales = np.array(
+            [self.largest, self.largest, 1.0, 1.0, per_speed, self.largest, per_acceleration, self.largest]
+        )
+        self.low = np.array([0.0, 0.0, np.log(1e-3 * self.fastest), np.log(SHAPES[0]), 0.0, -np.inf, 0.0, -np.inf])
+        self.high = np.array([np.inf, np.inf, np.log(self.fastest), np.log(SHAPES[1]), np.inf, np.inf, np.inf, np.inf])
 
     def start(self, speed_share: float, shape: float) -> FloatArray:
         speed, viscous = np.log(speed_share * self.fastest), 0.3 * self.largest / self.fastest
         rise = 0.2 * self.largest if 1 in self.fitted else 0.0
-        return np.array([0.5 * self.largest, rise, speed, np.log(shape), viscous, 0.0, 0.0])
+        return np.array([0.5 * self.largest, rise, speed, np.log(shape), viscous, 0.0, 0.0, 0.0])
 
     def whole(self, fitted: FloatArray) -> FloatArray:
         """All parameters, fitted or not."""
@@ -70,18 +74,19 @@ class _Problem:
 
     def residuals(self, fitted: FloatArray) -> FloatArray:
         p = self.whole(fitted)
-        bump = p[1] * np.exp(-self._power(p))
-        friction = self.direction * (p[0] + bump + p[4] * self.magnitude)
-        return np.asarray(friction + p[5] + p[INERTIA] * self.acceleration - self.current)
+        bump = np.exp(-self._power(p))
+        friction = self.direction * (p[0] + p[1] * bump + p[4] * self.magnitude) + p[5] + p[RISE_OFFSET] * bump
+        return np.asarray(friction + p[INERTIA] * self.acceleration - self.current)
 
     def derivatives(self, fitted: FloatArray) -> FloatArray:
         p = self.whole(fitted)
         power = self._power(p)
         bump, shape = np.exp(-power), np.exp(p[3])
-        steep = p[1] * bump * power * shape
-        columns = [np.ones_like(power), bump, steep, -steep * (np.log(self.magnitude) - p[2]), self.magnitude]
-        along = [self.direction * column for column in columns]
-        return np.column_stack([*along, np.ones_like(power), self.acceleration])[:, self.fitted]
+        ones, rise = np.ones_like(power), self.direction * p[1] + p[RISE_OFFSET]
+        steep = rise * bump * power * shape
+        curve = [self.direction, self.direction * bump, steep, -steep * (np.log(self.magnitude) - p[2])]
+        others = [self.direction * self.magnitude, ones, self.acceleration, bump]
+        return np.column_stack([*curve, *others])[:, self.fitted]
 
     def _power(self, p: FloatArray) -> FloatArray:
         # beyond 700 the exponential is 0 in any case, and the power times it has to be 0, too

@@ -1,11 +1,12 @@
 """General Kinetic Friction from steady points of a balanced joint (paper, sections 2.2, 3.2.1, Figs 2, 3).
 
-    I = sgn(w) (Fc + (Fs - Fc) exp(-|w/vs|^ds) + b |w|) + offset        (2)
-        [+ J dw/dt]
+    I = sgn(w) (Fc + (Fs - Fc) exp(-|w/vs|^ds) + b |w|)                 (2)
+        + offset + rise_offset exp(-|w/vs|^ds) [+ J dw/dt]
 
 Robust bounded regression: soft-L1 loss, its scale from the median absolute residual. The offset is what differs between
 the directions (an arm not quite balanced, a current sensor's zero, unequal Coulomb friction); in one direction alone it
-could not be told from Coulomb friction. It is no part of the curve.
+could not be told from Coulomb friction. Dry friction that is a share larger one way is larger by that share of its rise
+towards rest, too: the offset of the rise. Neither is part of the curve.
 
 J, in A s2/rad, is for points whose speed is not quite steady: within a finite travel a heavy arm is not. What little it
 still gains is worth J dw/dt, and without it that share is taken for friction. No part of the curve either.
@@ -35,8 +36,8 @@ class FrictionFit:
 
     Attributes:
         curve: eq. (2).
-        parameters: 95 % interval of each of its parameters, of `offset_a` and, where accelerations were given, of
-            `inertia_a_s2_rad`, by name.
+        parameters: 95 % interval of each of its parameters, of `offset_a`, with `stribeck` of `rise_offset_a` and,
+            where accelerations were given, of `inertia_a_s2_rad`, by name.
         scatter_a: standard deviation of the points about the curve, outliers aside [A].
         points: number of them.
     """
@@ -47,7 +48,7 @@ class FrictionFit:
     points: int
 
 
-NO_PART_OF_THE_CURVE = ("offset_a", "inertia_a_s2_rad")
+NO_PART_OF_THE_CURVE = ("offset_a", "inertia_a_s2_rad", "rise_offset_a")
 
 
 def fit(
@@ -87,7 +88,7 @@ def fit_duty(
 
 def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dict[str, Interval]:
     """Intervals of the parameters by name, in the order of `KineticFriction`, the offset last."""
-    coulomb_a, rise_a, log_speed, log_shape, viscous, offset_a, inertia = solution.p
+    coulomb_a, rise_a, log_speed, log_shape, viscous, offset_a, inertia, rise_offset_a = solution.p
     width = quantile * np.sqrt(np.diag(solution.covariance))
     static_width = quantile * np.sqrt(np.sum(solution.covariance[:2, :2]))
     told = bool(solution.free[1]) and rise_a > width[1]
@@ -99,9 +100,14 @@ def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dic
         "stribeck_speed_rad_s": _logarithmic(log_speed, width[2], solution.free[2], told, slowest_rad_s),
         "shape": _logarithmic(log_shape, width[3], solution.free[3], told),
         "viscous_a_s_rad": _linear(viscous, width[4], solution.free[4]),
-        "offset_a": Interval(float(offset_a), float(offset_a - width[5]), float(offset_a + width[5])),
+        "offset_a": _around(offset_a, width[5]),
+        "rise_offset_a": _around(rise_offset_a, width[7]) if told else Interval(0.0, note=NOT_TOLD),
     }
     return found | ({"inertia_a_s2_rad": _linear(inertia, width[6], True)} if solution.free[6] else {})
+
+
+def _around(value: float, width: float) -> Interval:
+    return Interval(float(value), float(value - width), float(value + width))
 
 
 def _linear(value: float, width: float, free: bool) -> Interval:

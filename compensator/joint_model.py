@@ -34,7 +34,7 @@ class JointUnderLoad:
     Attributes:
         ratio: motor turns per joint turn.
         lighter, heavier, share: the curves on either side, and how far from the one to the other.
-        offset_a: what friction is more forwards, and less backwards.
+        offset_a, rise_offset_a: what friction is more forwards, and less backwards; what that rises by towards rest.
         rotor_inertia_a_s2_rad, arm_inertia_a_s2_rad: current per joint acceleration, before and behind the teeth.
         gravity_a: current that the load takes at 90 degrees.
         gear_loss: of the teeth under load.
@@ -47,6 +47,7 @@ class JointUnderLoad:
     heavier: KineticFriction
     share: float
     offset_a: float
+    rise_offset_a: float
     rotor_inertia_a_s2_rad: float
     arm_inertia_a_s2_rad: float
     gravity_a: float
@@ -57,8 +58,10 @@ class JointUnderLoad:
     def friction_a(self, joint_speed_rad_s: float, direction: float) -> float:
         """s F(v) [A]: friction of the balanced joint in a direction, at a speed of the joint or next to 0."""
         speed = abs(joint_speed_rad_s) * self.ratio
-        light_a, heavy_a = _sliding_a(self.lighter, speed), _sliding_a(self.heavier, speed)
-        return direction * max(light_a + self.share * (heavy_a - light_a), 0.0) + self.offset_a
+        light, heavy, share = _rise(self.lighter, speed), _rise(self.heavier, speed), self.share
+        light_a, heavy_a = _sliding_a(self.lighter, light, speed), _sliding_a(self.heavier, heavy, speed)
+        unequal_a = self.offset_a + self.rise_offset_a * (light + share * (heavy - light))
+        return direction * max(light_a + share * (heavy_a - light_a), 0.0) + unequal_a
 
     def gravity_at(self, angle_rad: float) -> float:
         """What the load takes at an angle [A]."""
@@ -74,7 +77,8 @@ class JointModel:
         ratio: motor turns per joint turn.
         rotor_inertia_a_s2_rad: current per joint acceleration, of what turns before the teeth.
         arm_inertia_a_s2_rad: of arm and load behind the teeth, at each selector of `friction`.
-        offsets_a: what friction is more forwards, and less backwards, at each selector; none where left out.
+        offsets_a, rise_offsets_a: what friction is more forwards, and less backwards, at each selector, and what that
+            rises by towards rest; none where left out.
         gravity_a: current that the load takes at 90 degrees (angle 0 is down), at each selector; none where left out.
             Between the moment that an estimate in motion belongs to and now, the load is taken to change by that.
         gear_loss: of the teeth under load.
@@ -87,6 +91,7 @@ class JointModel:
     rotor_inertia_a_s2_rad: float
     arm_inertia_a_s2_rad: tuple[float, ...]
     offsets_a: tuple[float, ...] = ()
+    rise_offsets_a: tuple[float, ...] = ()
     gravity_a: tuple[float, ...] = ()
     gear_loss: GearLoss = NO_LOSS
     friction_scatter: float = 0.03
@@ -94,7 +99,7 @@ class JointModel:
 
     def __post_init__(self) -> None:
         wanted = len(self.friction.selectors)
-        for name in ("arm_inertia_a_s2_rad", "offsets_a", "gravity_a"):
+        for name in ("arm_inertia_a_s2_rad", "offsets_a", "rise_offsets_a", "gravity_a"):
             found = len(getattr(self, name))
             if found != wanted and not (name != "arm_inertia_a_s2_rad" and found == 0):
                 raise ModelParameterError(f"{name} has {found} values; allowed is one per curve, {wanted}")
@@ -123,6 +128,7 @@ class JointModel:
             self.friction.curves[below + 1],
             share,
             at(self.offsets_a),
+            at(self.rise_offsets_a),
             self.rotor_inertia_a_s2_rad,
             max(at(self.arm_inertia_a_s2_rad), 0.0),
             at(self.gravity_a),
@@ -132,7 +138,11 @@ class JointModel:
         )
 
 
-def _sliding_a(curve: KineticFriction, speed: float) -> float:
+def _rise(curve: KineticFriction, speed: float) -> float:
+    """How much of the rise towards rest is left at a speed, 0 or more: 1 next to rest."""
+    return exp(-((speed / curve.stribeck_speed_rad_s) ** curve.shape))
+
+
+def _sliding_a(curve: KineticFriction, rise: float, speed: float) -> float:
     """Eq. (2) of one speed, 0 or more: the limit next to 0 included."""
-    bump_a = (curve.static_a - curve.coulomb_a) * exp(-((speed / curve.stribeck_speed_rad_s) ** curve.shape))
-    return curve.coulomb_a + bump_a + curve.viscous_a_s_rad * speed
+    return curve.coulomb_a + (curve.static_a - curve.coulomb_a) * rise + curve.viscous_a_s_rad * speed

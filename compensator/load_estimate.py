@@ -6,6 +6,7 @@ from math import inf, nan
 from typing import NamedTuple
 
 from compensator.joint_model import JointUnderLoad
+from compensator.teeth import Teeth
 
 
 class Branch(Enum):
@@ -17,6 +18,7 @@ class Branch(Enum):
     STUCK = "stuck against something"
     MOVING = "in motion"
     TURNING = "turning, or setting off"
+    CROSSING = "teeth crossing the free play"
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,5 +119,6 @@ class EstimatorState(NamedTuple):
     estimate: LoadEstimate = LoadEstimate(nan, inf, Branch.LOST)
     known_a: float = nan  # what was given out, less the load's gravity by the model
     offset_a: float = 0.0  # of the output over the present branch's own value
+    teeth: Teeth = Teeth()
     mean_a: float = nan  # of `known_a` in motion, and its variance, over the last few windows
     variance_a2: float = 0.0

@@ -6,6 +6,7 @@
                 pressed to the end of that band at which friction is that of motion towards the set point, and this is
                 the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
+    crossing    the teeth change flanks by the model, where gravity and inertia change sign, or have just done so: held
     turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
                 the joint stands
 
@@ -27,6 +28,7 @@ from compensator.load_estimate import (
     RestResult,
 )
 from compensator.local_motion import Window, window
+from compensator.teeth import Teeth, follow
 
 __all__ = [
     "Branch", "EstimatorSettings", "EstimatorState", "JointModel", "LoadEstimate", "Observation", "RestResult",
@@ -35,6 +37,7 @@ __all__ = [
 
 BAND = 1.96  # standard deviations in half of a 95 % interval
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
+TEETH_READINGS = 10  # that acceleration is taken from to say which flank the teeth touch
 TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
@@ -52,6 +55,7 @@ def advance(
         return _lose(state)
     joint, state = _joint(model, state, observation)
     state = _remember(settings, _track(settings, state, observation), observation)
+    state = _cross(joint, settings, state)
     own = _own(_branch(settings, state, observation), joint, settings, state, observation)
     return _blend(joint, settings, state, own, observation)
 
@@ -97,6 +101,22 @@ def _remember(settings: EstimatorSettings, state: EstimatorState, observation: O
     )
 
 
+def _cross(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState) -> EstimatorState:
+    """Where the teeth are, by what is known of the load and how the motor moved lately."""
+    if len(state.positions_rad) < TEETH_READINGS or state.still_cycles > settings.rest_cycles:
+        return state._replace(teeth=Teeth())
+    averages = window(TEETH_READINGS, settings.period_s)
+    motion = averages.motion(state.positions_rad[-TEETH_READINGS:])
+    inertia = joint.arm_inertia_a_s2_rad
+    if inertia == 0.0 or settings.free_play_rad == 0.0 or joint.gravity_a == 0.0:
+        return state  # without gravity there is nothing to hold on to while they cross
+    load_a = joint.gravity_at(motion.position_rad) + (0.0 if isnan(state.known_a) else state.known_a)
+    torque_a = load_a + inertia * motion.acceleration_rad_s2 + state.direction * joint.gear_loss.behind_a
+    unsure_a = BAND * inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
+    teeth = follow(state.teeth, torque_a, unsure_a, inertia, settings.free_play_rad, settings.period_s)
+    return state._replace(teeth=teeth)
+
+
 def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Observation) -> Branch:
     if observation.searching:
         return Branch.SEARCHING
@@ -108,7 +128,9 @@ def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Obs
     travel_rad = abs(state.extreme_rad - state.turned_rad)
     # what follows the last motion may be at rest already, held by any friction
     window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
-    return Branch.MOVING if window_moves and travel_rad > settings.free_play_rad else Branch.TURNING
+    if not window_moves or travel_rad <= settings.free_play_rad:
+        return Branch.TURNING
+    return Branch.MOVING if state.teeth.touch_since(settings.window) else Branch.CROSSING
 
 
 def _own(

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from math import sin
 from typing import Any
 
-from bench.calibration.curves import friction_fits, inertia_of
+from bench.calibration.curves import friction_fits, inertia_of, rise_offset_of
 from bench.calibration.motor_constants import identify_motor
 from bench.calibration.points import FrictionPoint, Row, friction_points
 from bench.calibration.rest import rest_of
@@ -148,6 +148,7 @@ def _curve(load_kg: float, fit: FrictionFit, searched: Mapping[float, tuple[floa
         "f_load_from": FROM_SEARCH if load_kg in searched else FROM_CURVE,
         **asdict(fit.curve),
         "offset_a": fit.parameters["offset_a"].value,
+        "rise_offset_a": rise_offset_of(fit),
         "inertia_a_s2_rad": inertia_of(fit),
         "parameters": {name: one._asdict() for name, one in fit.parameters.items()},
         "scatter_a": fit.scatter_a,

@@ -34,6 +34,12 @@ def inertia_of(found: FrictionFit) -> float:
     return 0.0 if fitted is None else fitted.value
 
 
+def rise_offset_of(found: FrictionFit) -> float:
+    """What the difference between the directions rises by towards rest [A]; 0 where the points did not tell."""
+    fitted = found.parameters.get("rise_offset_a")
+    return 0.0 if fitted is None else fitted.value
+
+
 def _fit(load_kg: float, points: Sequence[FrictionPoint], stribeck: bool) -> FrictionFit:
     try:
         return fit(

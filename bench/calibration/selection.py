@@ -70,7 +70,8 @@ def rest_settings_of(row: CalibrationRow) -> RestSettings | None:
 def friction_of(row: CalibrationRow) -> FrictionSettings:
     """The curves of a calibration."""
     names = FrictionCurve.model_fields
-    curves = tuple(FrictionCurve(**{name: one[name] for name in names}) for one in row.result["curves"])
+    # a calibration kept by an older version knows fewer of them
+    curves = tuple(FrictionCurve(**{name: one[name] for name in names if name in one}) for one in row.result["curves"])
     studied = row.result.get("study")
     study = None if studied is None else StudiedModel.model_validate(studied)
     return FrictionSettings(calibration_id=row.id, curves=curves, study=study)

@@ -46,6 +46,7 @@ class Curve(BaseModel):
     shape: float
     viscous_a_s_rad: float
     offset_a: float = Field(description="half of what friction is more forwards than backwards")
+    rise_offset_a: float = Field(default=0.0, description="what that rises by towards rest")
     inertia_a_s2_rad: float = Field(description="current per acceleration of the motor shaft: motor, arm and load")
     parameters: dict[str, Any] = Field(description="value, low, high (95 %) and note of each, by name")
     scatter_a: float

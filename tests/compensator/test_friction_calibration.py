@@ -11,7 +11,7 @@ from compensator.motor import MotorConstants
 
 # the balanced joint of the paper's rig under 100 g, at the motor shaft
 TRUE = KineticFriction(coulomb_a=0.16, static_a=0.27, stribeck_speed_rad_s=5.0, shape=2.0, viscous_a_s_rad=2.1e-3)
-OFFSET_A = 0.01
+OFFSET_A, RISE_OFFSET_A = 0.01, 0.02  # unequal both ways: dry friction, and its rise towards rest
 NOISE_A = 0.003
 TRUTH = {
     "coulomb_a": 0.16,
@@ -20,14 +20,19 @@ TRUTH = {
     "shape": 2.0,
     "viscous_a_s_rad": 2.1e-3,
     "offset_a": OFFSET_A,
+    "rise_offset_a": RISE_OFFSET_A,
 }
 ONE_WAY = np.array([0.6, 1.2, 2.0, 4.0, 6.0, 10.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0])
 SPEEDS = np.concatenate([ONE_WAY, -ONE_WAY])
 
 
+def unequal_a(speeds, offset_a=OFFSET_A, rise_offset_a=RISE_OFFSET_A, stribeck_speed_rad_s=5.0, shape=2.0):
+    return offset_a + rise_offset_a * np.exp(-((np.abs(speeds) / stribeck_speed_rad_s) ** shape))
+
+
 def measured(seed, noise_a=NOISE_A, speeds=SPEEDS):
     scatter = np.random.default_rng(seed).normal(0.0, noise_a, len(speeds)) if noise_a else 0.0
-    return TRUE.sliding_a(speeds) + OFFSET_A + scatter
+    return TRUE.sliding_a(speeds) + unequal_a(speeds) + scatter
 
 
 def test_without_noise_the_parameters_are_recovered():
@@ -41,7 +46,7 @@ def least_deviations():
     """Cramer-Rao, worked here by finite differences of eq. (2), not by the code under test."""
 
     def model(p):
-        return KineticFriction(*p[:5]).sliding_a(SPEEDS) + p[5]
+        return KineticFriction(*p[:5]).sliding_a(SPEEDS) + unequal_a(SPEEDS, p[5], p[6], p[2], p[3])
 
     p = np.array(list(TRUTH.values()))
     steps = np.diag(1e-5 * np.maximum(np.abs(p), 1e-3))
