@@ -16,6 +16,7 @@ class Branch(Enum):
     REST = "at rest"
     SEARCHING = "zero-speed search under way"
     STUCK = "stuck against something"
+    LEAVING = "leaving what it leant on"
     MOVING = "in motion"
     TURNING = "turning, or setting off"
     CROSSING = "teeth crossing the free play"
@@ -120,5 +121,6 @@ class EstimatorState(NamedTuple):
     known_a: float = nan  # what was given out, less the load's gravity by the model
     offset_a: float = 0.0  # of the output over the present branch's own value
     teeth: Teeth = Teeth()
+    leant: bool = False  # it has been stuck, and not come into motion since
     mean_a: float = nan  # of `known_a` in motion, and its variance, over the last few windows
     variance_a2: float = 0.0

@@ -6,6 +6,7 @@
                 pressed to the end of that band at which friction is that of motion towards the set point, and this is
                 the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
+    leaving     moving back from what it was stuck against: the weight alone, since a wall cannot pull
     crossing    the teeth change flanks by the model, where gravity and inertia change sign, or have just done so: held
     turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
                 the joint stands
@@ -38,6 +39,7 @@ __all__ = [
 BAND = 1.96  # standard deviations in half of a 95 % interval
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
 TEETH_READINGS = 10  # that acceleration is taken from to say which flank the teeth touch
+UNEXPLAINED = 0.25  # of what the weight takes at 90 degrees: with more, the arm leans on something
 TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
@@ -56,7 +58,9 @@ def advance(
     joint, state = _joint(model, state, observation)
     state = _remember(settings, _track(settings, state, observation), observation)
     state = _cross(joint, settings, state)
-    own = _own(_branch(settings, state, observation), joint, settings, state, observation)
+    branch = _branch(joint, settings, state, observation)
+    state = state._replace(leant=branch is Branch.STUCK or (state.leant and branch is not Branch.MOVING))
+    own = _own(branch, joint, settings, state, observation)
     return _blend(joint, settings, state, own, observation)
 
 
@@ -108,8 +112,8 @@ def _cross(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorS
     averages = window(TEETH_READINGS, settings.period_s)
     motion = averages.motion(state.positions_rad[-TEETH_READINGS:])
     inertia = joint.arm_inertia_a_s2_rad
-    if inertia == 0.0 or settings.free_play_rad == 0.0 or joint.gravity_a == 0.0:
-        return state  # without gravity there is nothing to hold on to while they cross
+    if inertia == 0.0 or settings.free_play_rad == 0.0 or not _explained(joint, state):
+        return state._replace(teeth=Teeth())
     load_a = joint.gravity_at(motion.position_rad) + (0.0 if isnan(state.known_a) else state.known_a)
     torque_a = load_a + inertia * motion.acceleration_rad_s2 + state.direction * joint.gear_loss.behind_a
     unsure_a = BAND * inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
@@ -117,7 +121,14 @@ def _cross(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorS
     return state._replace(teeth=teeth)
 
 
-def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Observation) -> Branch:
+def _explained(joint: JointUnderLoad, state: EstimatorState) -> bool:
+    """Whether the weight on the arm is nearly all of its load: only that may be held while the teeth cross."""
+    return joint.gravity_a > 0.0 and not abs(state.known_a) > UNEXPLAINED * joint.gravity_a
+
+
+def _branch(
+    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
+) -> Branch:
     if observation.searching:
         return Branch.SEARCHING
     outside = abs(observation.target_rad - observation.position_rad) > settings.dead_band_rad
@@ -129,8 +140,14 @@ def _branch(settings: EstimatorSettings, state: EstimatorState, observation: Obs
     # what follows the last motion may be at rest already, held by any friction
     window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
     if not window_moves or travel_rad <= settings.free_play_rad:
-        return Branch.TURNING
+        return Branch.LEAVING if _leaves(joint, settings, state) else Branch.TURNING
     return Branch.MOVING if state.teeth.touch_since(settings.window) else Branch.CROSSING
+
+
+def _leaves(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState) -> bool:
+    """Whether the joint moves away from what it leant on: that can only push it on, and less and less."""
+    moves = state.still_cycles <= settings.onset_cycles
+    return moves and state.leant and not _explained(joint, state) and state.direction * state.known_a < 0.0
 
 
 def _own(
@@ -144,6 +161,8 @@ def _own(
         return _stuck(joint, settings, state, observation, held_a)
     if branch is Branch.MOVING:
         return _moving(joint, settings, state, observation)
+    if branch is Branch.LEAVING:
+        return LoadEstimate(joint.gravity_at(observation.position_rad), state.estimate.half_width_a, branch)
     if branch is Branch.TURNING and state.still_cycles > settings.onset_cycles and not isnan(held_a):
         return _allowed(joint, settings, state, held_a, nan, branch)
     return LoadEstimate(held_a, state.estimate.half_width_a, branch)

@@ -119,6 +119,20 @@ def test_while_the_teeth_cross_the_free_play_the_load_is_held():
     assert max(missed[150:]) > 5e-3  # so it would be without
 
 
+def test_a_push_is_dropped_as_the_joint_moves_back_from_what_it_leant_on():
+    weigh = replace(MODEL, gravity_a=(0.1, 0.1))
+    pressed = [Observation(0.5, 0.9, target_rad=0.6)] * 200
+    back = [Observation(counted(0.5 - 0.3 * cycle * PERIOD_S), -0.1, target_rad=0.3) for cycle in range(1, 30)]
+    known = Observation(0.5, 0.2, target_rad=0.5, rest=RestResult(0.1 * sin(0.5), 0.005, 0.1))
+    estimates = follow([*stand(0.2, 40, 0.5, 0.5), known, *pressed, *back], weigh)
+    assert estimates[240].branch is Branch.STUCK
+    assert estimates[240].load_current_a > 0.5
+    assert Branch.LEAVING in {one.branch for one in estimates[241:]}
+    # long before a window of motion has been seen: that takes 40 cycles
+    assert estimates[-1].load_current_a < 0.2
+    assert all(abs(after.load_current_a - before.load_current_a) < 0.05 for before, after in pairwise(estimates[241:]))
+
+
 def test_dry_friction_that_is_unequal_both_ways_is_more_so_towards_rest():
     joint = replace(MODEL, offsets_a=(0.02, 0.02), rise_offsets_a=(0.01, 0.01)).under(0.1)
     slow, quick = (joint.friction_a(speed, 1.0) + joint.friction_a(speed, -1.0) for speed in (0.0, 5.0))
