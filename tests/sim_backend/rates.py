@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from bench.configuration import default_configuration
 from bench.demo.bench import run_experiment
 from bench.store import Store
 from drivers.contract import Command, Mode
@@ -27,9 +26,11 @@ from sim_backend.gravity import Load
 from sim_backend.motor import VOLTAGE
 from sim_backend.parameters import PlantParameters
 from sim_backend.plant import Plant
+from tests.sim_backend.cycle_cost import at_1_khz
 from tests.sim_backend.mujoco_hinge import hinge, swing
 
 STEPS, ROUNDS, STEP_S = 5_000, 400, 1e-4
+BENCH_ROUNDS = 8  # of a second or less
 CYCLES = 50  # in a round: few, so that some rounds meet no other work
 # one joint with backlash, bristles on both sides of it, and heat
 BRISTLED: dict[str, dict[str, Any]] = {
@@ -118,17 +119,20 @@ def floor_s(period_s: float) -> float:
 
 
 def bench_ratio() -> tuple[float, float]:
-    """Simulated seconds of a load sweep through loop, servo, search and store at 1 kHz, over seconds of (wall, CPU)."""
-    configuration = default_configuration()
-    control = configuration.control.model_copy(update={"period_s": 1e-3})
-    configuration = configuration.model_copy(update={"control": control})
+    """Simulated seconds of steps through loop, servo, search and store at 1 kHz, over seconds of (wall, CPU)."""
+    configuration = at_1_khz()
     with tempfile.TemporaryDirectory() as folder, Store.open(f"sqlite:///{folder}/bench.sqlite") as store:
-        run_experiment(configuration, store, "steps", {"repeats": 1})
-        began, used = perf_counter(), process_time()
-        identity = run_experiment(configuration, store, "steps", {"repeats": 4})
-        wall_s, cpu_s = perf_counter() - began, process_time() - used
-        simulated_s = sum(float(store.samples(trial.id)["time_s"][-1]) for trial in store.trials(identity))
-    return simulated_s / wall_s, simulated_s / cpu_s
+
+        def once() -> tuple[float, float]:
+            began, used = perf_counter(), process_time()
+            identity = run_experiment(configuration, store, "steps", {"repeats": 4})
+            wall_s, cpu_s = perf_counter() - began, process_time() - used
+            simulated_s = sum(float(store.samples(trial.id)["time_s"][-1]) for trial in store.trials(identity))
+            return simulated_s / wall_s, simulated_s / cpu_s
+
+        once()  # the kernel is loaded, the store's statements are compiled
+        wall, cpu = np.max([once() for _ in range(BENCH_ROUNDS)], axis=0)
+    return float(wall), float(cpu)
 
 
 def batch_scaling() -> float:
