@@ -39,13 +39,14 @@ screenshots: $(STAMP) ## the walk of docs/walk.md in Chromium, every view, light
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)
 
-benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo, store and export beside pandas, drivers beside their libraries
+benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo, store and export beside pandas, drivers beside their libraries, diagnosis and rows
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m tests.sim_backend.rates
 	$(BIN)/python -m tests.sim_backend.cycle_cost
 	$(BIN)/python -m tests.store.rates
 	$(BIN)/python -m tests.service.rates
 	$(BIN)/python -m tests.drivers.rates
+	$(BIN)/python -m tests.lab.rates
 
 kills: $(STAMP)  ## 200 runs ended at random moments, in every way, on a drive in a process of its own: what is left of each
 	$(BIN)/python -m tests.stopping.kills --kills 200

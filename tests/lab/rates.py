@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from tests.lab.line import Line, print_table
 
+MOST_GROWTH = 1.2  # of the time per row, and of the memory, from the fewest rows to the most
 RECORD = ("run", "excitation", "--duration-s", "6", "--json")
 
 
@@ -35,12 +36,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--folder", type=Path, help="keep the recorded sets here, and use those that are there")
     parser.add_argument("--most-trials", type=int, default=CASES[-1].trials, help="leave out larger sets")
+    parser.add_argument("--rows", default="1e6,5e6,20e6", help="streamed; 50e6 takes some minutes")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="friction-bench-rates-") as temporary:
         folder = arguments.folder or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
         cases = [case for case in CASES if case.trials <= arguments.most_trials]
-        print_table([line for case in cases for line in diagnosing(case, folder)])
+        lines = [line for case in cases for line in diagnosing(case, folder)]
+        print_table([*lines, *streaming(arguments.rows.split(","))])
 
 
 def diagnosing(case: Case, folder: Path) -> list[Line]:
@@ -51,6 +54,22 @@ def diagnosing(case: Case, folder: Path) -> list[Line]:
         run(sys.executable, "-m", "bench.cli", "--store", store, *RECORD, *words)
     told = json.loads(run(sys.executable, "-m", "tests.lab.timed_diagnosis", store))
     return [*_summary(case, told), *(_part(name, *spent) for name, spent in told["laps"].items())]
+
+
+def streaming(counts: list[str]) -> list[Line]:
+    """Rows one piece of one recording at a time: cost and memory, beside those of the fewest."""
+    told = [json.loads(run(sys.executable, "-m", "tests.lab.timed_rows", count)) for count in counts]
+    rates = [one["cpu_s"] / one["samples"] * 1e6 for one in told]
+    grown = [one["peak_mb"] / told[0]["peak_mb"] for one in told]
+    return [
+        Line(
+            f"{one['samples'] / 1e6:g} M rows streamed",
+            "linear, flat",
+            f"{one['cpu_s']:.1f} s of one core ({rate:.2f} s per M), {one['peak_mb']:.0f} MB",
+            rate <= MOST_GROWTH * rates[0] and factor <= MOST_GROWTH,
+        )
+        for one, rate, factor in zip(told, rates, grown, strict=True)
+    ]
 
 
 def _summary(case: Case, told: dict[str, Any]) -> list[Line]:

@@ -8,6 +8,7 @@ import resource
 import sys
 import time
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 
@@ -33,15 +34,11 @@ def main() -> None:
 
 
 def _imported() -> Any:
-    import bench.store
-    import bench.study
+    from bench.store import Store
+    from bench.study import compare, create_study, diagnose, report_html
 
-    class Names:
-        Store = bench.store.Store
-        create_study, compare = bench.study.create_study, bench.study.compare
-        diagnose, report_html = bench.study.diagnose, bench.study.report_html
-
-    return Names
+    names = {"Store": Store, "create_study": create_study, "compare": compare}
+    return SimpleNamespace(**names, diagnose=diagnose, report_html=report_html)
 
 
 if __name__ == "__main__":
