@@ -151,6 +151,18 @@ def extend(
     _show(context, as_json, tables.extended, "extend_study", study, experiment or [])
 
 
+@app.command("refit")
+def refit(
+    context: typer.Context,
+    study: StudyId,
+    experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are read; repeatable.")],
+    model: Model = None,
+    as_json: Json = False,
+) -> None:
+    """Fit a model anew to all trials of experiments, however many rows they have; nothing is kept."""
+    _show(context, as_json, tables.refitted, "refit", study, experiment, model_id=model)
+
+
 @app.command("use")
 def use(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Hand a model to the online compensator: the load in motion is estimated with it from now on."""

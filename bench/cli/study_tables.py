@@ -69,6 +69,18 @@ def diagnosis(found: Found) -> None:
         say(note)
 
 
+def refitted(found: Found) -> None:
+    """A model's parameters on the study's trials, and on all that were read."""
+    say(
+        f"model {found['model_id']} on {found['trials']} trials, {found['samples']} samples, {found['rows']} rows: "
+        f"error {percent(found['training'])}, each trial left out in turn {percent(found['held_out'])}"
+    )
+    rows = [(one["effect"], one["name"], one["study"], one["all"], one["unit"]) for one in found["parameters"]]
+    table("Parameters", ["effect", "name", "study#", "all#", "unit"], rows)
+    for reason in found["skipped"]:
+        say(f"left out: {reason}")
+
+
 def search(found: Found) -> None:
     """The steps of a search, and what is left."""
     for step in found["steps"]:

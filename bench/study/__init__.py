@@ -12,6 +12,7 @@ from bench.study.error_map import error_map, moments
 from bench.study.extend import extend_study
 from bench.study.ladder import ladder
 from bench.study.on_bench import bench_configurations, keep_bench_error
+from bench.study.refit import refit
 from bench.study.report import report_html
 from bench.study.search import search
 from bench.study.suggest import suggest
@@ -33,6 +34,7 @@ __all__ = [
     "ladder",
     "list_studies",
     "moments",
+    "refit",
     "report_html",
     "search",
     "suggest",

@@ -6,7 +6,7 @@ the load that it predicts) comes from a fit to some of them. Time grows with the
 times the square of the number of coefficients.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from compensator.lab.fit import Fit
 from compensator.lab.linear import solve_without
 from compensator.lab.prediction import with_own_prediction
 from compensator.lab.processing import EDGE_PERIODS, FILTER_ORDER
-from compensator.lab.recording import FloatArray, Recording
+from compensator.lab.recording import Condition, FloatArray, Recording
 from compensator.lab.regimes import BoolArray
 
 PIECE_ROWS = 200_000
@@ -62,12 +62,13 @@ class Streamed:
 
     Attributes:
         coefficients: of the model's terms in order, shape (k,); 0 where the first fit did not keep them.
-        rows: that were counted, after thinning; samples: that were read.
+        trials: that are in it; rows: that were counted, after thinning; samples: that were read.
         training: relative error; held_out: the same, each trial left out in turn.
-        skipped: names of recordings that cannot be used, and why.
+        skipped: names of recordings of which nothing, or not all, can be used, and why.
     """
 
     coefficients: FloatArray
+    trials: int
     rows: int
     samples: int
     training: float
@@ -80,7 +81,7 @@ def fit_streamed(fit: Fit, recordings: Iterable[Recording]) -> Streamed:
 
     Args:
         fit: of the same model to some trials: its cut-off, scales, shapes and predicted load hold for all.
-        recordings: read one after the other, each once.
+        recordings: read one after the other, each once; pieces of one trial have one name.
 
     Raises:
         UnusableDataError: no row counts, or fewer than twice the coefficients.
@@ -113,6 +114,7 @@ def fit_streamed(fit: Fit, recordings: Iterable[Recording]) -> Streamed:
     coefficients[kept] = inside
     return Streamed(
         coefficients=coefficients,
+        trials=len(trials),
         rows=whole.rows,
         samples=samples,
         training=float(np.sqrt(whole.residual_power(inside) / whole.power)),
@@ -122,23 +124,32 @@ def fit_streamed(fit: Fit, recordings: Iterable[Recording]) -> Streamed:
 
 
 def pieces(recording: Recording, cutoff_hz: float) -> Iterator[Recording]:
-    """A recording in pieces of PIECE_ROWS, which overlap by what the filter drops at both ends of each.
+    """A recording in pieces of PIECE_ROWS, as `piece_starts` has them.
 
     What a joint remembers of reversals and rests begins anew with each.
     """
-    count = len(recording)
+    count, time_s = len(recording), recording.channels["time_s"]
     if count <= PIECE_ROWS:
         yield recording
         return
-    time_s = recording.channels["time_s"]
-    rate_hz = (count - 1) / float(time_s[-1] - time_s[0])
-    overlap = 2 * int(np.ceil(EDGE_PERIODS / cutoff_hz * rate_hz))
-    begun_s = recording.conditions.get(SESSION_START, 0.0)
-    for start in range(0, count - overlap - SHORTEST, PIECE_ROWS - overlap):
+    for start in piece_starts(count, (count - 1) / float(time_s[-1] - time_s[0]), cutoff_hz):
         inside = slice(start, start + PIECE_ROWS)
-        later = {SESSION_START: begun_s + float(time_s[start] - time_s[0])} if isinstance(begun_s, int | float) else {}
         channels = {name: values[inside] for name, values in recording.channels.items()}
-        yield replace(recording, channels=channels, conditions={**recording.conditions, **later})
+        later = later_by(recording.conditions, float(time_s[start] - time_s[0]))
+        yield replace(recording, channels=channels, conditions=later)
+
+
+def piece_starts(rows: int, rate_hz: float, cutoff_hz: float) -> range:
+    """First rows of pieces of PIECE_ROWS, which overlap by what the filter drops at both ends of each."""
+    overlap = 2 * int(np.ceil(EDGE_PERIODS / cutoff_hz * rate_hz))
+    return range(0, max(rows - overlap - SHORTEST, 1), max(PIECE_ROWS - overlap, 1))
+
+
+def later_by(conditions: Mapping[str, Condition], seconds: float) -> dict[str, Condition]:
+    """The conditions of a piece that begins so much later in its session."""
+    begun_s = conditions.get(SESSION_START, 0.0)
+    later = {SESSION_START: begun_s + seconds} if isinstance(begun_s, int | float) else {}
+    return {**conditions, **later}
 
 
 def _sums(fit: Fit, recording: Recording, kept: BoolArray) -> Sums:
