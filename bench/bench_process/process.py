@@ -14,7 +14,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
-from bench.bench_process import scheduling
+from bench import scheduling
 from bench.bench_process.failures import failure_of
 from bench.bench_process.messages import SLOW, VERSION, Call, Hello, Reply
 from bench.bench_process.publisher import GONE, Publisher

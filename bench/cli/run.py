@@ -103,13 +103,17 @@ def carry_out(
     quiet: bool,
 ) -> "tuple[Experiment, int | None]":
     """Run it to its end, whatever that is. Returns its record, and the exit code where a signal ended it."""
+    from bench import scheduling
     from bench.drive_factory import is_simulated
     from bench.runner import Runner
+    from bench.surroundings import Surroundings
 
     configuration = session.configuration()
     wanted = pace or (Pace.FAST if is_simulated(configuration) else Pace.REAL_TIME)
+    facts = {"control_loop": {"process": "that of the command", "scheduling": scheduling.describe()}}
+    surroundings = Surroundings(during_run=scheduling.undisturbed, facts=facts)
     with session.open_store() as store:
-        runner = Runner(configuration, store)
+        runner = Runner(configuration, store, surroundings)
         try:
             with stopping_on_signals(runner) as received:
                 experiment_id = runner.start(kind, parameters, operator=operator, note=note, pace=wanted.value)

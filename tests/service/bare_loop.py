@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.bench_process.scheduling import PRIORITY
+from bench.scheduling import PRIORITY
 from tests.service.timed_process import FOLDER, TimedClock, read
 
 ROOT = Path(__file__).parents[2]

@@ -22,7 +22,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -86,8 +86,9 @@ async def _watch(port: int, served: Any) -> None:
 
 async def _ask(client: httpx.AsyncClient, path: str, pause_s: float, served: Any) -> None:
     while True:
-        (await client.get(path)).raise_for_status()
-        served.value += 1
+        with suppress(httpx.ReadError, httpx.RemoteProtocolError):  # a connection that was kept open was just closed
+            (await client.get(path)).raise_for_status()
+            served.value += 1
         await asyncio.sleep(pause_s)
 
 
