@@ -27,10 +27,10 @@ paper: $(STAMP)  ## every figure and table of the paper, ours beside it: one HTM
 serve: $(STAMP)  ## the service and the page on the simulated bench
 	$(BIN)/friction-bench serve
 
-test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, one after the other
+test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, which mostly wait
 	@failed=0; \
 	$(BIN)/pytest --numprocesses auto --dist loadfile -m 'not wall_clock' || failed=1; \
-	$(BIN)/pytest -m wall_clock || failed=1; \
+	$(BIN)/pytest --numprocesses 3 --dist loadfile -m wall_clock || failed=1; \
 	exit $$failed
 
 screenshots: $(STAMP) ## the walk of docs/walk.md in Chromium, every view, light and dark: pictures in out/walk

@@ -18,6 +18,8 @@ from bench.store import Store
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 
+PATIENCE_S = 30.0  # for an answer of a process that others keep from running
+
 
 def _free_port() -> int:
     with socket.create_server(("127.0.0.1", 0)) as probe:
@@ -43,10 +45,10 @@ def served(tmp_path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
 
 
 def _wait_until_answering(url: str) -> None:
-    deadline_s = time.monotonic() + 15
+    deadline_s = time.monotonic() + PATIENCE_S
     while True:
         try:
-            httpx.get(f"{url}/api/v1/bench")
+            httpx.get(f"{url}/api/v1/bench", timeout=PATIENCE_S)
             return
         except httpx.ConnectError:
             assert time.monotonic() < deadline_s
@@ -55,7 +57,8 @@ def _wait_until_answering(url: str) -> None:
 
 def _start(url: str, token: str) -> None:
     body, headers = {"kind": "steps", "pace": "real-time"}, {"Authorization": f"Bearer {token}"}
-    assert httpx.post(f"{url}/api/v1/experiments", json=body, headers=headers).status_code == 201
+    answer = httpx.post(f"{url}/api/v1/experiments", json=body, headers=headers, timeout=PATIENCE_S)
+    assert answer.status_code == 201
 
 
 def test_status_and_stop_from_another_process(served, command, tmp_path):
@@ -81,7 +84,7 @@ def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
     _wait_until_answering(url)
     _start(url, token)
     time.sleep(0.3)
-    with httpx.stream("GET", f"{url}/api/v1/live", timeout=10) as watching:  # must not hold the service open
+    with httpx.stream("GET", f"{url}/api/v1/live", timeout=PATIENCE_S) as watching:  # must not hold the service open
         next(watching.iter_lines())
         process.send_signal(number)
         assert process.wait(4.0) == 0
