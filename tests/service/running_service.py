@@ -11,7 +11,9 @@ from typing import Any
 
 import httpx
 
-from bench.configuration import default_configuration
+from bench.bench_control import BenchControl
+from bench.bench_process import RemoteRunner
+from bench.configuration import BenchConfiguration, default_configuration
 from bench.runner import Runner
 from bench.service.access import LOOPBACK_NAMES, Access
 from bench.service.app import create_app
@@ -30,7 +32,7 @@ class RunningService:
 
     url: str
     store: Store
-    runner: Runner
+    runner: BenchControl
     client: httpx.Client  # sends the token
     stranger: httpx.Client  # does not
     access: Access
@@ -61,10 +63,14 @@ def running_service(
     port: int = 0,
     tls: Certificate | None = None,
     trust: ssl.SSLContext | bool = True,
+    configuration: BenchConfiguration | None = None,
+    in_process_of_its_own: bool = False,
 ) -> Iterator[RunningService]:
-    configuration = default_configuration()
-    with Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store, listen(Address("127.0.0.1", port)) as listener:
-        runner = Runner(configuration, store)
+    url = f"sqlite:///{folder / 'bench.sqlite'}"
+    configuration = configuration or default_configuration()
+    configuration = configuration.model_copy(update={"store": configuration.store.model_copy(update={"url": url})})
+    with Store.open(url) as store, listen(Address("127.0.0.1", port)) as listener:
+        runner = (RemoteRunner if in_process_of_its_own else Runner)(configuration, store)
         register = TokenRegister({ENVIRONMENT: TOKEN}, store.access.tokens.find)
         access = Access(register, reads_open, LOOPBACK_NAMES)
         app = create_app(store, runner, access)
