@@ -5,7 +5,7 @@ VM_KERNEL ?= out/vm/kernel
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo paper serve test test-vm benchmark kills check format clean help
+.PHONY: demo paper serve report test test-vm benchmark kills check format clean help
 
 help:            ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
@@ -30,8 +30,11 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, which mostly wait
 	@failed=0; \
 	$(BIN)/pytest --numprocesses auto --dist loadfile -m 'not wall_clock' || failed=1; \
-	$(BIN)/pytest --numprocesses 3 --dist loadfile -m wall_clock || failed=1; \
+	$(BIN)/pytest --numprocesses 2 --dist loadfile -m wall_clock || failed=1; \
 	exit $$failed
+
+report: $(STAMP) ## has a change made the bench worse? beside bench-baseline.json, as table, JUnit XML and HTML in out/
+	$(BIN)/friction-bench bench-report --junit out/bench-report.xml --html out/bench-report.html
 
 screenshots: $(STAMP) ## the walk of docs/walk.md in Chromium, every view, light and dark: pictures in out/walk
 	$(BIN)/python -m tests.browser.screenshots out/walk

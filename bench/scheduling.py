@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from typing import NamedTuple
 
-SWITCH_INTERVAL_S = 0.0005
+SWITCH_INTERVAL_S = 0.0001
 """How long another thread of the process may keep the interpreter from the loop; Python's own is ten times that."""
 
 PRIORITY = 10  # of SCHED_FIFO, 1 .. 99: above every ordinary program, below the kernel's own threads

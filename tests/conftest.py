@@ -16,7 +16,7 @@ if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_I
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HERE = Path(__file__).parent
-# devices, services and browsers in processes of their own: they mostly wait, and run after the others, three at a time
+# devices, services and browsers in processes of their own: they mostly wait, and run after the others, two at a time
 WALL_CLOCK = (
     "browser",
     "devices",

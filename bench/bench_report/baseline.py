@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.bench_report.campaign import SeedValues, fingerprint
+from bench.bench_report.comparison import mean_interval
 from bench.bench_report.errors import BaselineError
 from bench.provenance import software
 
@@ -22,7 +23,8 @@ def write_baseline(path: Path, found: Sequence[SeedValues]) -> None:
     if failures:
         raise BaselineError(f"no baseline is made of failures: {'; '.join(failures)}")
     seeds = [{"seed": one.seed, "values": one.values} for one in found]
-    text = json.dumps({"software": software(), "campaign": fingerprint(), "seeds": seeds}, indent=2)
+    kept = {"software": software(), "campaign": fingerprint(), "means": _means(found), "seeds": seeds}
+    text = json.dumps(kept, indent=2)
     unfinished = path.with_name(f".{path.name}.part")
     try:
         unfinished.write_text(text + "\n", encoding="utf-8")
@@ -48,6 +50,15 @@ def read_baseline(path: Path) -> list[SeedValues]:
     if campaign != fingerprint() or any(set(one.values) != set(fingerprint()["metrics"]) for one in seeds):
         raise BaselineError(f"{path}: was made with another campaign, which cannot be compared; {HOW}")
     return seeds
+
+
+def _means(found: Sequence[SeedValues]) -> dict[str, dict[str, float]]:
+    """For who reads the file: the mean over the seeds, and its interval."""
+    listed = {}
+    for name in found[0].values:
+        mean, low, high = mean_interval([one.values[name] for one in found])
+        listed[name] = {"mean": mean, "low": low, "high": high}
+    return listed
 
 
 def _numbers(values: dict[str, Any]) -> dict[str, float]:

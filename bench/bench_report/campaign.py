@@ -20,19 +20,21 @@ DEFAULT_SEEDS = 8
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """One number of one seed; the lower the better.
+    """One number of one seed.
 
     Attributes:
         name: with the unit at its end.
         title: in words.
         measurement: the experiment.
         of: from the summary of the experiment.
+        lower_is_better: False where neither is: any change is told, whichever way.
     """
 
     name: str
     title: str
     measurement: Measurement
     of: Callable[[dict[str, Any]], float]
+    lower_is_better: bool = True
 
 
 METRICS = (
@@ -65,6 +67,20 @@ METRICS = (
         "Way that the searches move the joint",
         LOADS,
         lambda found: float(sum(row["search_travel_rad"] for row in found["rows"])),
+    ),
+    Metric(
+        "steps_steady_current_a",
+        "Current that the servo leaves standing after steps",
+        STEPS,
+        lambda found: float(found["mean_steady_current_a"]),
+        lower_is_better=False,
+    ),
+    Metric(
+        "loads_friction_current_a",
+        "Friction that the searches find",
+        LOADS,
+        lambda found: float(sum(row["friction_current_a"] for row in found["rows"]) / len(found["rows"])),
+        lower_is_better=False,
     ),
 )
 

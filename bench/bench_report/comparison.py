@@ -3,8 +3,9 @@
 Under the hypothesis that nothing changed, the values of baseline and present are draws of one distribution, and every
 way to share them out into two groups is equally likely (Fisher 1935, The Design of Experiments, section 21). The
 p-value is the share of those ways whose difference of means is at least as large. It supposes nothing of the
-distribution. A metric counts as changed where p is at most FAMILY_RATE divided by the number of metrics (Bonferroni):
-the chance that any metric is called worse although none is, is at most FAMILY_RATE. With the seeds of the baseline an
+distribution. Where lower is better, a metric is called worse where p is at most FAMILY_RATE divided by the number of
+metrics (Bonferroni); where neither way is better, it is called changed where p of either way is at most half of that.
+The chance that any metric is told although nothing changed is at most FAMILY_RATE. With the seeds of the baseline an
 unchanged program gives the same numbers again, and the chance is nil.
 """
 
@@ -25,7 +26,7 @@ FAMILY_RATE = 0.01
 LEVEL = 0.95  # of the interval of the difference, which is there to show its size
 ROUNDING = 1e-9  # of the largest value: differences of sums below it are none
 FloatArray = NDArray[np.float64]
-Verdict = Literal["as before", "worse", "better", "failed"]
+Verdict = Literal["as before", "worse", "better", "changed", "failed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +64,7 @@ def compare(before: Sequence[SeedValues], now: Sequence[SeedValues], rate: float
         BaselineError: too few seeds: no change, however large, could be told.
     """
     least = comb(len(before) + len(now), len(now))
-    if least * rate < len(METRICS):
+    if least * rate < 2 * len(METRICS):
         raise BaselineError(
             f"{len(before)} seeds before and {len(now)} now are too few to tell any change of {len(METRICS)} metrics "
             f"at a false-alarm rate of {rate:g}; take more with --seeds"
@@ -83,9 +84,16 @@ def _line(metric: Metric, before: Sequence[SeedValues], now: Sequence[SeedValues
     change = float(new.mean() - old.mean())
     low, high = _interval(old, new)
     p_worse, p_better = permutation_p(old, new), permutation_p(new, old)
-    verdict: Verdict = "worse" if p_worse <= level else "better" if p_better <= level else "as before"
-    sentence = _sentence(verdict, change, low, high, min(p_worse, p_better))
+    verdict = _verdict(metric, p_worse, p_better, level)
+    p = min(p_worse, p_better) if metric.lower_is_better else min(1.0, 2.0 * min(p_worse, p_better))
+    sentence = _sentence(verdict, change, low, high, p)
     return Line(metric, float(old.mean()), float(new.mean()), change, low, high, p_worse, p_better, verdict, sentence)
+
+
+def _verdict(metric: Metric, p_worse: float, p_better: float, level: float) -> Verdict:
+    if not metric.lower_is_better:  # either way: the rate is shared between them
+        return "changed" if min(p_worse, p_better) <= level / 2 else "as before"
+    return "worse" if p_worse <= level else "better" if p_better <= level else "as before"
 
 
 def permutation_p(low: FloatArray, high: FloatArray) -> float:
@@ -94,6 +102,13 @@ def permutation_p(low: FloatArray, high: FloatArray) -> float:
     chosen = np.array(list(combinations(range(len(pooled)), len(high))))
     sums = pooled[chosen].sum(axis=1)
     return float(np.mean(sums >= high.sum() - ROUNDING * np.abs(pooled).max() * len(pooled)))
+
+
+def mean_interval(values: Sequence[float]) -> tuple[float, float, float]:
+    """Mean, and its interval (Student)."""
+    mean, count = float(np.mean(values)), len(values)
+    half = float(stats.t.ppf(0.5 + LEVEL / 2, count - 1) * np.std(values, ddof=1) / sqrt(count))
+    return mean, mean - half, mean + half
 
 
 def _interval(old: FloatArray, new: FloatArray) -> tuple[float, float]:
@@ -111,4 +126,6 @@ def _sentence(verdict: Verdict, change: float, low: float, high: float, p: float
     size = f"{change:+.3g} ({LEVEL:.0%} interval {low:+.3g} .. {high:+.3g}), p = {p:.2g}"
     if verdict == "better":
         return f"better by {size}; keep it with --update-baseline"
+    if verdict == "changed":
+        return f"changed by {size}; where that is meant, keep it with --update-baseline"
     return f"worse by {size}" if verdict == "worse" else f"as before: {size}"

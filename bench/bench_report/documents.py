@@ -7,11 +7,12 @@ from xml.etree import ElementTree as Xml
 from bench.bench_report.comparison import FAMILY_RATE, Line
 from bench.report.section import Section, Table
 
-BAD = ("worse", "failed")
+BAD = ("worse", "changed", "failed")
 COLUMNS = ("metric", "before#", "now#", "change#", "interval from#", "to#", "p (worse)#", "verdict")
 EXPLANATION = (
-    f"A metric is called worse where an exact permutation test over the seeds says so. The chance that any of them is, "
-    f"although nothing has changed, is at most {FAMILY_RATE:.0%}. Lower is better for all of them."
+    f"A metric is called worse where an exact permutation test over the seeds says so; those of which neither way is "
+    f"better are called changed. The chance that any of them is, although nothing has changed, is at most "
+    f"{FAMILY_RATE:.0%}."
 )
 
 

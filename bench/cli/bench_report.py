@@ -18,23 +18,24 @@ def bench_report(
         bool, typer.Option("--update-baseline", help="Keep what is measured now as the baseline; compare nothing.")
     ] = False,
     seeds: Annotated[int, typer.Option(min=2, max=10, help="How often it is run, each time with another seed.")] = 8,
+    first_seed: Annotated[int, typer.Option(min=1, help="The first of them; the others follow.")] = 1,
     junit: Annotated[Path | None, typer.Option(help="Write a JUnit XML file, too.")] = None,
     html: Annotated[Path | None, typer.Option(help="Write an HTML report, too.")] = None,
     as_json: Json = False,
 ) -> None:
     """Run a small campaign on the simulated bench, and compare it with a baseline, seed by seed.
 
-    Exit code 0: as before, or better. 1: something is worse, or was not measured. 3: no baseline that fits.
+    Exit code 0: as before, or better. 1: something is worse, has changed, or was not measured. 3: no fitting baseline.
     """
     from bench.bench_report.baseline import read_baseline, write_baseline
     from bench.bench_report.campaign import run_seed
     from bench.bench_report.comparison import compare
-    from bench.bench_report.documents import COLUMNS, EXPLANATION, cells, is_bad, sections, write_junit
+    from bench.bench_report.documents import BAD, COLUMNS, EXPLANATION, cells, is_bad, sections, write_junit
     from bench.over_cores import over_cores
 
     before = None if update_baseline else read_baseline(baseline)
     begun_s = time.monotonic()
-    found = list(over_cores(run_seed, range(1, seeds + 1)))
+    found = list(over_cores(run_seed, range(first_seed, first_seed + seeds)))
     if before is None:
         write_baseline(baseline, found)
         say(f"the baseline of {seeds} seeds is in {baseline}")
@@ -53,7 +54,7 @@ def bench_report(
         table("Before and now", COLUMNS, map(cells, lines))
         say(EXPLANATION)
     for line in lines:
-        if line.verdict in ("worse", "failed"):
+        if line.verdict in BAD:
             complain(f"{line.metric.name} {line.sentence}")
     if is_bad(lines):
         raise typer.Exit(ExitCode.NOT_COMPLETED)

@@ -72,8 +72,9 @@ def test_stop_holds_the_queue_and_resume_goes_on(queue):
 
 
 def test_pause_between_trials_and_time_left(queue):
+    before = queue.runner.live().last_row
     add(queue, SLOW)
-    wait_for(lambda: len(queue.runner.live().rows) > 5)
+    wait_for(lambda: len(queue.runner.live(before).rows) > 5)
     assert queue.client.post("/queue/pause").json()["state"] == "pausing"
     wait_for(lambda: state(queue)["state"] == "paused")
     run = queue.stranger.get("/bench").json()["run"]
