@@ -38,6 +38,8 @@ def fit_coast(time_s: FloatArray, way_rad: FloatArray) -> CoastFit:
         time_s: shape (n,).
         way_rad: along the direction of motion, shape (n,).
     """
+    fresh = np.diff(time_s, prepend=-np.inf) > 0.0  # a drive that had nothing new told the same reading again
+    time_s, way_rad = time_s[fresh], way_rad[fresh]
     count = _fast_part(time_s, way_rad)
     if count < LEAST_READINGS:
         return CoastFit(nan, nan, nan, count)

@@ -83,6 +83,13 @@ def test_the_fit_by_hand():
     assert found.readings < len(time_s)
 
 
+def test_a_reading_that_is_told_again_changes_nothing():
+    time_s = np.arange(0.0, 0.5, 0.01)
+    way_rad = 2.0 * time_s - 1.5 * time_s**2
+    again = np.repeat(np.arange(len(time_s)), np.where(np.arange(len(time_s)) % 7 == 0, 2, 1))
+    assert fit_coast(time_s[again], way_rad[again]) == fit_coast(time_s, way_rad)
+
+
 def test_too_few_readings_tell_nothing():
     found = fit_coast(np.array([0.0, 0.005]), np.array([0.0, 0.01]))
     assert np.isnan(found.time_constant_s)
