@@ -45,7 +45,6 @@ test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tes
 benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo, store and export beside pandas, drivers beside their libraries, diagnosis and rows
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
 	$(BIN)/python -m tests.sim_backend.rates
-	$(BIN)/python -m tests.sim_backend.cycle_cost
 	$(BIN)/python -m tests.store.rates
 	$(BIN)/python -m tests.service.rates
 	$(BIN)/python -m tests.drivers.rates

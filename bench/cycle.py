@@ -34,14 +34,12 @@ class Reading(NamedTuple):
         sample: as the drive gave it.
         velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
         current_a: measured where the drive measures it, else eq. (3) [A].
-        estimate_a: by eq. (3), beside a measured one too; NaN where the rig does not say enough [A].
     """
 
     time_s: float
     sample: Sample
     velocity_rad_s: float
     current_a: float
-    estimate_a: float = nan
 
 
 class Action(NamedTuple):
@@ -64,20 +62,20 @@ Procedure = Generator[Action, Reading, dict[str, Any]]
 """Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
 
-def row_of(action: Action, reading: Reading) -> tuple[float, ...]:
+def row_of(action: Action, reading: Reading, estimate_a: float) -> tuple[float, ...]:
     """The row of a cycle, in the order of `RECORDED`."""
-    time_s, sample, velocity_rad_s, _, estimate_a = reading
-    (mode, value, _), target_rad, current_load_a, _ = action
+    sample = reading.sample
+    command = action.command
     return (
-        time_s,
-        target_rad,
+        reading.time_s,
+        action.target_rad,
         sample.position_rad,
-        velocity_rad_s,
+        reading.velocity_rad_s,
         sample.duty,
         sample.current_a,
         estimate_a,
-        value if mode is Mode.CURRENT else nan,
-        current_load_a,
+        command.value if command.mode is Mode.CURRENT else nan,
+        action.current_load_a,
         sample.supply_v,
         sample.temperature_c,
         1.0 if sample.status is Status.ENABLED else 0.0,

@@ -16,6 +16,7 @@ from bench.experiments.kind import TrialPlan
 from bench.limits import Guard
 from bench.loop import RECORDED, ControlLoop
 from bench.servo import current_servo
+from bench.session import CONDITION, Session
 from bench.stop_request import StopRequest
 from compensator.lab.recording import Event, FloatArray, Recording
 
@@ -29,7 +30,7 @@ class InMemoryBench:
     """
 
     def __init__(self, configuration: BenchConfiguration, equipment: Equipment) -> None:
-        self._equipment = equipment
+        self._equipment, self._session = equipment, Session(None)
         period_s = configuration.control.period_s
         equipment.drive.open(period_s)
         servo = current_servo(configuration.rig)
@@ -52,7 +53,9 @@ class InMemoryBench:
         outcome = self._loop.run(plan.procedure(), kept, StopRequest())
         if outcome.outcome != "completed":
             raise ExperimentError(f"trial '{plan.name}': {outcome.outcome}: {outcome.reason}")
-        return Recording(plan.name, kind, plan.conditions, kept.channels(), kept.events)
+        conditions = {**plan.conditions, CONDITION: self._session.seconds()}
+        self._session.passed(self._loop.last_reading.time_s if self._loop.last_reading else 0.0)
+        return Recording(plan.name, kind, conditions, kept.channels(), kept.events)
 
 
 @dataclass

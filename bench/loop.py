@@ -4,27 +4,51 @@ Each cycle: send the procedure's command, take the sample, compare it with the l
 procedure. However a run ends, it ends in power-off, and the outcome says why.
 """
 
-from dataclasses import replace
-from math import ceil, nan
-from typing import Any
+from dataclasses import dataclass, field, replace
+from math import ceil, isnan, nan
+from typing import Any, Literal
 
 from bench.clock import Clock
 from bench.cycle import OFF, RECORDED, Action, Procedure, Reading, row_of
-from bench.driven_joint import DrivenJoint
-from bench.errors import LimitTrip
+from bench.errors import ConfigurationError, LimitTrip
 from bench.limits import Guard
-from bench.outcome import Outcome, OutcomeName, StopRequested, outcome_of
 from bench.recorder import Recorder, Sink
 from bench.servo import CurrentServo
 from bench.stop_request import StopRequest
-from drivers.contract import Drive, Sample, Status
+from drivers.contract import Command, Drive, Mode, Sample, Status
+from drivers.errors import DriveStateError
 
 __all__ = ["OFF", "RECORDED", "Action", "ControlLoop", "Outcome", "OutcomeName", "Procedure", "Reading"]
 
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
 BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
+OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes:
+        outcome: one of `OutcomeName`.
+        reason: why, in words; empty when completed.
+        results: what the procedure returned.
+        cycles: control cycles run.
+        overruns: cycles lost because the host was late.
+    """
+
+    outcome: OutcomeName
+    reason: str = ""
+    results: dict[str, Any] = field(default_factory=dict)
+    cycles: int = 0
+    overruns: int = 0
+
 
 _BRAKING = Action(OFF)
+
+
+class _StopRequested(Exception):
+    """Raised inside the loop when the stop event is set."""
 
 
 class ControlLoop:
@@ -44,15 +68,18 @@ class ControlLoop:
     def __init__(
         self, drive: Drive, clock: Clock, guard: Guard, period_s: float, current_servo: CurrentServo | None = None
     ) -> None:
-        self._joint = DrivenJoint(drive, guard, current_servo)
+        self._drive = drive
         self._clock = clock
+        self._guard = guard
         self._period_s = period_s
+        self._current_servo = current_servo
+        self._has_current_mode = Mode.CURRENT in drive.describe().modes
+        self._mode = Mode.OFF  # of the power stage
+        self._origin_s = 0.0
+        self._previous: Sample | None = None
+        self._velocity_rad_s = 0.0
         self.cycles = 0
-
-    @property
-    def last_reading(self) -> Reading | None:
-        """None before the first trial."""
-        return self._joint.last_reading
+        self.last_reading: Reading | None = None
 
     def run(self, procedure: Procedure, sink: Sink, stop: StopRequest) -> Outcome:
         """Run one trial to its end.
@@ -70,23 +97,56 @@ class ControlLoop:
         lost_before = self._clock.overruns
         ending = Outcome("failed", "the run was torn down")
         try:
-            ending = outcome_of(self._check_before_motion, lambda: self._run_cycles(procedure, recorder, stop), stop)
+            ending = self._run_guarded(procedure, recorder, stop)
         finally:
             # also reached by what is no `Exception`: never leave the drive powered, nor the recorder running
             if ending.outcome not in ("completed", "refused"):
-                ending = ending.with_notes(self._brake(recorder, ending.reason))
-            ending = ending.with_notes(self._joint.power_off())
+                ending = _with_notes(ending, self._brake(recorder, ending.reason))
+            ending = _with_notes(ending, self._power_off())
             procedure.close()
-            reading = self.last_reading
-            ending = ending.recorded(recorder, reading.time_s if reading is not None else 0.0)
+            ending = self._close(recorder, ending)
         return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
+
+    def _run_guarded(self, procedure: Procedure, recorder: Recorder, stop: StopRequest) -> Outcome:
+        """Run the cycles, and turn every way they can end into an outcome."""
+        try:
+            refusal = self._check_before_motion()
+            if refusal:
+                return Outcome("refused", refusal)
+            return Outcome("completed", results=self._run_cycles(procedure, recorder, stop))
+        except _StopRequested:
+            return Outcome("stopped", stop.reason)
+        except KeyboardInterrupt:
+            stop.ask("interrupted from the keyboard")
+            return Outcome("stopped", stop.reason)
+        except LimitTrip as trip:
+            return Outcome("tripped", str(trip))
+        except Exception as error:
+            return Outcome("failed", str(error) or type(error).__name__)
+
+    def _close(self, recorder: Recorder, ending: Outcome) -> Outcome:
+        time_s = self.last_reading.time_s if self.last_reading is not None else 0.0
+        try:
+            recorder.event(time_s, "end", _joined(ending.outcome, ending.reason))
+        except Exception as error:
+            ending = _with_notes(ending, [str(error)])
+        try:
+            recorder.close()
+        except Exception as error:
+            ending = _with_notes(ending, [str(error)])
+        return ending
 
     def _check_before_motion(self) -> str:
         """Take a sample with the power off, and say what forbids motion."""
         self.cycles = 0
-        reading = self._joint.begin(self._fresh_sample())
+        self._previous = None
+        self._velocity_rad_s = 0.0
+        sample = self._fresh_sample()
+        self._origin_s = sample.time_s
+        reading, _ = self._read(sample)
+        self.last_reading = reading
         try:
-            self._joint.check(reading, nan)
+            self._guard.check(sample, reading.velocity_rad_s, reading.current_a, nan)
         except LimitTrip as trip:
             return f"before motion: {trip}"
         return ""
@@ -96,52 +156,133 @@ class ControlLoop:
 
         After a pause - somebody has hung a load - what a drive asks for seldom is as old as the pause.
         """
-        exchange = self._joint.drive.exchange
-        sample = exchange(OFF)
+        sample = self._drive.exchange(OFF)
         self._clock.start(self._period_s)
         for _ in range(ceil(WAKING_S / self._period_s)):
-            if not self._joint.is_stale(sample):
+            if not self._guard.is_stale(sample):
                 break
             self._clock.wait()
-            sample = exchange(OFF)
+            sample = self._drive.exchange(OFF)
         return sample
 
     def _run_cycles(self, procedure: Procedure, recorder: Recorder, stop: StopRequest) -> dict[str, Any]:
-        joint, clock, stopping = self._joint, self._clock, stop.is_set
+        exchange, check, wait, record = self._drive.exchange, self._guard.check, self._clock.wait, recorder.row
+        send, stopping = procedure.send, stop.is_set
         action = next(procedure)
-        clock.start(self._period_s)
+        self._clock.start(self._period_s)
         while True:
-            clock.wait()
+            wait()
             if stopping():
-                raise StopRequested
-            command, target_rad, _, event = action
-            if joint.power_for(command):
-                clock.start(self._period_s)
-            reading = joint.exchange(command)
+                raise _StopRequested
+            command = self._wire_command(action.command)
+            sample = exchange(command)
+            reading, estimate_a = self._read(sample)
             self.cycles += 1
-            recorder.row(row_of(action, reading))
-            if event is not None:
-                recorder.event(reading.time_s, *event)
-            joint.check(reading, target_rad)
+            self.last_reading = reading
+            record(row_of(action, reading, estimate_a))
+            if action.event is not None:
+                recorder.event(reading.time_s, *action.event)
+            check(sample, reading.velocity_rad_s, reading.current_a, action.target_rad)
+            if self._mode is not Mode.OFF and sample.status is not Status.ENABLED:
+                if sample.status is Status.FAULT:
+                    exchange(command)  # a drive in fault refuses it, and says what the fault is
+                raise DriveStateError(
+                    self._drive.describe().device,
+                    f"status is {sample.status.name} during motion; ENABLED is wanted. See the drive's own display",
+                )
             try:
-                action = procedure.send(reading)
+                action = send(reading)
             except StopIteration as end:
                 return end.value or {}
 
+    def _wire_command(self, command: Command) -> Command:
+        """The command in a mode that the drive closes itself; powers the stage for it where it is not."""
+        mode, value, _ = command
+        if mode is Mode.CURRENT and not self._has_current_mode:
+            if self._current_servo is None or self._previous is None:
+                raise ConfigurationError(
+                    "the drive has no current mode, and the rig lacks the resistance, back-EMF constant or gear ratio "
+                    "that eq. (3) needs to do without; add them to the rig"
+                )
+            mode = Mode.DUTY
+            value = self._current_servo.duty(value, self._previous, self._velocity_rad_s)
+            command = Command(mode, value)
+        if mode is not self._mode:
+            self._switch(mode)
+        return command
+
+    def _switch(self, mode: Mode) -> None:
+        # marked before the call: an `enable` that fails half-way may have powered the stage
+        self._mode = mode
+        if mode is Mode.OFF:
+            self._drive.disable()
+        else:
+            self._drive.enable(mode)
+        self._clock.start(self._period_s)
+
+    def _read(self, sample: Sample) -> tuple[Reading, float]:
+        """The reading of a sample, and its current by eq. (3) (NaN where that is not known)."""
+        velocity_rad_s = sample.velocity_rad_s
+        if velocity_rad_s != velocity_rad_s:  # NaN
+            velocity_rad_s = self._derived_velocity(sample)
+        self._velocity_rad_s = velocity_rad_s
+        self._previous = sample
+        servo = self._current_servo
+        estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
+        current_a = estimate_a if isnan(sample.current_a) else sample.current_a
+        return Reading(sample.time_s - self._origin_s, sample, velocity_rad_s, current_a), estimate_a
+
+    def _derived_velocity(self, sample: Sample) -> float:
+        previous = self._previous
+        if previous is None:
+            return 0.0
+        elapsed_s = sample.time_s - previous.time_s
+        if elapsed_s <= 0.0:
+            return self._velocity_rad_s
+        return (sample.position_rad - previous.position_rad) / elapsed_s
+
     def _brake(self, recorder: Recorder, known: str) -> list[str]:
         """Let the drive brake the joint until it stands, and record it; says what went wrong and is not known yet."""
-        joint = self._joint
-        if not joint.is_powered:
+        if self._mode is Mode.OFF:
             return []
         try:
-            joint.drive.quick_stop()
+            self._drive.quick_stop()
             for _ in range(ceil(BRAKING_S / self._period_s)):
                 self._clock.wait()
-                reading = joint.coast()
+                sample = self._drive.exchange(OFF)
+                reading, estimate_a = self._read(sample)
+                self.last_reading = reading
                 if recorder.error is None:
-                    recorder.row(row_of(_BRAKING, reading))
-                if reading.sample.status is not Status.QUICK_STOP:
+                    recorder.row(row_of(_BRAKING, reading, estimate_a))
+                if sample.status is not Status.QUICK_STOP:
                     break
         except BaseException as error:  # a second Ctrl-C, too: on to power-off
-            return joint.problem("quick stop failed", error, known)
+            what = str(error) or type(error).__name__
+            return [] if what in known else [f"quick stop failed: {what}"]
         return []
+
+    def _power_off(self) -> list[str]:
+        """Take the power away, and say what went wrong. Tried again when it fails or is interrupted."""
+        notes = []
+        for _ in range(3):
+            try:
+                self._drive.disable()
+                break
+            except BaseException as error:  # the power has to go, whatever happens meanwhile
+                notes.append(f"power-off failed: {str(error) or type(error).__name__}")
+        self._mode = Mode.OFF
+        return notes
+
+
+def _joined(*reasons: str) -> str:
+    return "; ".join(dict.fromkeys(reason for reason in reasons if reason))
+
+
+def _with_notes(ending: Outcome, notes: list[str]) -> Outcome:
+    """An outcome that also says what went wrong while it ended; it is not a completed run then."""
+    if not notes:
+        return ending
+    outcome: OutcomeName = "failed" if ending.outcome == "completed" else ending.outcome
+    # the sink's failure ends the run and is met again at the close: said once
+    new = [note for note in notes if note not in ending.reason]
+    return replace(ending, outcome=outcome, reason=_joined(ending.reason, *new))

@@ -6,11 +6,11 @@ from typing import Any, Protocol
 from bench.clock import Clock
 from bench.configuration import BenchConfiguration
 from bench.drive_factory import Ask, make_equipment
-from bench.driven_joint import DrivenJoint
 from bench.experiments.kind import TrialPlan
 from bench.limits import Guard
 from bench.loop import ControlLoop, Outcome, Reading
 from bench.pair.equipment import make_pair
+from bench.pair.joint import PairJoint
 from bench.pair.loop import PairLoop
 from bench.recorder import Sink
 from bench.servo import check_modes, current_servo
@@ -134,7 +134,7 @@ class PairStation:
             _open(drive, bench)
         check_modes(self._benches[0].servo, self.drives[0].describe())
         slave, master = (
-            DrivenJoint(drive, Guard(bench.limits), current_servo(bench.rig), name)
+            PairJoint(name, drive, Guard(bench.limits), current_servo(bench.rig))
             for name, drive, bench in zip(("slave", "master"), self.drives, self._benches, strict=True)
         )
         period_s = self._benches[0].control.period_s

@@ -73,7 +73,7 @@ def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
     words = {"complete": "false alarms, complete models", "imperfect": "the same, with delay, jitter, lost rows"}
 
     def alarm(one: Result) -> bool:
-        return _answer(one).verdict != "nothing"
+        return _answer(one).verdict != "nothing" or _answer(one).unknown
 
     return [
         _share(words[name], asked, [one for one in answered if one.family == name], alarm, at_most=True)

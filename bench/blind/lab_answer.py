@@ -9,15 +9,12 @@ from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import default_effects
 from compensator.lab.dataset import Dataset, Processing
 from compensator.lab.diagnose import diagnose
-from compensator.lab.diagnosis import Diagnosis
 from compensator.lab.fit import Fit, fit_effects, fit_model
 from compensator.lab.recording import Recording
 from compensator.lab.validation import held_out
 
 Classes = tuple[tuple[str, ...], ...]
 CHAIN = "measurement_delay"  # a sample is taken at the end of the cycle whose effort it holds: half a cycle, at least
-STRUCTURE = "structure over"  # how a diagnosis says that something remains once the best effect is in
-MORE = "times the effort's own noise"  # and where nothing is confirmed
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,14 +67,8 @@ def ask_lab(fit: Fit, steps: int) -> LabAnswer:
         verdict=first.verdict,
         first=top,
         named=tuple(named),
-        unknown=_flags(found),
+        unknown=found.remains,
         p_value=first.p_value,
         detectability=first.candidates[0].detectability if first.candidates else 0.0,
         error=held_out(fit).relative,
     )
-
-
-def _flags(found: Diagnosis) -> bool:
-    if found.verdict == "nothing":
-        return MORE in found.sentence
-    return found.verdict == "unknown-effect" or any(STRUCTURE in note for note in found.notes)

@@ -75,11 +75,13 @@ PairProcedure = Generator[PairAction, PairReading, dict[str, Any]]
 """Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
 
-def pair_row(action: PairAction, reading: PairReading) -> tuple[float, ...]:
+def pair_row(
+    action: PairAction, reading: PairReading, slave_estimate_a: float, master_estimate_a: float
+) -> tuple[float, ...]:
     """The row of a cycle, in the order of `PAIR_RECORDED`; its time is the slave's."""
-    master = row_of(action.master, reading.master)
+    master = row_of(action.master, reading.master, master_estimate_a)
     return (
-        *row_of(action.slave, reading.slave),
+        *row_of(action.slave, reading.slave, slave_estimate_a),
         *(master[column] for column in _OF_MASTER),
         action.reflected_n_m,
         *reading.truth,

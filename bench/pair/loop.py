@@ -13,11 +13,10 @@ from typing import Any
 
 from bench.clock import Clock
 from bench.cycle import OFF, Action, Reading
-from bench.driven_joint import DrivenJoint
 from bench.errors import LimitTrip
-from bench.loop import BRAKING_S, WAKING_S
-from bench.outcome import Outcome, StopRequested, outcome_of
+from bench.loop import BRAKING_S, WAKING_S, Outcome
 from bench.pair.cycle import PAIR_RECORDED, PairAction, PairProcedure, PairReading, Reach, Truth, pair_row
+from bench.pair.joint import PairJoint
 from bench.recorder import Recorder, Sink
 from bench.stop_request import StopRequest
 from drivers.contract import Status
@@ -48,8 +47,8 @@ class PairLoop:
 
     def __init__(
         self,
-        slave: DrivenJoint,
-        master: DrivenJoint,
+        slave: PairJoint,
+        master: PairJoint,
         clock: Clock,
         period_s: float,
         truth: Callable[[], Truth] = _nothing_true,
@@ -62,11 +61,7 @@ class PairLoop:
         self._truth = truth
         self._operate = operate
         self.cycles = 0
-
-    @property
-    def last_reading(self) -> Reading | None:
-        """The slave's; None before the first trial."""
-        return self._slave.last_reading
+        self.last_reading: Reading | None = None
 
     def run(self, procedure: PairProcedure, sink: Sink, stop: StopRequest) -> Outcome:
         """Run one trial to its end.
@@ -83,21 +78,36 @@ class PairLoop:
         lost_before = self._clock.overruns
         ending = Outcome("failed", "the run was torn down")
         try:
-            ending = outcome_of(self._check_before_motion, lambda: self._run_cycles(procedure, recorder, stop), stop)
+            ending = self._run_guarded(procedure, recorder, stop)
         finally:
             # also reached by what is no `Exception`: never leave a drive powered, nor the recorder running
             try:
                 if ending.outcome not in ("completed", "refused"):
-                    ending = ending.with_notes(self._brake(recorder, ending.reason))
+                    ending = _with_notes(ending, self._brake(recorder, ending.reason))
             finally:
                 try:
-                    ending = ending.with_notes(self._master.power_off())
+                    ending = _with_notes(ending, self._master.power_off())
                 finally:
-                    ending = ending.with_notes(self._slave.power_off())
+                    ending = _with_notes(ending, self._slave.power_off())
             procedure.close()
-            reading = self.last_reading
-            ending = ending.recorded(recorder, reading.time_s if reading is not None else 0.0)
+            ending = self._close(recorder, ending)
         return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
+
+    def _run_guarded(self, procedure: PairProcedure, recorder: Recorder, stop: StopRequest) -> Outcome:
+        """Run the cycles, and turn every way they can end into an outcome."""
+        try:
+            refusal = self._check_before_motion()
+            if refusal:
+                return Outcome("refused", refusal)
+            results = self._run_cycles(procedure, recorder, stop)
+            return Outcome("stopped", stop.reason) if results is None else Outcome("completed", results=results)
+        except KeyboardInterrupt:
+            stop.ask("interrupted from the keyboard")
+            return Outcome("stopped", stop.reason)
+        except LimitTrip as trip:
+            return Outcome("tripped", str(trip))
+        except Exception as error:
+            return Outcome("failed", str(error) or type(error).__name__)
 
     def _check_before_motion(self) -> str:
         """Take samples with the power off, and say what forbids motion."""
@@ -111,18 +121,21 @@ class PairLoop:
             samples = {joint: joint.drive.exchange(OFF) for joint in self._joints}
         try:
             for joint, sample in samples.items():
-                joint.check(joint.begin(sample), nan)
+                reading = joint.begin(sample).reading
+                joint.check(reading, nan)
         except LimitTrip as trip:
             return f"before motion: {trip}"
+        self.last_reading = reading
         return ""
 
-    def _run_cycles(self, procedure: PairProcedure, recorder: Recorder, stop: StopRequest) -> dict[str, Any]:
+    def _run_cycles(self, procedure: PairProcedure, recorder: Recorder, stop: StopRequest) -> dict[str, Any] | None:
+        """The procedure's results; None where a stop was asked for."""
         action = next(procedure)
         self._clock.start(self._period_s)
         while True:
             self._clock.wait()
             if stop.is_set():
-                raise StopRequested
+                return None
             reading = self._cycle(action, recorder)
             self._master.check(reading.master, action.master.target_rad)
             self._slave.check(reading.slave, action.slave.target_rad)
@@ -134,23 +147,30 @@ class PairLoop:
     def _cycle(self, action: PairAction, recorder: Recorder) -> PairReading:
         if action.reach is not None:
             self._operate(action.reach)
-        commands = (action.master.command, action.slave.command)
-        # both before either moves: powering a stage may take longer than the other one's watchdog waits
-        powered = [joint.power_for(command) for joint, command in zip(self._joints, commands, strict=True)]
-        if any(powered):
-            self._clock.start(self._period_s)
-        master, slave = (joint.exchange(command) for joint, command in zip(self._joints, commands, strict=True))
+        actions = (action.master, action.slave)
+        self._switch(actions)
+        (master, master_a), (slave, slave_a) = (
+            joint.exchange(one) for joint, one in zip(self._joints, actions, strict=True)
+        )
         reading = PairReading(slave, master, self._truth())
         self.cycles += 1
-        recorder.row(pair_row(action, reading))
+        self.last_reading = slave
+        recorder.row(pair_row(action, reading, slave_a, master_a))
         if action.slave.event is not None:
             recorder.event(slave.time_s, *action.slave.event)
         return reading
 
+    def _switch(self, actions: tuple[Action, Action]) -> None:
+        wanted = [(joint, one) for joint, one in zip(self._joints, actions, strict=True) if joint.needs_switch(one)]
+        for joint, one in wanted:
+            joint.switch(one)
+        if wanted:
+            self._clock.start(self._period_s)
+
     def _brake(self, recorder: Recorder, known: str) -> list[str]:
         """Let both drives brake until both stand, and record it; says what went wrong and is not known yet."""
         powered = [joint for joint in self._joints if joint.is_powered]
-        notes = [note for joint in powered for note in joint.quick_stop(known)]
+        notes = [note for joint in powered for note in _attempt(joint, joint.drive.quick_stop, known)]
         for _ in range(ceil(BRAKING_S / self._period_s) if powered else 0):
             with suppress(BaseException):  # a second Ctrl-C, too: on to power-off
                 self._clock.wait()
@@ -166,6 +186,46 @@ class PairLoop:
                 found[joint] = joint.coast()
         if len(found) == len(self._joints) and recorder.error is None:
             master, slave = (found[joint] for joint in self._joints)
+            self.last_reading = slave.reading
+            reading = PairReading(slave.reading, master.reading, self._truth())
             with suppress(Exception):
-                recorder.row(pair_row(_BRAKING, PairReading(slave, master, self._truth())))
-        return any(reading.sample.status is Status.QUICK_STOP for reading in found.values())
+                recorder.row(pair_row(_BRAKING, reading, slave.estimate_a, master.estimate_a))
+        return any(one.reading.sample.status is Status.QUICK_STOP for one in found.values())
+
+    def _close(self, recorder: Recorder, ending: Outcome) -> Outcome:
+        time_s = self.last_reading.time_s if self.last_reading is not None else 0.0
+        try:
+            recorder.event(time_s, "end", _joined(ending.outcome, ending.reason))
+        except Exception as error:
+            ending = _with_notes(ending, [str(error)])
+        try:
+            recorder.close()
+        except Exception as error:
+            ending = _with_notes(ending, [str(error)])
+        return ending
+
+
+def _attempt(joint: PairJoint, call: Callable[[], None], known: str) -> list[str]:
+    """Call, and say what went wrong."""
+    try:
+        call()
+    except BaseException as error:  # the other one has to stop, and both have to be powered off
+        what = str(error) or type(error).__name__
+        return [] if what in known else [f"{joint.name}: quick stop failed: {what}"]
+    return []
+
+
+def _joined(*reasons: str) -> str:
+    return "; ".join(dict.fromkeys(reason for reason in reasons if reason))
+
+
+def _with_notes(ending: Outcome, notes: list[str]) -> Outcome:
+    """An outcome that also says what went wrong while it ended; it is not a completed run then."""
+    new = [note for note in notes if note not in ending.reason]
+    if not new:
+        return ending
+    return replace(
+        ending,
+        outcome="failed" if ending.outcome == "completed" else ending.outcome,
+        reason=_joined(ending.reason, *new),
+    )

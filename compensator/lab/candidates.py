@@ -17,7 +17,7 @@ from compensator.lab.nuisance import nuisance_columns
 from compensator.lab.prediction import with_own_prediction
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
-from compensator.lab.weights import row_weights
+from compensator.lab.weights import bounded_influence, row_weights
 
 TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
 
@@ -85,6 +85,7 @@ def gather(fit: Fit, show_in: EffectRows = "sliding") -> Candidates:
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
     weights = row_weights(dataset, fit.residual, rows)
+    weights = weights * bounded_influence(fit.residual[rows], weights)
     builder = _Builder(fit, show_in, rows, weights)
     named, left_out = builder.named()
     return Candidates(fit, show_in, rows, weights, builder.bases, named, Curves(dataset, builder.weighted), left_out)

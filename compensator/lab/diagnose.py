@@ -58,6 +58,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         data_problems=data_problems(fit),
         notes=[*first.notes, *notes],
         left_out={**gathered.left_out, **not_judged},
+        remains=first.remains or (first.verdict == "nothing" and steady.remains),
     )
 
 

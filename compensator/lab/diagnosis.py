@@ -70,6 +70,7 @@ class Diagnosis:
         data_problems: sentences.
         notes: sentences.
         left_out: effect -> why it could not be judged.
+        remains: something is left that nothing named explains: a curve that no effect follows, or more than noise.
     """
 
     verdict: Verdict
@@ -81,3 +82,4 @@ class Diagnosis:
     data_problems: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     left_out: dict[str, str] = field(default_factory=dict)
+    remains: bool = False

@@ -118,7 +118,7 @@ def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, f
     kept: dict[str, float] = {}
     for block in blocks:
         base = bases[block.base]
-        directions = _new_directions(base, block)
+        directions = new_directions(base, block)
         found = _likelihood(base, directions.T @ base.residual, inflation)
         kept[block.name] = max(kept.get(block.name, 0.0), found)
     return kept
@@ -127,7 +127,7 @@ def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, f
 def _judge(
     base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float
 ) -> tuple[Evidence, FloatArray] | None:
-    directions = _new_directions(base, block)
+    directions = new_directions(base, block)
     count, rank = directions.shape
     if rank == 0:
         return None
@@ -143,7 +143,7 @@ def _judge(
     return found, p_values[1:]
 
 
-def _new_directions(base: Base, block: Block) -> FloatArray:
+def new_directions(base: Base, block: Block) -> FloatArray:
     """Orthonormal basis of what the block's columns add to the base, shape (n, rank)."""
     columns = block.columns - base.basis @ (base.basis.T @ block.columns)
     before = np.linalg.norm(block.columns, axis=0)

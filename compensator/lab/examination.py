@@ -6,10 +6,11 @@ from compensator.lab.candidates import Candidates
 from compensator.lab.catalogue import effect_named
 from compensator.lab.diagnosis import Candidate
 from compensator.lab.effects.effect import Shape
-from compensator.lab.evidence import Evidence, kept_evidence
+from compensator.lab.evidence import Evidence, kept_evidence, new_directions
 from compensator.lab.fit import Fit, fit_model
 from compensator.lab.gain import chance_not_worse, held_out_gain
 from compensator.lab.pictures import picture_of
+from compensator.lab.recording import FloatArray
 from compensator.lab.validation import HeldOut, held_out
 
 SIGNIFICANT = 0.01
@@ -18,6 +19,7 @@ LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however
 LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
 LEAST_FALL = 1e-4  # of the effort: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
+NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
@@ -27,10 +29,12 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     before = held_out(fit, rows)
     afters = [held_out(_with_effect(fit, item), rows) for item in evidence]
     given = [_evidence_given(gathered, item) for item in evidence]
-    candidates = [
-        _candidate(gathered, item, (before, after), _rivals(index, evidence, afters, given[index]))
-        for index, (item, after) in enumerate(zip(evidence, afters, strict=True))
-    ]
+    spans = _spans(gathered)
+    candidates = []
+    for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
+        alike = _alike(item, spans)
+        rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
+        candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
     return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
 
 
@@ -61,28 +65,52 @@ def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:
     return kept_evidence(gathered.with_block(item.block).bases, gathered.named)
 
 
-def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: dict[str, float]) -> dict[str, float]:
-    """Rivals of one candidate, with the correlation of their contributions."""
+def _spans(gathered: Candidates) -> list[tuple[str, FloatArray]]:
+    """What each block can explain beyond its base: the effect's name and an orthonormal basis (n, rank)."""
+    return [(block.name, new_directions(gathered.bases[block.base], block)) for block in gathered.named]
+
+
+def _alike(item: Evidence, spans: list[tuple[str, FloatArray]]) -> dict[str, float]:
+    """How much of what an effect explains every other one could explain, as a correlation."""
+    alike: dict[str, float] = {}
+    for name, basis in spans:
+        if name != item.block.name:
+            found = min(float(np.linalg.norm(basis.T @ item.direction)), 1.0)
+            alike[name] = max(alike.get(name, 0.0), found)
+    return alike
+
+
+def _too_near(item: Evidence, evidence: list[Evidence], alike: dict[str, float]) -> set[str]:
+    """Effects that speak for themselves, and that stand too near for a name to be given without them."""
+    paying = (other.block.name for other in evidence if other is not item and other.score > 0.0)
+    return {name for name in paying if _detectability(item, alike.get(name, 0.0)) < NAMED_ALONE}
+
+
+def _detectability(item: Evidence, correlation: float) -> float:
+    return float(np.sqrt(item.noncentrality * max(0.0, 1.0 - correlation**2)))
+
+
+def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: dict[str, float]) -> set[str]:
+    """Effects that the trials cannot tell from one candidate: it explains their evidence, and they predict as well."""
     own = evidence[index]
-    found = {}
+    found = set()
     for other, after in zip(evidence, afters, strict=True):
         explained = left.get(other.block.name, 0.0) < EXPLAINED_BY_RIVAL * other.noncentrality
         if other is not own and explained and chance_not_worse(after, afters[index]) > NOT_WORSE:
-            found[other.block.name] = abs(float(own.direction @ other.direction))
+            found.add(other.block.name)
     return found
 
 
 def _candidate(
-    gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: dict[str, float]
+    gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: set[str], nearest: float
 ) -> Candidate:
     before, after = errors
-    nearest = max(rivals.values(), default=0.0)
     return Candidate(
         effect=effect_named(item.block.name),
         shape=_shape(item),
         score=item.score,
         p_value=item.p_value,
-        detectability=float(np.sqrt(item.noncentrality * max(0.0, 1.0 - nearest**2))),
+        detectability=_detectability(item, nearest),
         rivals=tuple(sorted(rivals)),
         before=before.relative,
         after=after.relative,
@@ -97,5 +125,5 @@ def _physical(gathered: Candidates, item: Evidence) -> bool:
     base = gathered.bases[item.block.base]
     columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
     coefficients = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0]
-    parameters = effect_named(item.block.name).parameters
-    return all(p.low <= c <= p.high for p, c in zip(parameters, coefficients, strict=True))
+    ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
+    return all(low <= c <= high for (low, high), c in zip(ranges, coefficients, strict=True))

@@ -10,7 +10,7 @@ from compensator.lab.evidence import Evidence, Screening, screen
 from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
 from compensator.lab.fit import Fit, with_columns
 from compensator.lab.gain import held_out_gain
-from compensator.lab.remainder import Remainder, remainder_of
+from compensator.lab.remainder import remainder_of
 from compensator.lab.validation import held_out
 from compensator.lab.wording import answer_in_words, unexplained_in_words
 
@@ -18,6 +18,8 @@ EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence 
 FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
+SCREENINGS = 4  # of one diagnosis: steady effects, free curves, effects with memory, the measuring chain
+UNDENIABLE = 30.0  # of a score: flips of k stretches that hold all the evidence never say less than 2^(1 - k)
 FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
 
 
@@ -27,6 +29,7 @@ class Answer:
 
     Attributes:
         strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
+        remains: more than noise is left that nothing named here explains.
         Others as in `Diagnosis`.
     """
 
@@ -37,6 +40,7 @@ class Answer:
     driver: str | None
     notes: list[str]
     strength: float = 0.0
+    remains: bool = False
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -57,20 +61,25 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     curve = _curve(fit, gathered, generic)
     followed = curve is None or (examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality)
     if curve is not None and generic is not None and not followed:
-        driver = curve.block.name
-        sentence = answer_in_words("unknown-effect", generic.p_value, examined, driver)
-        return Answer("unknown-effect", sentence, generic.p_value, examined, driver, [], curve.noncentrality)
-    found = named.p_value <= SIGNIFICANT and is_confirmed(examined[0])
-    verdict: Verdict = "missing" if found else "nothing"
-    if not found and generic is not None:
-        remainder = _more_than_noise(fit, gathered)
-        if remainder is not None:
-            nearest = _nearest_driver(generic)
-            words = unexplained_in_words(remainder, nearest, named.p_value)
-            return Answer("nothing", words, named.p_value, examined, None, [], best.noncentrality)
-    sentence = answer_in_words(verdict, named.p_value, examined, None)
-    notes = _what_remains(gathered, best) if found else []
-    return Answer(verdict, sentence, named.p_value, examined, None, notes, best.noncentrality)
+        driver, p_value = curve.block.name, _among_all(generic)
+        sentence = answer_in_words("unknown-effect", p_value, examined, driver)
+        return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
+    p_value = _among_all(named)
+    undeniable = gathered.show_in == "sliding" and examined[0].score >= UNDENIABLE
+    if (p_value <= SIGNIFICANT or undeniable) and is_confirmed(examined[0]):
+        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
+        return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
+    sentence, remains = answer_in_words("nothing", p_value, examined, None), False
+    if generic is not None:
+        left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
+        if left.is_more_than_noise:
+            sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value), True
+    return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+
+
+def _among_all(screening: Screening) -> float:
+    """The chance of so much evidence in any of a diagnosis's screenings (Bonferroni)."""
+    return min(1.0, SCREENINGS * screening.p_value)
 
 
 def _best_shapes(screening: Screening) -> list[Evidence]:
@@ -93,19 +102,13 @@ def _ties(item: Evidence, best: Evidence) -> bool:
 
 def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
     """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
-    if generic is None or generic.p_value > SIGNIFICANT or not generic.evidence:
+    if generic is None or _among_all(generic) > SIGNIFICANT or not generic.evidence:
         return None
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
-
-
-def _more_than_noise(fit: Fit, gathered: Candidates) -> Remainder | None:
-    """What the model leaves, where it is more than noise; None where it is not."""
-    found = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
-    return found if found.is_more_than_noise else None
 
 
 def _nearest_driver(generic: Screening) -> str | None:
@@ -128,6 +131,6 @@ def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
         how = " against the motion" if name.endswith("against motion") else ""
         return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
     return [
-        f"After {best.block.name}, what is left is still {remainder.over_noise:.1f} times the effort's own noise, and "
+        f"After {best.block.name}, what is left is still more than noise, {remainder.share:.1%} of the effort, and "
         "has structure over no variable that is measured; add it and diagnose again."
     ]

@@ -66,7 +66,7 @@ class Fit:
     @property
     def bounds(self) -> Bounds:
         """Physical bounds of all coefficients."""
-        return bounds_of([term.effect for term in self.terms])
+        return bounds_of(self.effects, self.dataset)
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -184,7 +184,7 @@ def fit_linear(
             f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
         )
     inside = weight[rows]
-    solution = solve(inside[:, None] * columns[rows], inside * dataset.effort[rows], bounds_of(effects))
+    solution = solve(inside[:, None] * columns[rows], inside * dataset.effort[rows], bounds_of(effects, dataset))
     return Fit(dataset, rows, _terms(effects, shapes, solution), columns, weight)
 
 
@@ -218,7 +218,7 @@ def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
     effects = [*(term.effect for term in fit.terms), curve]
     inside = fit.weight[fit.training]
     effort = inside * fit.dataset.effort[fit.training]
-    solution = solve(inside[:, None] * wide[fit.training], effort, bounds_of(effects))
+    solution = solve(inside[:, None] * wide[fit.training], effort, bounds_of(effects, fit.dataset))
     shapes = {**fit.shapes, name: ()}
     return replace(fit, terms=_terms(effects, shapes, solution), columns=wide)
 
@@ -227,7 +227,9 @@ def _no_columns(motion: Motion, _: Shape) -> FloatArray:
     raise NotImplementedError(f"a free curve knows its columns over rows, not over {len(motion.time_s)} samples")
 
 
-def bounds_of(effects: Sequence[Effect]) -> Bounds:
-    """Physical bounds of all parameters of the effects, in order."""
-    parameters = [parameter for effect in effects for parameter in effect.parameters]
-    return Bounds(np.array([p.low for p in parameters]), np.array([p.high for p in parameters]))
+def bounds_of(effects: Sequence[Effect], dataset: Dataset) -> Bounds:
+    """Physical bounds of all parameters of the effects, in order, in the effort of a dataset."""
+    quantity = dataset.effort_definition.quantity
+    ranges = [range_ for effect in effects for range_ in effect.ranges_in(quantity)]
+    low, high = np.array(ranges).reshape(-1, 2).T
+    return Bounds(low, high)

@@ -39,7 +39,8 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
     unit = fit.dataset.effort_definition.unit
     found, index = [], 0
     for term in fit.terms:
-        for position, parameter in enumerate(term.effect.parameters):
+        ranges = term.effect.ranges_in(fit.dataset.effort_definition.quantity)
+        for position, (parameter, (lowest, highest)) in enumerate(zip(term.effect.parameters, ranges, strict=True)):
             if not excited[index]:
                 index += 1
                 continue  # a term for loads, say, where none is hung
@@ -52,8 +53,8 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
                     parameter=parameter.name,
                     unit=parameter.unit_in(unit, fit.dataset.facts.position_unit),
                     value=value if kept else float("nan"),
-                    low=max(value - width, parameter.low) if kept else float("nan"),
-                    high=min(value + width, parameter.high) if kept else float("nan"),
+                    low=max(value - width, lowest) if kept else float("nan"),
+                    high=min(value + width, highest) if kept else float("nan"),
                     note=_note(kept, bound),
                 )
             )

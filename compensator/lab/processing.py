@@ -59,7 +59,7 @@ def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray
     """Zero-phase Butterworth low-pass along the last axis; unchanged where the cut-off is beyond Nyquist."""
     if cutoff_hz >= 0.49 * rate_hz:
         return values
-    sections, steady = _sections(cutoff_hz, rate_hz)
+    sections, steady = filter_sections(cutoff_hz, rate_hz)
     # scipy's sosfiltfilt, less the design of the filter's steady state, which takes longer than one trial's filtering
     padded = _odd_extension(values, PADDING * (2 * len(sections) + 1))
     forward = _filtered_from_rest(sections, steady, padded)
@@ -83,7 +83,7 @@ def _odd_extension(values: FloatArray, count: int) -> FloatArray:
 
 
 @lru_cache(maxsize=256)
-def _sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, FloatArray]:
+def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, FloatArray]:
     """Second-order sections of the low-pass, and the state of each that a constant 1 settles to."""
     sections: FloatArray = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
     return sections, sosfilt_zi(sections)

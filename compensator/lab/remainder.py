@@ -1,26 +1,30 @@
-"""Whether what a model leaves is more than noise, and has a shape, whatever the catalogue says of it.
+"""Whether what a model leaves is more than noise, whatever the catalogue says of it.
 
-Two questions that need no model of what is missing. Noise: the effort's own scatter above the band of the motion, taken
-as white down into it, is what noise alone would leave. Shape: in a residual without any, no frequency holds more than
-chance gives it (Fisher 1929). Only where both say no is there something left: measured noise may be coloured, and the
-residual of a real joint is never quite white.
+No model of what is missing is needed. What a mechanism leaves follows the motion, and so lies in the motion's band, a
+quarter of the final cut-off (`bandwidth`); noise fills the whole band of the filter, and is no denser below than above.
+What swings by itself, as a supply that ripples, holds more of one frequency than chance gives it (Fisher 1929).
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from scipy.signal import sosfreqz
 
 from compensator.lab.dataset import Dataset, Trial
-from compensator.lab.processing import low_pass
+from compensator.lab.processing import filter_sections
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
+from compensator.lab.weights import bounded_influence
 
-FAR = 1.5  # times the noise: more than twice its power
-CHANCE = 0.01  # of so strong a frequency in a trial whose residual has no shape
+BANDS = (0.0, 0.25, 0.5, 0.9)  # of the cut-off: the motion's, a gap, and the noise's
+DENSER = 2.0  # in the motion's band than above: what coloured noise does not reach
+SURE = 3.0  # standard deviations of that ratio's logarithm
+LEAST_SHARE = 0.01  # of the effort: by so much friction differs from one stroke to the next without any cause
+CHANCE = 0.01  # of so strong a frequency in a trial that holds only noise
 MOST = 0.5  # share of the trials
 FEWEST_ROWS = 20
 ALIKE = 0.1  # relative spread of the frequencies of one source
-NORMAL = 1.4826  # standard deviation over median absolute deviation
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,72 +32,88 @@ class Remainder:
     """What a model leaves.
 
     Attributes:
-        over_noise: its root mean square over that of the noise; NaN where there is none to be seen.
-        shaped: share of the trials in which one frequency stands out.
+        share: its root mean square over the effort's.
+        denser: its spectral density in the band of the motion over that above.
+        certainty: logarithm of `denser` over that of noise alone, in standard deviations.
+        swinging: share of the trials in which one frequency stands out.
         frequency_hz: of it, where it is the same in all of these; NaN where it is not.
     """
 
-    over_noise: float
-    shaped: float
+    share: float
+    denser: float
+    certainty: float
+    swinging: float
     frequency_hz: float
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        return self.over_noise > FAR and self.shaped > MOST
+        follows_motion = self.denser > DENSER and self.certainty > SURE
+        return self.share > LEAST_SHARE and (follows_motion or self.swinging > MOST)
 
 
 def remainder_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Remainder:
-    """Judge what a model leaves.
+    """Judge what a model leaves; a few wild rows, as of a voltage that nothing determines, do not make it so.
 
     Args:
         dataset: of the rows.
         residual: of the chosen rows, shape (rows.sum(),).
         rows: chosen, shape (N,).
     """
-    noise = _noise(dataset, rows)
-    over = float(np.sqrt(np.mean(residual**2))) / noise if noise > 0.0 else np.nan
+    residual = residual * bounded_influence(residual, np.ones(len(residual)))
     trials = dataset.trial_index[rows]
-    found = [
-        _strongest(dataset, trial, residual[trials == index])
+    spectra = [
+        _spectrum(dataset, trial, residual[trials == index])
         for index, trial in enumerate(dataset.trials)
         if int((trials == index).sum()) >= FEWEST_ROWS
     ]
+    found = [_strongest(*spectrum) for spectrum in spectra]
     clear = [frequency for chance, frequency in found if chance <= CHANCE]
-    return Remainder(over, len(clear) / len(found) if found else 0.0, _common(clear))
+    effort = dataset.effort[rows]
+    power = float(effort @ effort)
+    share = float(np.sqrt(residual @ residual / power)) if power > 0.0 else 0.0
+    denser, certainty = _in_band(dataset.cutoff_hz, spectra)
+    return Remainder(share, denser, certainty, len(clear) / len(found) if found else 0.0, _common(clear))
 
 
-def _noise(dataset: Dataset, rows: BoolArray) -> float:
-    """Root mean square that the effort's noise leaves after the final filter."""
-    used = np.unique(dataset.trial_index[rows])
-    powers = [_noise_power(dataset.trials[index], dataset.cutoff_hz) for index in used]
-    return float(np.sqrt(np.mean(powers))) if powers else 0.0
+def _spectrum(dataset: Dataset, trial: Trial, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] within the filter's band, and the residual's power there, the filter's own slope taken off."""
+    times_s, rate_hz = dataset.time_of(trial), trial.signals.rate_hz
+    period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0 / rate_hz
+    frequencies: FloatArray = np.fft.rfftfreq(len(residual), period_s)[1:]
+    power: FloatArray = np.abs(np.fft.rfft(residual - residual.mean())[1:]) ** 2
+    inside = frequencies < BANDS[-1] * min(dataset.cutoff_hz, 0.5 / period_s)
+    frequencies, power = frequencies[inside], power[inside]
+    if dataset.cutoff_hz < 0.49 * rate_hz:
+        sections, _ = filter_sections(dataset.cutoff_hz, rate_hz)
+        gain = np.abs(sosfreqz(sections, worN=frequencies, fs=rate_hz)[1]) ** 2  # there and back
+        power = power / gain**2
+    return frequencies, power
 
 
-def _noise_power(trial: Trial, cutoff_hz: float) -> float:
-    """Of the effort above the band of the motion, as a density, times the band of the final filter."""
-    signals = trial.signals
-    nyquist_hz = 0.5 * signals.rate_hz
-    above_hz = min(max(3.0 * cutoff_hz, 0.2 * nyquist_hz), 0.6 * nyquist_hz)
-    if not signals.usable.any() or cutoff_hz >= above_hz:
-        return 0.0
-    fast = signals.effort - low_pass(signals.effort[None], above_hz, signals.rate_hz)[0]
-    spread = NORMAL * float(np.median(np.abs(fast[signals.usable])))
-    return spread**2 * cutoff_hz / (nyquist_hz - above_hz)
+def _in_band(cutoff_hz: float, spectra: list[tuple[FloatArray, FloatArray]]) -> tuple[float, float]:
+    """Mean power in the motion's band over that in the noise's, over all trials, and how sure it is more."""
+    below, _, above = (
+        np.concatenate(
+            [power[(at >= low * cutoff_hz) & (at < high * cutoff_hz)] for at, power in spectra] or [np.empty(0)]
+        )
+        for low, high in pairwise(BANDS)
+    )
+    if not (len(below) and len(above)) or float(above.mean()) == 0.0:
+        return np.nan, 0.0
+    denser = float(below.mean() / above.mean())
+    # a power is exponentially distributed, so that a mean of n of them has a relative scatter of 1 / sqrt(n)
+    return denser, float(np.log(max(denser, 1e-12)) / np.sqrt(1.0 / len(below) + 1.0 / len(above)))
 
 
-def _strongest(dataset: Dataset, trial: Trial, residual: FloatArray) -> tuple[float, float]:
-    """The chance of a frequency as strong as the strongest, in a residual without shape, and that frequency [Hz]."""
-    power = np.abs(np.fft.rfft(residual - residual.mean())[1:]) ** 2
+def _strongest(frequencies_hz: FloatArray, power: FloatArray) -> tuple[float, float]:
+    """The chance of a frequency as strong as the strongest, in noise alone, and that frequency [Hz]."""
     whole = float(power.sum())
     if whole == 0.0:
         return 1.0, np.nan
     best = int(np.argmax(power))
-    share = float(power[best]) / whole
-    chance = len(power) * (1.0 - share) ** (len(power) - 1)
-    times_s = dataset.time_of(trial)
-    period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else np.nan
-    return min(chance, 1.0), (best + 1) / (len(residual) * period_s)
+    chance = len(power) * (1.0 - float(power[best]) / whole) ** (len(power) - 1)
+    return min(chance, 1.0), float(frequencies_hz[best])
 
 
 def _common(frequencies_hz: list[float]) -> float:

@@ -9,6 +9,9 @@ from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray, Regime
 
 BINS = 4
+NORMAL = 1.4826  # standard deviation over median absolute deviation
+OUTLYING = 4.0  # standard deviations: one row in 16,000 of noise
+TINY = float(np.finfo(float).tiny)
 LIMITS = (0.3, 3.0)  # a weight never says that a row is ten times better than another
 
 
@@ -53,6 +56,21 @@ def row_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Floa
         rows: chosen, shape (N,).
     """
     return RowWeights.learnt(dataset, residual, rows).of(dataset, rows)
+
+
+def bounded_influence(residual: FloatArray, weights: FloatArray) -> FloatArray:
+    """Factors of at most 1, shape (n,): no row pulls harder than one of OUTLYING standard deviations (Huber 1964).
+
+    A tooth that bounces off its neighbour moves a row by tens of them, and says nothing of the effects looked for.
+
+    Args:
+        residual: of the rows, shape (n,).
+        weights: of the same rows, shape (n,).
+    """
+    size = np.abs(residual * weights)
+    most = OUTLYING * NORMAL * float(np.median(size))
+    factors: FloatArray = max(most, TINY) / np.maximum(size, max(most, TINY))
+    return factors
 
 
 def _sizes(dataset: Dataset, rows: BoolArray) -> list[FloatArray]:

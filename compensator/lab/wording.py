@@ -46,7 +46,7 @@ def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: floa
     else:
         how = "it varies with nothing that is measured"
     return (
-        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left is {remainder.over_noise:.1f} "
-        f"times the effort's own noise; {how}. Repeat a trial: what comes again is the joint's, what does not has "
+        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {remainder.share:.1%} of the "
+        f"effort, is more than noise; {how}. Repeat a trial: what comes again is the joint's, what does not has "
         "changed since."
     )

@@ -28,27 +28,53 @@ def ripple(x):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_of_a_complete_model_noise_is_left(seed):
+def test_noise_is_as_dense_in_the_band_of_the_motion_as_above(seed):
     found = left(fitted(seed=seed))
-    assert found.over_noise == pytest.approx(1.0, abs=0.35)
+    assert found.denser == pytest.approx(1.0, abs=0.35)
+    assert abs(found.certainty) < 3.0
     assert not found.is_more_than_noise
 
 
-def test_coloured_noise_is_more_than_expected_but_has_no_shape():
+def test_coloured_noise_is_noise():
     found = left(fitted(noise_memory=0.8))
-    assert found.over_noise > 1.5
+    assert found.denser > 1.0
     assert not found.is_more_than_noise
+
+
+def test_what_follows_the_motion_is_no_noise():
+    found = left(fitted(lambda x: 0.05 * np.abs(x.q - 0.4)))
+    assert found.denser > 3.0
+    assert found.certainty > 10.0
+    assert found.is_more_than_noise
+
+
+def test_less_than_friction_repeats_is_not_told():
+    found = left(fitted(lambda x: 0.002 * np.abs(x.q - 0.4), noise=1e-5))
+    assert found.denser > 2.0
+    assert found.share < 0.01
+    assert not found.is_more_than_noise
+
+
+def test_a_few_wild_rows_do_not_make_it_more_than_noise():
+    fit = fitted()
+    residual = fit.residual[fit.training].copy()
+    residual[::50] += 30.0 * residual.std()
+    wild = remainder_of(fit.dataset, residual, fit.training)
+    assert wild.share < 2.0 * left(fit).share
+    assert not wild.is_more_than_noise
 
 
 def test_a_ripple_is_told_with_its_frequency():
     fit = fitted(ripple)
     found = left(fit)
     assert found.is_more_than_noise
+    assert found.swinging > 0.5
     assert found.frequency_hz == pytest.approx(3.1, rel=0.1)
     answer = diagnose(fit)
+    assert answer.remains
     assert re.match(r"No effect of the catalogue is confirmed \(p = [\d.e-]+\), yet", answer.sentence)
     assert re.search(r"swings at about (2\.[89]|3(\.[0-4])?) Hz", answer.sentence)
-    assert "times the effort's own noise" in answer.sentence
+    assert re.search(r"[\d.]+% of the effort, is more than noise", answer.sentence)
 
 
 def test_friction_that_jumps_is_not_called_nothing():

@@ -8,9 +8,9 @@ import pytest
 
 from bench.clock import VirtualClock
 from bench.cycle import OFF, Action
-from bench.driven_joint import DrivenJoint
 from bench.limits import Guard, Limits
 from bench.pair.cycle import PAIR_RECORDED, PairAction, Reach, Truth
+from bench.pair.joint import PairJoint
 from bench.pair.loop import PairLoop
 from bench.servo import CurrentServo
 from bench.stop_request import StopRequest
@@ -37,7 +37,7 @@ def run(slave, master, procedure=None, stop=None, sink=None, **loop):
     for drive in (slave, master):
         drive.open(PERIOD_S)
     joints = [
-        DrivenJoint(drive, Guard(Limits()), CurrentServo(RIG), name)
+        PairJoint(name, drive, Guard(Limits()), CurrentServo(RIG))
         for name, drive in (("slave", slave), ("master", master))
     ]
     made = PairLoop(*joints, VirtualClock(), PERIOD_S, **loop)

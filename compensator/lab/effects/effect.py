@@ -147,6 +147,7 @@ class Effect:
         facts: attributes of `Facts` that must be known.
         hidden_by: effects in whose free scale it hides: while one of them is in the model, it cannot be judged.
         efforts: quantities of effort that it can show in; empty for all.
+        unbounded_in: quantities of effort that hold an error of the same form, of either sign: no bound holds there.
         standing_in: pipeline nuisance columns that would absorb this effect (see `nuisance`).
         varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
     """
@@ -174,6 +175,13 @@ class Effect:
     facts: tuple[str, ...] = ()
     hidden_by: tuple[str, ...] = ()
     efforts: tuple[EffortQuantity, ...] = ()
+    unbounded_in: tuple[EffortQuantity, ...] = ()
+
+    def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
+        """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""
+        if quantity in self.unbounded_in:
+            return [(-np.inf, np.inf)] * len(self.parameters)
+        return [(parameter.low, parameter.high) for parameter in self.parameters]
 
     @property
     def uses_prediction(self) -> bool:

@@ -14,7 +14,8 @@ EFFECT = Effect(
     title="Viscous friction",
     physics=(
         "Friction of lubricant shear, proportional to speed. Where the effort is a voltage, back-EMF has the "
-        "same form and is part of it."
+        "same form and is part of it; where it is a current estimated from duty and speed, what the data sheet's "
+        "back-EMF constant is off by, which may be more than the friction."
     ),
     equation=r"F_v\,\dot q",
     columns=columns,
@@ -23,4 +24,5 @@ EFFECT = Effect(
     excited_by="speeds spread over at least a factor of ten",
     source="Saini et al. 2013, section 2.1",
     confused_with=("viscous_quadratic", "stribeck"),
+    unbounded_in=("current_estimate",),
 )
