@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from scipy.stats import beta
+
 from bench.blind.judge import Result
 
 STATED_P = (0.01, 0.05, 0.1, 0.2, 0.5)
@@ -16,19 +18,23 @@ class Stated:
 
     Attributes:
         what: is stated.
+        at: the number that is stated; of a range, its lower end.
         items: that it was observed on.
-        observed: share of them.
+        observed: share of them; low, high: its 95 % interval.
     """
 
     what: str
+    at: float
     items: int
     observed: float
+    low: float
+    high: float
 
 
 def p_values(results: Sequence[Result]) -> list[Stated]:
     """Complete models with a p-value of at most so much: that share of them, if it is honest."""
     found = [one.answer.p_value for one in results if one.family == "complete" and one.answer is not None]
-    return [Stated(f"p <= {p:g}", len(found), _share([value <= p for value in found])) for p in STATED_P]
+    return [_stated(f"p <= {p:g}", p, [value <= p for value in found]) for p in STATED_P]
 
 
 def names_by_detectability(results: Sequence[Result]) -> list[Stated]:
@@ -42,9 +48,18 @@ def names_by_detectability(results: Sequence[Result]) -> list[Stated]:
     for low, high in pairwise(EDGES):
         inside = [right for d_prime, right in known if low <= d_prime < high]
         words = f"d' {low:g} .. {high:g}" if high < EDGES[-1] else f"d' >= {low:g}"
-        rows.append(Stated(words, len(inside), _share(inside)))
+        rows.append(_stated(words, low, inside))
     return rows
 
 
-def _share(values: Sequence[bool]) -> float:
-    return sum(values) / len(values) if values else float("nan")
+def interval(hits: int, count: int) -> tuple[float, float]:
+    """The 95 % interval of a share (Clopper and Pearson 1934)."""
+    low = float(beta.ppf(0.025, hits, count - hits + 1)) if hits else 0.0
+    high = float(beta.ppf(0.975, hits + 1, count - hits)) if hits < count else 1.0
+    return low, high
+
+
+def _stated(what: str, at: float, held: Sequence[bool]) -> Stated:
+    if not held:
+        return Stated(what, at, 0, float("nan"), float("nan"), float("nan"))
+    return Stated(what, at, len(held), sum(held) / len(held), *interval(sum(held), len(held)))

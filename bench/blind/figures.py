@@ -6,8 +6,8 @@ from math import nan
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.stats import beta
 
+from bench.blind.calibration import interval
 from bench.blind.judge import Result
 from bench.blind.lab_answer import LabAnswer
 from bench.blind.oracle import Standing
@@ -136,9 +136,7 @@ def _share(
     count, hits = len(among), sum(holds(one) for one in among)
     if not count:
         return Figure(what, asked, nan, nan, nan, 0, False)
-    # Clopper and Pearson 1934
-    low = float(beta.ppf(0.025, hits, count - hits + 1)) if hits else 0.0
-    high = float(beta.ppf(0.975, hits + 1, count - hits)) if hits < count else 1.0
+    low, high = interval(hits, count)
     measured = hits / count
     return Figure(what, asked, measured, low, high, count, measured <= limit if at_most else measured >= limit)
 

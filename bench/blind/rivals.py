@@ -4,10 +4,12 @@ All are given the lab's own filtered, weighted columns, its base model and its s
 """
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.stats import f as f_distribution
 
+from bench.blind import sindy
 from compensator.lab.candidates import Candidates
 from compensator.lab.evidence import Block
 from compensator.lab.linear import orthonormal
@@ -19,6 +21,9 @@ THRESHOLDS = np.geomspace(0.01, 1.0, 12)
 
 Rival = Callable[[Candidates], tuple[str, ...]]
 """Names what is missing, best first; nothing where nothing is."""
+
+Solve = Callable[[FloatArray, FloatArray, float], FloatArray]
+"""(unit columns, residual, threshold) -> sparse coefficients."""
 
 
 def plain_f(gathered: Candidates) -> tuple[str, ...]:
@@ -45,22 +50,45 @@ def stepwise_bic(gathered: Candidates) -> tuple[str, ...]:
     return tuple(named)
 
 
-def thresholded(gathered: Candidates) -> tuple[str, ...]:
-    """Sequentially thresholded least squares (STLSQ, Brunton et al. 2016), the threshold by BIC."""
+def thresholded(gathered: Candidates, solve: Solve) -> tuple[str, ...]:
+    """All columns at once, small coefficients thrown out; the threshold by the Bayesian information criterion."""
     blocks = _best_shapes(gathered)
     parts = [_projected(gathered, block)[0] for block in blocks]
     residual = gathered.bases[0].residual
     columns = np.column_stack([part / np.maximum(np.linalg.norm(part, axis=0), 1e-300) for part in parts])
     owner = np.repeat(np.arange(len(blocks)), [part.shape[1] for part in parts])
     scale = float(np.linalg.norm(residual))
-    tried = [_stlsq(columns, residual, threshold * scale) for threshold in THRESHOLDS]
+    tried = [solve(columns, residual, threshold * scale) for threshold in THRESHOLDS]
     best = min(tried, key=lambda coefficients: _bic(columns, residual, coefficients))
     weight = [float(np.linalg.norm(best[owner == index])) for index in range(len(blocks))]
     order = np.argsort(weight)[::-1]
     return tuple(blocks[index].name for index in order if weight[index] > 0.0)
 
 
-RIVALS: dict[str, Rival] = {"plain F-tests": plain_f, "stepwise BIC": stepwise_bic, "STLSQ with BIC": thresholded}
+def _stlsq(columns: FloatArray, residual: FloatArray, threshold: float) -> FloatArray:
+    kept = np.ones(columns.shape[1], dtype=bool)
+    coefficients = np.zeros(columns.shape[1])
+    for _ in range(columns.shape[1]):
+        coefficients[:] = 0.0
+        if kept.any():
+            coefficients[kept] = np.linalg.lstsq(columns[:, kept], residual, rcond=1e-9)[0]
+        small = kept & (np.abs(coefficients) < threshold)
+        if not small.any():
+            break
+        kept &= ~small
+    return coefficients
+
+
+def _rivals() -> dict[str, Rival]:
+    """Those that can be asked here: thresholding by pysindy where it is installed, else by the few lines above."""
+    solvers: dict[str, Solve] = {"STLSQ": _stlsq}
+    if sindy.is_installed():
+        solvers = {f"pysindy {name}": partial(sindy.coefficients_of, name) for name in sindy.OPTIMIZERS}
+    sparse = {f"{name} with BIC": partial(thresholded, solve=solve) for name, solve in solvers.items()}
+    return {"plain F-tests": plain_f, "stepwise BIC": stepwise_bic, **sparse}
+
+
+RIVALS: dict[str, Rival] = _rivals()
 
 
 def _projected(gathered: Candidates, block: Block) -> tuple[FloatArray, FloatArray]:
@@ -101,20 +129,6 @@ def _best_shapes(gathered: Candidates) -> list[Block]:
         if explained >= best.get(block.name, (0.0, block))[0]:
             best[block.name] = (explained, block)
     return [block for _, block in best.values()]
-
-
-def _stlsq(columns: FloatArray, residual: FloatArray, threshold: float) -> FloatArray:
-    kept = np.ones(columns.shape[1], dtype=bool)
-    coefficients = np.zeros(columns.shape[1])
-    for _ in range(columns.shape[1]):
-        coefficients[:] = 0.0
-        if kept.any():
-            coefficients[kept] = np.linalg.lstsq(columns[:, kept], residual, rcond=1e-9)[0]
-        small = kept & (np.abs(coefficients) < threshold)
-        if not small.any():
-            break
-        kept &= ~small
-    return coefficients
 
 
 def _bic(columns: FloatArray, residual: FloatArray, coefficients: FloatArray) -> float:

@@ -26,6 +26,7 @@ def blind(
     ] = None,
     workers: Workers = None,
     cluster: Cluster = None,
+    html: Annotated[Path | None, typer.Option(help="Write tables and calibration plots to this page, too.")] = None,
     as_json: Json = False,
 ) -> None:
     """Draw joints, hide mechanisms or nothing in them, record them, and ask the model lab what is missing.
@@ -37,6 +38,11 @@ def blind(
 
     items = items_of(seed, plants, only or ())
     done = run_items(items, results, progress, workers, cluster)
+    if html is not None:
+        from bench.blind.pictures import write_page
+
+        chosen = "".join(f" --only {name}" for name in only or ())
+        write_page(html, done, f"friction-bench blind --plants {plants} --seed {seed}{chosen}")
     if as_json:
         print_json(_as_json(done, seed, plants))
     else:

@@ -80,7 +80,7 @@ def _spectrum(dataset: Dataset, trial: Trial, residual: FloatArray) -> tuple[Flo
     """Frequencies [Hz] within the filter's band, and the residual's power there, the filter's own slope taken off."""
     times_s, rate_hz = dataset.time_of(trial), trial.signals.rate_hz
     period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0 / rate_hz
-    frequencies: FloatArray = np.fft.rfftfreq(len(residual), period_s)[1:]
+    frequencies: FloatArray = np.asarray(np.fft.rfftfreq(len(residual), period_s)[1:], dtype=np.float64)
     power: FloatArray = np.abs(np.fft.rfft(residual - residual.mean())[1:]) ** 2
     inside = frequencies < BANDS[-1] * min(dataset.cutoff_hz, 0.5 / period_s)
     frequencies, power = frequencies[inside], power[inside]
