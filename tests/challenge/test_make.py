@@ -48,7 +48,7 @@ def test_the_recordings_carry_no_trace_of_the_answer(tmp_path: Path) -> None:
 
 
 def as_asked(recording: Recording) -> dict[str, Condition]:
-    """The conditions less the time that the trials before took: joints settle sooner or later, as their columns show."""
+    """The conditions less the time that earlier trials took: joints settle sooner or later, as their columns show."""
     return {name: value for name, value in recording.conditions.items() if name != SESSION_START}
 
 
