@@ -9,7 +9,9 @@ from contextlib import contextmanager, nullcontext, suppress
 from typing import NamedTuple
 
 SWITCH_INTERVAL_S = 0.0001
-"""How long another thread of the process may keep the interpreter from the loop; Python's own is ten times that."""
+"""How long another thread of the process may keep the interpreter from the loop; Python's own is fifty times that.
+
+Shorter than the clock spins before a deadline: a loop that finds the interpreter taken when it wakes is in time."""
 
 PRIORITY = 10  # of SCHED_FIFO, 1 .. 99: above every ordinary program, below the kernel's own threads
 NICENESS = -10  # -20 .. 19: less is more of the processor
