@@ -16,7 +16,7 @@ def figures(
     first_seed: Annotated[int, typer.Option(min=1, help="The first; another one draws everything anew.")] = 1,
     as_json: Json = False,
 ) -> None:
-    """Measure the compensator's figures over many seeds and rigs, on all cores. Tens of minutes; nothing is kept."""
+    """Measure the compensator's figures over many seeds and rigs, on all cores. Minutes; nothing is kept."""
     from bench.figures import measure_figures
     from bench.figures.table import COLUMNS
 

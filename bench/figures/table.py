@@ -12,8 +12,8 @@ from bench.figures.rows import ASKED, BESIDE, Asked
 from bench.figures.trials import SeedResults
 
 COLUMNS = (
-    "quantity", "paper", "asked", "measured#", "worst seed#", "reached", "rigs: median#", "rigs: worst#",
-    "rigs: reached#",
+    "quantity", "paper", "asked", "measured#", "worst seed#", "reached", "rigs: mean#", "rigs: median#",
+    "rigs: worst#", "rigs: reached#",
 )  # fmt: skip
 
 
@@ -25,7 +25,7 @@ class FigureRow:
         name, unit, paper, asked, note: in words.
         measured, worst_seed: over the seeds of the rig of the paper.
         reached: None where nothing was asked.
-        rigs_median, rigs_worst, rigs_reached: over the drawn rigs; the share of them that reach it.
+        rigs_mean, rigs_median, rigs_worst, rigs_reached: over the drawn rigs; the share of them that reach it.
         seeds, rigs: how many gave a number.
     """
 
@@ -37,6 +37,7 @@ class FigureRow:
     measured: float
     worst_seed: float
     reached: bool | None
+    rigs_mean: float
     rigs_median: float
     rigs_worst: float
     rigs_reached: float
@@ -48,8 +49,8 @@ class FigureRow:
         name = f"{self.name} [{self.unit}]" if self.unit else self.name
         reached = "-" if self.reached is None else ("yes" if self.reached else "no")
         return (
-            name, self.paper, self.asked, self.measured, self.worst_seed, reached, self.rigs_median, self.rigs_worst,
-            f"{self.rigs_reached:.0%}" if not isnan(self.rigs_reached) else "-",
+            name, self.paper, self.asked, self.measured, self.worst_seed, reached, self.rigs_mean, self.rigs_median,
+            self.rigs_worst, f"{self.rigs_reached:.0%}" if not isnan(self.rigs_reached) else "-",
         )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
@@ -95,6 +96,7 @@ def _row(
         measured,
         _worst(asked, numbers),
         _reaches(asked, measured) if judged else None,
+        float(np.mean(drawn)) if drawn else nan,
         float(np.median(drawn)) if drawn else nan,
         _worst(asked, drawn),
         sum(reached) / len(reached) if reached and judged else nan,

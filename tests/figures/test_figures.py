@@ -66,9 +66,19 @@ def test_each_figure_is_taken_from_its_trials():
     assert row(rows, "steady speeds 100").measured == pytest.approx(0.2)
     assert row(rows, "sinusoid").measured == pytest.approx(0.05)
     assert row(rows, "95 %").measured == 100.0
+    assert row(rows, "that interval, 90 degrees").measured == 100.0
     assert row(rows, "time of a search").measured == pytest.approx(0.25)
     assert row(rows, "error rms of that search").measured == pytest.approx(0.5)
     assert row(rows, "steady speeds: mean absolute error of each").measured == pytest.approx(0.5)
+
+
+def test_a_load_that_hangs_straight_down_is_left_out_of_the_interval_at_90_degrees():
+    seed = results(held=False)
+    _, hanging = seed.results["loads"]["rows"]
+    hanging["load_interval_a"] = [-0.01, 0.01]
+    rows = table(seed)
+    assert row(rows, "95 %").measured == 50.0
+    assert row(rows, "that interval, 90 degrees").measured == 0.0
 
 
 def test_the_mean_of_the_seeds_and_the_worst_of_them():
