@@ -38,12 +38,6 @@ class GearLoss:
         if self.back_driving >= 1.0:
             raise ModelParameterError(f"back_driving is {self.back_driving}; allowed is below 1: the gear locks itself")
 
-    @property
-    def behind_a(self) -> float:
-        """f, friction behind the teeth [A]; 0 where they lose nothing, and so do not tell."""
-        lost = self.driving + self.back_driving
-        return self.carried_a / lost if lost > 0.0 else 0.0
-
     def load_current_a(self, current_a: float, direction: float) -> float:
         """I_load [A] from what is left of the motor current when the balanced joint's friction is taken off.
 

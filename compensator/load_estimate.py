@@ -6,7 +6,6 @@ from math import inf, nan
 from typing import NamedTuple
 
 from compensator.joint_model import JointUnderLoad
-from compensator.teeth import Teeth
 
 
 class Branch(Enum):
@@ -19,7 +18,6 @@ class Branch(Enum):
     LEAVING = "leaving what it leant on"
     MOVING = "in motion"
     TURNING = "turning, or setting off"
-    CROSSING = "teeth crossing the free play"
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +118,6 @@ class EstimatorState(NamedTuple):
     estimate: LoadEstimate = LoadEstimate(nan, inf, Branch.LOST)
     known_a: float = nan  # what was given out, less the load's gravity by the model
     offset_a: float = 0.0  # of the output over the present branch's own value
-    teeth: Teeth = Teeth()
     leant: bool = False  # it has been stuck, and not come into motion since
     mean_a: float = nan  # of `known_a` in motion, and its variance, over the last few windows
     variance_a2: float = 0.0

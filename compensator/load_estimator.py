@@ -7,7 +7,6 @@
                 the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
     leaving     moving back from what it was stuck against: the weight alone, since a wall cannot pull
-    crossing    the teeth change flanks by the model, where gravity and inertia change sign, or have just done so: held
     turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
                 the joint stands
 
@@ -29,7 +28,6 @@ from compensator.load_estimate import (
     RestResult,
 )
 from compensator.local_motion import Window, window
-from compensator.teeth import Teeth, follow
 
 __all__ = [
     "Branch", "EstimatorSettings", "EstimatorState", "JointModel", "LoadEstimate", "Observation", "RestResult",
@@ -38,7 +36,6 @@ __all__ = [
 
 BAND = 1.96  # standard deviations in half of a 95 % interval
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
-TEETH_READINGS = 10  # that acceleration is taken from to say which flank the teeth touch
 UNEXPLAINED = 0.25  # of what the weight takes at 90 degrees: with more, the arm leans on something
 TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
@@ -57,7 +54,6 @@ def advance(
         return _lose(state)
     joint, state = _joint(model, state, observation)
     state = _remember(settings, _track(settings, state, observation), observation)
-    state = _cross(joint, settings, state)
     branch = _branch(joint, settings, state, observation)
     state = state._replace(leant=branch is Branch.STUCK or (state.leant and branch is not Branch.MOVING))
     own = _own(branch, joint, settings, state, observation)
@@ -105,24 +101,8 @@ def _remember(settings: EstimatorSettings, state: EstimatorState, observation: O
     )
 
 
-def _cross(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState) -> EstimatorState:
-    """Where the teeth are, by what is known of the load and how the motor moved lately."""
-    if len(state.positions_rad) < TEETH_READINGS or state.still_cycles > settings.rest_cycles:
-        return state._replace(teeth=Teeth())
-    averages = window(TEETH_READINGS, settings.period_s)
-    motion = averages.motion(state.positions_rad[-TEETH_READINGS:])
-    inertia = joint.arm_inertia_a_s2_rad
-    if inertia == 0.0 or settings.free_play_rad == 0.0 or not _explained(joint, state):
-        return state._replace(teeth=Teeth())
-    load_a = joint.gravity_at(motion.position_rad) + (0.0 if isnan(state.known_a) else state.known_a)
-    torque_a = load_a + inertia * motion.acceleration_rad_s2 + state.direction * joint.gear_loss.behind_a
-    unsure_a = BAND * inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
-    teeth = follow(state.teeth, torque_a, unsure_a, inertia, settings.free_play_rad, settings.period_s)
-    return state._replace(teeth=teeth)
-
-
 def _explained(joint: JointUnderLoad, state: EstimatorState) -> bool:
-    """Whether the weight on the arm is nearly all of its load: only that may be held while the teeth cross."""
+    """Whether the weight on the arm is nearly all of its load."""
     return joint.gravity_a > 0.0 and not abs(state.known_a) > UNEXPLAINED * joint.gravity_a
 
 
@@ -141,7 +121,7 @@ def _branch(
     window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
     if not window_moves or travel_rad <= settings.free_play_rad:
         return Branch.LEAVING if _leaves(joint, settings, state) else Branch.TURNING
-    return Branch.MOVING if state.teeth.touch_since(settings.window) else Branch.CROSSING
+    return Branch.MOVING
 
 
 def _leaves(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState) -> bool:

@@ -15,14 +15,9 @@ from bench.store import Store
 
 RIGHT_ANGLE_RAD = pi / 2
 CALIBRATED_KG = (0.0, 0.03, 0.06, 0.1)
-# a servo that holds a speed keeps the balanced arm rattling in its free play, and rattling teeth rub more: at more
-# than a creep a current is held, under which the joint gains speed and its teeth stay together
-HELD_RAD_S = (0.05, 0.1, 0.2, 0.35, 0.6, 1.0)
-HELD_A = (0.15, 0.25, 0.4, 0.6, 0.8)
+HELD_RAD_S = (0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.8, 3.0, 4.5, 5.8)
 CALIBRATION = (
-    Measurement(
-        "speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": HELD_A, "speeds_rad_s": HELD_RAD_S, "strokes": 2}
-    ),
+    Measurement("speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": (), "speeds_rad_s": HELD_RAD_S}),
     Measurement("load-sweep", {"loads_kg": CALIBRATED_KG, "angles_rad": (0.0, RIGHT_ANGLE_RAD), "searches": 5}),
 )
 TRIALS = {

@@ -99,26 +99,6 @@ def test_gravity_by_the_model_makes_up_for_the_age_of_the_estimate():
     assert late_a == pytest.approx(-0.3 * cos(seen[-1].position_rad) * 2.0 * SETTINGS.latency_s, rel=0.3)
 
 
-def test_while_the_teeth_cross_the_free_play_the_load_is_held():
-    """The arm swings past the bottom and falls through the free play: the motor then has its own friction alone."""
-    weigh, seen, cycle = replace(MODEL, gravity_a=(0.3, 0.3)), [], 0
-    crossed = range(200, 225)  # 0.12 s at 1 rad/s
-    for cycle in range(400):
-        angle_rad = 1.0 * cycle * PERIOD_S - 1.0
-        load_a = 0.0 if cycle in crossed else 0.3 * sin(angle_rad)
-        seen.append(Observation(counted(angle_rad), motor_current_a(load_a, 1.0, 0.0)))
-    seen[0] = seen[0]._replace(rest=RestResult(0.3 * sin(-1.0), 0.005, 0.1))
-    estimates = follow(seen, weigh)
-    assert estimates[190].branch is Branch.MOVING
-    assert estimates[230].branch is Branch.CROSSING
-    assert estimates[-1].branch is Branch.MOVING  # and it comes back
-    errors = [abs(one.load_current_a - 0.3 * sin(seen[at].position_rad)) for at, one in enumerate(estimates)]
-    assert max(errors[150:]) < 5e-3
-    loose = follow(seen, weigh, replace(SETTINGS, free_play_rad=0.0))
-    missed = [abs(one.load_current_a - 0.3 * sin(seen[at].position_rad)) for at, one in enumerate(loose)]
-    assert max(missed[150:]) > 5e-3  # so it would be without
-
-
 def test_a_push_is_dropped_as_the_joint_moves_back_from_what_it_leant_on():
     weigh = replace(MODEL, gravity_a=(0.1, 0.1))
     pressed = [Observation(0.5, 0.9, target_rad=0.6)] * 200
