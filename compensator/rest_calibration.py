@@ -108,7 +108,8 @@ class RestCalibration:
     def estimate(self, found: BreakawayFit) -> RestEstimate:
         """Load and friction from the breakaways of one search."""
         free_a = found.load_current_a.value - self.asymmetry * found.friction_current_a.value
-        touches = 1.0 if abs(free_a) > self._least_a / 2.0 else 0.0
+        # either constant tells of the friction behind the teeth, and each is told badly: the larger counts
+        touches = 1.0 if abs(free_a) > max(self._least_a / 2.0, 2.0 * self.step_a) else 0.0
         half_a = self._half_a(found, touches, abs(free_a))
         load_a = self._load_a(found.load_current_a.value, half_a) if touches else 0.0
         friction_a = max(half_a - self.slope * abs(load_a) - self.offset_a * touches, 0.0)
