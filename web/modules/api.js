@@ -65,6 +65,11 @@ export async function post(path, body = {}, timeout_ms = 0) {
   return (await request(path, options)).json();
 }
 
+export async function patch(path, body) {
+  const options = { method: "PATCH", headers: headers({ "Content-Type": "application/json" }), body: JSON.stringify(body) };
+  return (await request(path, options)).json();
+}
+
 export async function upload(path, file, query = {}) {
   const options = { method: "POST", headers: headers({ "Content-Type": "application/zip" }), body: file };
   return (await request(`${path}?${new URLSearchParams(query)}`, options)).json();

@@ -51,7 +51,7 @@ export class Form {
 }
 
 // pydantic writes optional values as anyOf with null, and enums as references
-function resolve(property, schema) {
+export function resolve(property, schema) {
   const { anyOf, allOf, $ref, ...rest } = property;
   const options = (anyOf ?? allOf ?? []).filter((option) => option.type !== "null");
   const inner = options.length ? resolve(options[0], schema) : {};
@@ -81,7 +81,7 @@ function read(kind, input) {
   return numeric(kind) ? numberOrText(text) : text;
 }
 
-function numberOrText(text) {
+export function numberOrText(text) {
   const value = Number(text);
   return Number.isFinite(value) ? value : text;
 }

@@ -36,6 +36,12 @@ export function interval(value, low, high, show = percent) {
   return low === null || low === undefined ? show(value) : `${show(value)} (${show(low)} to ${show(high)})`;
 }
 
+// a time as people say it
+export function duration(time_s) {
+  if (time_s < 90) return `${number(Math.round(time_s))} s`;
+  return time_s < 5400 ? `${number(Math.round(time_s / 60))} min` : `${number(time_s / 3600, 2)} h`;
+}
+
 export function conditions(values) {
   return Object.entries(values ?? {}).map(([name, value]) => {
     if (value === true) return nameOf(name);

@@ -5,13 +5,14 @@ import { benchView } from "./bench.js";
 import { learnView } from "./learn.js";
 import { Live } from "./live.js";
 import { promptBar } from "./prompt.js";
+import { queueView } from "./queueview.js";
 import { statusBar } from "./status.js";
 import { stopButton } from "./stop.js";
 import { studiesView } from "./studies.js";
 import { tokenForm } from "./token.js";
 import { trialsView } from "./trials.js";
 
-const VIEWS = { bench: benchView, trials: trialsView, study: studiesView, learn: learnView };
+const VIEWS = { bench: benchView, queue: queueView, trials: trialsView, study: studiesView, learn: learnView };
 const live = new Live();
 let leave = () => {};
 
