@@ -2,8 +2,10 @@
 
 import asyncio
 import json
+import time
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import anyio.to_thread
@@ -22,7 +24,7 @@ from bench.store.errors import StoreError
 
 PERIOD_S = 0.025  # shorter than a block of the recorder: each is told by itself
 STATUS_LOOKED_AT = 2  # periods: whether it is new
-STATUS_EVERY = 20  # periods; in between, only what is new is sent
+STATUS_EVERY_S = 0.5  # in between, only what is new is sent
 ALL_ROWS = 10**6  # more than the live buffer keeps
 
 
@@ -50,7 +52,7 @@ class LiveEvents:
             yield event
 
     async def _coming(self, after_row: int, limit: int) -> AsyncIterator[str]:
-        shown, period = "", 0
+        shown, period, told_s = "", 0, -inf
         while not self.state.ending:
             found = self.runner.live(after_row, limit)
             if len(found.rows) or (found.restarted and found.last_row != after_row):
@@ -59,8 +61,8 @@ class LiveEvents:
             if period % STATUS_LOOKED_AT == 0:
                 status = self._status()
                 key = _without_progress(status)
-                if key != shown or period % STATUS_EVERY == 0:
-                    shown = key
+                if key != shown or time.monotonic() - told_s >= STATUS_EVERY_S:
+                    shown, told_s = key, time.monotonic()
                     yield _event("status", json.dumps(status))
             period += 1
             await asyncio.sleep(PERIOD_S)

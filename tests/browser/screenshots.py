@@ -84,12 +84,13 @@ def _challenge(page: Any, shot: Callable[[str], None], service: Any) -> str:
     page.locator("article .js-plotly-plot").first.wait_for()
     page.locator("article").first.scroll_into_view_if_needed()
     shot("diagnosis")
+    named = page.locator("article").first.get_attribute("aria-label")
     page.locator("article").first.get_by_role("button", name="Add").click()
     page.get_by_role("button", name="Undo this change").wait_for()
     shot("error-before-and-after")
     page.get_by_role("link", name="Learn").click()
     page.get_by_role("button", name="Guess at challenge").first.click()
-    page.get_by_label("or what a study added and found").select_option(label=f"{study.split('/')[1]}: what is hidden?")
+    page.get_by_label("I say").select_option(label=named)
     page.get_by_role("button", name="Reveal").click()
     page.get_by_text("hidden", exact=False).last.wait_for()
     page.locator("[role=status]").last.scroll_into_view_if_needed()
@@ -98,7 +99,7 @@ def _challenge(page: Any, shot: Callable[[str], None], service: Any) -> str:
 
 
 def _every_view(page: Any, folder: Path, name: str, study: str) -> None:
-    for view in ("#bench", "#trials", "#study", study, "#learn", "#learn/backlash"):
+    for view in ("#bench", "#queue", "#trials", "#study", study, "#learn", "#learn/backlash"):
         page.evaluate("(hash) => { location.hash = hash; }", view)
         page.locator("main .panel").first.wait_for()
         page.wait_for_timeout(2500)  # plots are drawn one after the other

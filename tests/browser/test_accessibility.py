@@ -5,7 +5,7 @@ import pytest
 from tests.service.recorded_joint import recording_set_zip
 
 pytestmark = pytest.mark.browser
-VIEWS = ("#bench", "#trials", "#study", "#learn", "#learn/backlash")
+VIEWS = ("#bench", "#queue", "#trials", "#study", "#learn", "#learn/backlash")
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +38,10 @@ def test_no_view_breaks_a_rule(axe, open_page, study, width, scheme):
         page.locator("main .panel").first.wait_for()
         for busy in page.locator("main .busy").all():
             busy.wait_for(state="detached")
+        if view == "#queue":
+            page.get_by_label("Values of parameter 1").fill("0, 0.1")
+            page.get_by_role("button", name="Plan", exact=True).click()
+            page.locator("[aria-label='Plan of the campaign']").wait_for()
         if view == "#trials":
             page.get_by_role("button", name="Plot trial").first.click()
             page.get_by_role("group", name="Channels of trial").locator(".legend-entry").first.wait_for()

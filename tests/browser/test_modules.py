@@ -1,5 +1,6 @@
 """The modules of the page that compute, called in the browser itself."""
 
+import json
 import math
 
 import pytest
@@ -106,6 +107,49 @@ def test_a_view_stays_within_what_there_is(call):
     assert call("view", "m.zoomed([0, 4], 0.5, 1, [0, 4])") == [0.5, 2.5]
     assert call("view", "m.zoomed([1, 3], 10, 2, [0, 4])") == [0, 4]
     assert call("view", "m.whole([{x: [1, 5]}, {x: [0, 2]}, {x: []}])") == [0, 5]
+
+
+def test_what_a_kind_shows_is_made_from_its_trials(call):
+    broken = {
+        "breakaways": [
+            {"direction": 1, "current_a": 0.2},
+            {"direction": -1, "current_a": -0.1},
+            {"direction": 1, "current_a": None},
+        ]
+    }
+    trial = {"conditions": {"rate_a_s": 0.3, "dwell_s": 2}, "results": broken}
+    groups = call("figurekinds", f"m.FIGURES['breakaway-ramps']([{json.dumps(trial)}]).groups")
+    assert [(one["name"], one["x"], one["y"]) for one in groups] == [
+        ("after 2 s at rest, up", [0.3], [0.2]),
+        ("after 2 s at rest, down", [0.3], [0.1]),
+    ]
+    swept = [
+        {"conditions": {"load_kg": 0.1}, "results": {"motor_speed_rad_s": 9, "current_a": 0.2, "saturated": steady}}
+        for steady in (True, False)
+    ]
+    assert call("figurekinds", f"m.FIGURES['speed-sweep']({json.dumps(swept)}).groups[0].symbol") == [
+        "circle",
+        "circle-open",
+    ]
+    told = [
+        {"conditions": {"reflect": "raw", "repeat": 1}, "results": {"reflected_error_rms_g": 50}},
+        {"conditions": {}, "results": {}},
+    ]
+    assert call("figurekinds", f"m.FIGURES.teleoperation({json.dumps(told)}).groups.map((one) => one.y)") == [[50]]
+    for kind in call("figurekinds", "Object.keys(m.FIGURES)"):
+        assert call("figurekinds", f"m.FIGURES['{kind}']([]).groups.every((one) => !one.x.length)"), kind
+
+
+def test_trials_are_chosen_by_what_they_differ_in(call):
+    trials = [{"name": f"t{n}", "kind": "steps", "conditions": {"load_kg": n / 10, "arm_m": 0.5}} for n in range(3)]
+    choice = f"const choice = new m.TrialChoice(m.used); choice.show({json.dumps(trials)});"
+    assert call("trialchoice", f"m.groupsOf({json.dumps(trials)})") == [
+        ["load_kg", [0, 0.1, 0.2]],
+        ["trial", ["t0", "t1", "t2"]],
+    ]
+    assert call("trialchoice", f"{{ {choice} return choice.unlessAll(); }}") == []
+    left_out = "choice.element.querySelector('[value=\\'load_kg=0.1\\']').checked = false;"
+    assert call("trialchoice", f"{{ {choice} {left_out} return choice.unlessAll(); }}") == ["load_kg=0,0.2"]
 
 
 def test_events_become_marks(call):

@@ -118,10 +118,10 @@ def test_the_page_says_when_the_service_is_gone(service, open_page):
 @pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (400, "dark")])
 def test_every_view_fits_and_keeps_stop_in_reach(open_page, width, scheme):
     page = open_page(width=width, scheme=scheme)
-    for name in ("Bench", "Trials", "Study", "Learn"):
+    for name in ("Bench", "Queue", "Trials", "Study", "Learn"):
         page.get_by_role("link", name=name, exact=True).click()
         page.locator("main .panel").first.wait_for()
-        page.wait_for_timeout(300)
+        page.locator("main .panel :is(input, table, .soft)").first.wait_for()
         assert page.evaluate("document.documentElement.scrollWidth") <= width, name
         page.mouse.wheel(0, 2000)
         stop = page.get_by_role("button", name="STOP").bounding_box()

@@ -35,16 +35,21 @@ def test_trials_are_found_laid_over_each_other_and_read_closer(service, open_pag
     page.locator("[aria-label^='Load sweep'] .trace").first.wait_for()
 
 
-def test_a_chart_is_moved_by_the_keyboard(open_page, experiment):
+FRAME = "() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))"
+
+
+def test_a_chart_is_moved_by_the_keyboard_and_shows_the_load_with_its_band(open_page, experiment):
     page = open_page("#trials")
+    page.get_by_role("button", name=f"Trials of experiment {experiment}", exact=True).click()
     page.get_by_role("button", name="Plot trial").first.click()
+    page.get_by_role("group", name="Channels of trial").get_by_text("load (band: 95 %)").wait_for()
     chart = page.get_by_role("group", name="Channels of trial").get_by_role("img")
     chart.focus()
     before = chart.screenshot()
     page.keyboard.press("+")
-    page.wait_for_timeout(300)
+    page.evaluate(FRAME)
     closer = chart.screenshot()
     assert closer != before
     page.keyboard.press("ArrowRight")
-    page.wait_for_timeout(300)
+    page.evaluate(FRAME)
     assert chart.screenshot() != closer

@@ -17,7 +17,7 @@ export function benchView(place, { live }) {
   const queue = h("div");
   const drive = h("div");
   const plot = h("div");
-  replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, start), h("div", { class: "wide" }, panel("Live", plot)),
+  replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
     panel("Queue", queue), panel("Drive and limits", drive)));
   const waiting = queuePanel(queue);
   startForm(start, live, () => waiting.refresh());

@@ -11,6 +11,17 @@ import { Stretches } from "./stretches.js";
 const SETTLED_MS = 150;
 const DASHES = [undefined, [6, 4], [2, 3], [9, 3, 2, 3]];
 
+// the load's share of the current that the search found, with its 95 % interval, from when it was found
+export function loadFound(trial, end_s, row) {
+  const { load_current_a: current_a, load_interval_a: interval } = trial.results ?? {};
+  const found = marksOf(trial.events).findLast((mark) => mark.kind === "estimate");
+  if (typeof current_a !== "number" || !interval || !found) return null;
+  const x = [found.x, end_s];
+  const level = (value) => [value, value];
+  return { line: { row, name: "load (band: 95 %)", x, y: level(current_a), colour: "sky", width: 3 },
+    band: { row, x, low: level(interval[0]), high: level(interval[1]), colour: "sky" } };
+}
+
 export class Overlay {
   #stretches = new Map(); // trial -> Stretches
   #shown = []; // what is drawn of each trial
@@ -99,7 +110,9 @@ export class Overlay {
           colour: SERIES[(several ? index : at) % SERIES.length], dash: several ? DASHES[at % DASHES.length] : undefined };
       });
     });
-    this.chart.show({ rows: units.map((title) => ({ title })), lines, limits, xTitle: "time in the trial [s]",
+    const load = several || !units.includes("A") ? null : loadFound(this.trials[0], limits[1], units.indexOf("A"));
+    if (load) lines.push(load.line);
+    this.chart.show({ rows: units.map((title) => ({ title })), lines, limits, bands: load ? [load.band] : [], xTitle: "time in the trial [s]",
       marks: several ? [] : marksOf(this.trials[0].events).filter((mark) => mark.letter) });
   }
 

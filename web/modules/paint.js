@@ -84,7 +84,7 @@ function grid(context, box, range, view, theme, last) {
   }
   context.textAlign = "center";
   context.textBaseline = "top";
-  const along = ticks(...view, Math.max(2, Math.round((box.right - box.left) / 110)));
+  const along = ticks(...view, Math.max(2, Math.round((box.right - box.left) / 80)));
   for (const value of along) {
     const x = Math.round(xOf(value, view, box)) + 0.5;
     path(context, x, box.top, x, box.bottom, theme.line);

@@ -2,7 +2,8 @@
 
 import { h } from "./dom.js";
 
-const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"] };
+// nothing of a bench leaves it: no button that sends a chart to somebody else's server
+const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"], showSendToCloud: false, plotlyServerURL: "" };
 
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

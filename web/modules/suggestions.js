@@ -1,4 +1,4 @@
-// Which trials would separate the rivals of a diagnosis: ask, start them one by one, and add them to the study.
+// Which trials would separate the rivals of a diagnosis: ask, queue them or start one, and add them to the study.
 
 import { post } from "./api.js";
 import { h, replace, table } from "./dom.js";
@@ -22,6 +22,11 @@ function show(place, path, found, extended) {
     const made = await attempt(started, () => post("/experiments", { kind: one.kind, parameters: one.parameters, note: found.note }), { button });
     if (made) replace(started, h("div", { class: "good", role: "status" }, `Experiment ${made.experiment_id} has started. When it has ended, start the next, or add what was recorded.`));
   };
+  const items = found.trials.map(({ kind, parameters }) => ({ kind, parameters, note: found.note }));
+  const queue = h("button", { type: "button", class: "primary", onclick: async ({ currentTarget: button }) => {
+    const queued = await attempt(started, () => post("/queue", { items }), { button });
+    if (queued) replace(started, h("div", { class: "good", role: "status" }, `${queued.item_ids.length} in the queue. When they have ended, add what was recorded.`));
+  } }, "Queue all of them");
   const add = h("button", { type: "button", onclick: async ({ currentTarget: button }) => {
     const result = await attempt(added, () => post(`${path}/trials`, {}), { button, busy: "Fitting …" });
     if (result) await extended(result.sentence);
@@ -31,7 +36,7 @@ function show(place, path, found, extended) {
     { title: "Minutes", number: true, cell: (one) => number(one.minutes, 2) },
     { title: "Why", cell: (one) => one.sentence },
     { title: "", cell: (one) => h("button", { type: "button", class: "small", "aria-label": `Start ${one.kind}: ${words(one.parameters)}`, onclick: start(one) }, "Start") },
-  ], found.trials), started, found.trials.length > 0 && h("div", { class: "row" }, add), added);
+  ], found.trials), found.trials.length > 0 && h("div", { class: "row" }, queue, add), started, added);
 }
 
 function words(parameters) {

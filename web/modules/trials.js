@@ -18,7 +18,6 @@ export function trialsView(place) {
   const [experiments, list, detail, figure, curves] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
   const filter = { experiment_id: "", outcome: "" };
   let trials = [];
-  let kinds = new Map();
   let plotted = null;
   const words = h("input", { type: "search", id: "trial-search", placeholder: "name, kind, condition …", oninput: () => shown() });
   const change = (name) => ({ target }) => {
@@ -36,7 +35,7 @@ export function trialsView(place) {
   const show = () => attempt(list, async () => {
     trials = (await get("/trials", { ...filter, limit: MOST })).items;
     shown();
-    await figureOf(figure, filter.experiment_id ? kinds.get(Number(filter.experiment_id)) : null, trials);
+    await figureOf(figure, filter.experiment_id ? kindOf(trials) : null, trials);
   });
   const choose = (id) => {
     filter.experiment_id = String(id);
@@ -45,7 +44,6 @@ export function trialsView(place) {
   };
   const refresh = () => attempt(experiments, async () => {
     const { items } = await get("/experiments", { limit: 100 });
-    kinds = new Map(items.map((one) => [one.experiment_id, one.kind]));
     replace(experiments, experimentTable(items, choose));
     const latest = items.find((one) => one.outcome !== "refused");
     await (latest ? choose(latest.experiment_id) : show());
@@ -54,6 +52,12 @@ export function trialsView(place) {
   refresh();
   calibrations(curves);
   return () => plotted?.close();
+}
+
+// of all of them, whatever they came in by
+function kindOf(trials) {
+  const kinds = new Set(trials.map((trial) => trial.kind));
+  return kinds.size === 1 ? [...kinds][0] : null;
 }
 
 function experimentTable(items, choose) {
