@@ -25,7 +25,7 @@ export async function campaignForm(place, live, queued) {
   let grid;
   const choose = () => {
     const { parameters } = kinds.find((one) => one.name === kind.value);
-    form = new Form(parameters, "campaign");
+    form = new Form(parameters, "shared");
     grid = new Grid(parameters);
     replace(shared, form.element);
     replace(varied, grid.element);
