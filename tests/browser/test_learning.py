@@ -35,7 +35,7 @@ def test_a_challenge_is_made_guessed_at_and_revealed(open_page, monkeypatch):
     page.get_by_role("button", name="New challenge").click()
     page.get_by_text("is ready. Make a study of experiment").wait_for()
     page.get_by_role("link", name="Study challenge").first.click()
-    page.locator("fieldset input:checked").wait_for()
+    page.locator("fieldset input:checked").first.wait_for()
     page.get_by_role("link", name="Learn").click()
     page.get_by_role("button", name="Guess at challenge").first.click()
     page.get_by_label("I say").select_option("nothing")
