@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from bench.blind.memory_protocol import memory_protocol
 from bench.challenge.hidden_plant import MECHANISMS, DrawnPlant, Wanted, draw_plant
 from bench.challenge.names import ABSORBED, ACCEPTED, accepted
 from bench.challenge.session import Protocol
+from bench.configuration import BenchConfiguration
 from bench.errors import ParameterError
 
 MEMORY = ("bristle", "backlash", "dwell", "shaft")
@@ -117,15 +119,13 @@ def draw_item(item: Item, attempt: int) -> DrawnPlant:
     return draw_plant(int(random.integers(2**31)), wanted)
 
 
-def protocol_of(item: Item, heaviest_kg: float, top_rad_s: float) -> Protocol:
-    """What is recorded: three loads and all motions; for memory, reversals and steps."""
+def protocol_of(item: Item, heaviest_kg: float, top_rad_s: float, configuration: BenchConfiguration) -> Protocol:
+    """What is recorded: three loads and all motions; for memory, what shows rests, starts, reversals and twist."""
+    if FAMILIES[item.family].memory:
+        return memory_protocol(configuration, heaviest_kg, top_rad_s, DURATION_S)
     loads: dict[str, Any] = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4), heaviest_kg], "repeats": 1}
     motions = {**loads, "speed_rad_s": round(top_rad_s, 2), "duration_s": DURATION_S}
     if FAMILIES[item.family].settled:
         few = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4)], "waveforms": ["slow-sine", "multisine", "triangles"]}
         return [("excitation", {**motions, **few})]
-    if not FAMILIES[item.family].memory:
-        return [("excitation", motions)]
-    shown = ["slow-sine", "small-sine", "sweep", "triangles"]
-    steps = {"load_kg": heaviest_kg, "repeats": 4, "fastest_rad_s": round(top_rad_s, 2)}
-    return [("excitation", {**motions, "waveforms": shown}), ("steps", steps)]
+    return [("excitation", motions)]

@@ -20,6 +20,7 @@ from bench.configuration import BenchConfiguration
 from bench.errors import ExperimentError, LimitError
 from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import effect_named
+from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
 from compensator.lab.fit import Fit, fit_effects, widened
 from compensator.lab.recording import Recording
@@ -132,7 +133,7 @@ def _bench(item: Item, drawn: DrawnPlant, without: str | None) -> BenchConfigura
 def _record(item: Item, drawn: DrawnPlant, attempt: int, without: str | None) -> list[Recording]:
     configuration = _bench(item, drawn, without)
     random = np.random.default_rng((item.seed, attempt, 1))
-    protocol = protocol_of(item, drawn.joint.heaviest_kg, drawn.joint.top_rad_s)
+    protocol = protocol_of(item, drawn.joint.heaviest_kg, drawn.joint.top_rad_s, configuration)
     if not FAMILIES[item.family].imperfect:
         return record(configuration, protocol)
     return worn(record(_late(configuration, float(random.uniform(*DELAY_S))), protocol), random)
@@ -162,7 +163,7 @@ def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[S
 
 def _judged(fit: Fit, base: Candidates, others: list[str], name: str) -> Candidates:
     """What a model with the others may be missing, on the rows where the effect shows."""
-    show_in = effect_named(name).rows
+    show_in: MotionRows = "sliding" if effect_named(name).rows == "sliding" else "moving"
     if not others and show_in == base.show_in:
         return base
     rest = fit_effects(fit.dataset, [*fit.names, *others], fit.training)

@@ -85,8 +85,9 @@ def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -
 
 def _sentence(candidate: diagnosis.Candidate) -> str:
     gain = candidate.gain
+    of = " of the breakaway effort" if candidate.rows == "breakaway" else ""
     parts = [
-        f"held-out error {candidate.before:.2%} to {candidate.after:.2%} "
+        f"held-out error{of} {candidate.before:.2%} to {candidate.after:.2%} "
         f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%})"
     ]
     if candidate.score <= 0.0:

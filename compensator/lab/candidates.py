@@ -8,7 +8,7 @@ import numpy as np
 
 from compensator.lab import catalogue
 from compensator.lab.dataset import Dataset
-from compensator.lab.effects.effect import Effect, EffectRows, Shape
+from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.evidence import Base, Block
 from compensator.lab.fit import Fit
@@ -61,7 +61,7 @@ class Candidates:
     """
 
     fit: Fit
-    show_in: EffectRows
+    show_in: MotionRows
     rows: BoolArray
     weights: FloatArray
     bases: list[Base]
@@ -74,7 +74,7 @@ class Candidates:
         return replace(self, bases=[base.extended(block.columns) for base in self.bases])
 
 
-def gather(fit: Fit, show_in: EffectRows = "sliding") -> Candidates:
+def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
     """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.
 
     Args:
@@ -92,7 +92,7 @@ def gather(fit: Fit, show_in: EffectRows = "sliding") -> Candidates:
 
 
 class _Builder:
-    def __init__(self, fit: Fit, show_in: EffectRows, rows: BoolArray, weights: FloatArray) -> None:
+    def __init__(self, fit: Fit, show_in: MotionRows, rows: BoolArray, weights: FloatArray) -> None:
         self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
         self._nuisance = nuisance_columns(fit.dataset, show_in)
         self._model = model_columns(fit)

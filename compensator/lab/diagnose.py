@@ -7,11 +7,13 @@ shapes), does it help (held-out error, resampled by whole trials).
 
 import numpy as np
 
+from compensator.lab.breakaway_family import breakaway_answer
+from compensator.lab.breakaway_rows import breakaway_rows
 from compensator.lab.candidates import gather
 from compensator.lab.catalogue import candidates, catalogue, effect_named
 from compensator.lab.data_checks import data_problems
 from compensator.lab.diagnosis import Candidate, Diagnosis
-from compensator.lab.effects.effect import EffectRows
+from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.evidence import screen
 from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
@@ -24,8 +26,9 @@ FEWEST_REVERSAL_ROWS = 40
 def diagnose(fit: Fit) -> Diagnosis:
     """Diagnose a fitted model on its training rows.
 
-    Three families are judged one after the other: effects of the joint that show in steady sliding; effects with
-    memory, which live near reversals and starts; effects of the measuring chain. The first that has something missing
+    Four families are judged one after the other: effects of the joint that show in steady sliding; effects with
+    memory, which live near reversals and starts; effects that show in the effort of breaking away from rest; effects of
+    the measuring chain. The first that has something missing
     is the answer, the others are notes: while something large is missing, the smaller may be its shadow.
 
     Raises:
@@ -43,10 +46,11 @@ def diagnose(fit: Fit) -> Diagnosis:
     steady = answer_of(fit, gathered, screen(gathered.bases, physical, stretch), generic)
     chain = answer_of(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
     memory, not_judged = _memory(fit)
-    families = [steady, *([memory] if memory else []), chain]
+    rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit))
+    families = [steady, *(answer for answer in (memory, rest) if answer is not None), chain]
     first = _first_of(families)
     others = [answer for answer in families if answer is not first]
-    ranked = [candidate for answer in (first, *others) for candidate in answer.candidates]
+    ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [answer.sentence for answer in others if answer.verdict == "missing"]
     return Diagnosis(
         verdict=first.verdict,
@@ -56,13 +60,13 @@ def diagnose(fit: Fit) -> Diagnosis:
         candidates=ranked,
         driver=first.driver,
         data_problems=data_problems(fit),
-        notes=[*first.notes, *notes],
-        left_out={**gathered.left_out, **not_judged},
+        notes=[*first.notes, *notes, *(rest.notes if rest is not None and rest is not first else [])],
+        left_out={**gathered.left_out, **not_judged, **not_at_rest},
         remains=first.remains or (first.verdict == "nothing" and steady.remains),
     )
 
 
-def best_named(fit: Fit, show_in: EffectRows) -> str | None:
+def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     """The effect of one family that the rows speak for most, by score alone; None where none can be judged."""
     rows = fit.dataset.choice_for([effect for effect in catalogue().values() if effect.rows == show_in])
     gathered = gather(widened(fit, rows), show_in)
@@ -95,6 +99,14 @@ def _first_of(families: list[Answer]) -> Answer:
         return steady
     enough = FORMULA_SHARE * steady.strength
     return next((a for a in families[1:] if a.verdict == "missing" and a.strength >= enough), steady)
+
+
+def _once(candidates: list[Candidate]) -> list[Candidate]:
+    """Each effect once, by the family that comes first."""
+    found: dict[str, Candidate] = {}
+    for candidate in candidates:
+        found.setdefault(candidate.effect.name, candidate)
+    return list(found.values())
 
 
 def _classes(candidates: list[Candidate]) -> list[tuple[str, ...]]:

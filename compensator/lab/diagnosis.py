@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.gain import Gain
 from compensator.lab.picture import BinnedMean
 
@@ -41,6 +41,7 @@ class Candidate:
         gain: relative fall of that error.
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
+        rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
     """
 
     effect: Effect
@@ -54,6 +55,7 @@ class Candidate:
     gain: Gain
     physical: bool
     picture: Picture | None
+    rows: EffectRows = "sliding"
 
 
 @dataclass(frozen=True)

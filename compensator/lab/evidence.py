@@ -15,6 +15,7 @@ from compensator.lab.linear import orthonormal
 from compensator.lab.recording import FloatArray
 
 SIGN_FLIPS = 999
+SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain
 
 
 @dataclass(frozen=True)
@@ -110,6 +111,51 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
     observed = min(item.p_value for item in evidence)
     p_value = (1.0 + float(np.sum(lowest <= observed * (1.0 + 1e-9)))) / (1.0 + len(flips))
     return Screening(sorted(evidence, key=lambda item: -item.score), p_value)
+
+
+def screen_events(bases: Sequence[Base], blocks: Sequence[Block], unit: IntArray, seed: int = 0) -> Screening:
+    """Judge every block on rows that are events: few, weighted to one variance, independent between units.
+
+    The null is had by flipping the signs of whole units of the residual (wild bootstrap); the score itself is the
+    statistic. Studentised by units, as for rows in motion, a contrast between a few of them could never be told.
+    Arguments as `screen`; `unit` in place of its stretches.
+    """
+    _, labels = np.unique(unit, return_inverse=True)
+    signs = np.vstack([np.ones(int(labels.max()) + 1), _sign_flips(int(labels.max()) + 1, seed)])
+    evidence, highest = [], np.full(len(signs), -np.inf)
+    inflation = max(inflation_of(base.residual) for base in bases)
+    for block in blocks:
+        base = bases[block.base]
+        directions = _new_directions(base, block)
+        count, rank = directions.shape
+        if rank == 0:
+            continue
+        by_unit = np.zeros((signs.shape[1], rank))
+        np.add.at(by_unit, labels, directions * base.residual[:, None])
+        gains = np.array([_likelihood(base, share, inflation) for share in signs @ by_unit])
+        scores = gains - rank * np.log(count / inflation) - 2.0 * np.log(block.scanned)
+        highest = np.maximum(highest, scores)
+        own = directions @ (directions.T @ base.residual)
+        norm = float(np.linalg.norm(own))
+        evidence.append(Evidence(block, float(scores[0]), float(gains[0]), _rank(scores), own / (norm or 1.0)))
+    if not evidence:
+        return Screening([], 1.0)
+    return Screening(sorted(evidence, key=lambda item: -item.score), _rank(highest))
+
+
+def _rank(statistics: FloatArray) -> float:
+    """The share of flips, with what was measured among them, that reach what was measured (the first)."""
+    return float(np.mean(statistics >= statistics[0] - 1e-9 * abs(statistics[0])))
+
+
+def among_all(p_value: float) -> float:
+    """The chance of so much evidence in any of a diagnosis's screenings (Bonferroni)."""
+    return min(1.0, SCREENINGS * p_value)
+
+
+def least_p_value(stretches: int) -> float:
+    """The lowest p of a diagnosis on so many stretches: one flip of signs in 2^(stretches - 1) changes nothing."""
+    return among_all(max(0.5 ** max(stretches - 1, 0), 1.0 / (1.0 + SIGN_FLIPS)))
 
 
 def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, float]:

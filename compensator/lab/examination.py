@@ -117,6 +117,7 @@ def _candidate(
         gain=held_out_gain(before, after),
         physical=_physical(gathered, item),
         picture=picture_of(gathered, item),
+        rows=gathered.show_in,
     )
 
 

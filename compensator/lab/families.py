@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from compensator.lab.candidates import Candidates
 from compensator.lab.catalogue import catalogue
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.drivers import DRIVERS
-from compensator.lab.evidence import Evidence, Screening, screen
+from compensator.lab.evidence import Evidence, Screening, among_all, screen
 from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
 from compensator.lab.fit import Fit, with_columns
 from compensator.lab.gain import held_out_gain
@@ -18,7 +20,6 @@ EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence 
 FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
-SCREENINGS = 4  # of one diagnosis: steady effects, free curves, effects with memory, the measuring chain
 UNDENIABLE = 30.0  # of a score: flips of k stretches that hold all the evidence never say less than 2^(1 - k)
 FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
 
@@ -61,25 +62,21 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     curve = _curve(fit, gathered, generic)
     followed = curve is None or (examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality)
     if curve is not None and generic is not None and not followed:
-        driver, p_value = curve.block.name, _among_all(generic)
+        driver, p_value = curve.block.name, among_all(generic.p_value)
         sentence = answer_in_words("unknown-effect", p_value, examined, driver)
         return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
-    p_value = _among_all(named)
+    p_value = among_all(named.p_value)
     undeniable = gathered.show_in == "sliding" and examined[0].score >= UNDENIABLE
     if (p_value <= SIGNIFICANT or undeniable) and is_confirmed(examined[0]):
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
         return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
-    sentence, remains = answer_in_words("nothing", p_value, examined, None), False
+    stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
+    sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
     if generic is not None:
         left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
         if left.is_more_than_noise:
             sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value), True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
-
-
-def _among_all(screening: Screening) -> float:
-    """The chance of so much evidence in any of a diagnosis's screenings (Bonferroni)."""
-    return min(1.0, SCREENINGS * screening.p_value)
 
 
 def _best_shapes(screening: Screening) -> list[Evidence]:
@@ -102,7 +99,7 @@ def _ties(item: Evidence, best: Evidence) -> bool:
 
 def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
     """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
-    if generic is None or _among_all(generic) > SIGNIFICANT or not generic.evidence:
+    if generic is None or among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
         return None
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from compensator.lab.catalogue import effect_named
-from compensator.lab.dataset import Dataset, RowChoice
+from compensator.lab.dataset import Dataset, IntArray, RowChoice
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.linear import Bounds, Solution, solve
@@ -132,10 +132,26 @@ def fit_model(
     return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows))
 
 
+def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
+    """Which trials a model may be fitted to: those of its training rows, and those that nobody held out.
+
+    A trial of reversals or starts alone has no sliding row, and so no training row of a model of sliding; it is not
+    held out by that. Where other trials are held out on purpose, it stays out of either.
+
+    Args:
+        dataset: of the rows.
+        training: rows of the study's choice that the model is fitted to, shape (N,).
+    """
+    trained = np.unique(dataset.trial_index[training])
+    counted = np.unique(dataset.trial_index[dataset.counted])
+    every = np.arange(len(dataset.trials), dtype=np.int64)
+    return every if np.isin(counted, trained).all() else trained
+
+
 def widened(fit: Fit, rows: RowChoice) -> Fit:
     """The same model on another choice of rows of the same trials, its shapes kept."""
     trials = fit.dataset.trial_index
-    chosen = fit.dataset.in_regimes(rows) & np.isin(trials, np.unique(trials[fit.training]))
+    chosen = fit.dataset.in_regimes(rows) & np.isin(trials, trained_trials(fit.dataset, fit.training))
     if (chosen == fit.training).all():
         return fit
     return fit_model(fit.dataset, fit.names, chosen, fit.shapes)
@@ -148,7 +164,7 @@ def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -
     """
     trials = dataset.trial_index
     rows = dataset.in_regimes(dataset.choice_for([effect_named(name) for name in effects]))
-    return fit_model(dataset, effects, rows & np.isin(trials, np.unique(trials[training])))
+    return fit_model(dataset, effects, rows & np.isin(trials, trained_trials(dataset, training)))
 
 
 def _fit(

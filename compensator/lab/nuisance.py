@@ -9,14 +9,14 @@ import numpy as np
 from compensator.lab.dataset import Dataset
 from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effects import backlash, measurement_delay
-from compensator.lab.effects.effect import EffectRows, Motion
+from compensator.lab.effects.effect import Motion, MotionRows
 from compensator.lab.recording import FloatArray
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
 KNOWN_PLAY = ("known_play_friction", "known_play_inertia")  # free play that the owner knows is not missing
 
 
-def nuisance_columns(dataset: Dataset, show_in: EffectRows = "sliding") -> dict[str, FloatArray]:
+def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[str, FloatArray]:
     """Each nuisance column by name, shape (N,).
 
     Near reversals a delay looks like memory: there its own column stands too, and that of the free play that is known.

@@ -95,7 +95,8 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
     steps: list[Step] = []
     for name in [name for name in fit.names if name not in start.names][:-1]:
         without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
-        better = best_named(without, effect_named(name).rows)
+        rows = effect_named(name).rows
+        better = None if rows == "breakaway" else best_named(without, rows)
         if better not in (None, name) and better not in fit.names:
             swapped = fit_effects(
                 fit.dataset, [better if other == name else other for other in fit.names], fit.training

@@ -9,7 +9,6 @@ import numpy as np
 from compensator.lab.assembly import more_trials, usable
 from compensator.lab.candidates import gather
 from compensator.lab.diagnosis import Candidate, Diagnosis
-from compensator.lab.effects.effect import Effect, EffectRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.fit import Fit, widened
 from compensator.lab.recording import Recording
@@ -103,7 +102,12 @@ def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int
     rivals = rivals_of(diagnosis)
     if not rivals:
         raise UnusableDataError("the diagnosis ranks no effect: there is nothing to separate; record any motion first")
-    show_in: EffectRows = rivals[0].effect.rows
+    show_in = rivals[0].rows
+    if show_in == "breakaway":
+        raise UnusableDataError(
+            f"what {rivals[0].effect.name} shows is told by starts from rest, and these are not predicted; record "
+            f"{rivals[0].effect.excited_by}"
+        )
     wide = fit.dataset.choice_for([one.effect for one in rivals])
     gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
     known = {(block.name, block.key) for block in gathered.named}
@@ -116,13 +120,13 @@ def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
     """The class that is named; where it has one member, or nothing is named, the next in rank too. One family alone."""
     named = set(diagnosis.classes[0]) if diagnosis.verdict == "missing" else set()
     first = diagnosis.candidates[:1]
-    family = [one for one in diagnosis.candidates if _of_one_kind(one.effect, first[0].effect)] if first else []
+    family = [one for one in diagnosis.candidates if _of_one_kind(one, first[0])] if first else []
     members = [one for one in family if one.effect.name in named]
     return members[:MOST_RIVALS] if len(members) > 1 else family[:RUNNERS_UP]
 
 
-def _of_one_kind(effect: Effect, first: Effect) -> bool:
-    return (effect.rows, effect.pipeline) == (first.rows, first.pipeline)
+def _of_one_kind(candidate: Candidate, first: Candidate) -> bool:
+    return (candidate.rows, candidate.effect.pipeline) == (first.rows, first.effect.pipeline)
 
 
 def _pairs(separation: Separation, diagnosis: Diagnosis) -> list[tuple[int, int | None]]:

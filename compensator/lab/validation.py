@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from compensator.lab.dataset import IntArray, RowChoice
-from compensator.lab.fit import Fit
+from compensator.lab.fit import Fit, trained_trials
 from compensator.lab.linear import solve_without
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
@@ -78,11 +78,11 @@ def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
     """
     judged = fit.dataset.in_regimes(rows or fit.dataset.rows)
     trials = fit.dataset.trial_index
-    trained = np.unique(trials[fit.training])
+    trained = trained_trials(fit.dataset, fit.training)
     outside = judged & ~np.isin(trials, trained)
     if outside.any():
         return _result(fit, "hold-out", outside, fit.residual[outside], independent_units(fit, outside))
-    if len(trained) >= FEWEST_TRIALS:
+    if len(np.unique(trials[fit.training & judged])) >= FEWEST_TRIALS:
         return _leave_out(fit, "leave-one-trial-out", trials, judged)
     return _leave_out(fit, "leave-one-block-out", fit.dataset.block_index, judged)
 

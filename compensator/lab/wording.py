@@ -2,13 +2,27 @@
 
 from math import isfinite
 
+from compensator.lab.dataset import BLOCK_S
 from compensator.lab.diagnosis import Candidate, Verdict
+from compensator.lab.evidence import least_p_value
 from compensator.lab.examination import SIGNIFICANT
 from compensator.lab.remainder import Remainder
 
 
-def answer_in_words(verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None) -> str:
-    """The answer in one sentence, with its numbers."""
+def answer_in_words(
+    verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None, stretches: int | None = None
+) -> str:
+    """The answer in one sentence, with its numbers.
+
+    Args:
+        verdict: as in a diagnosis.
+        p_value: as in a diagnosis.
+        candidates: as in a diagnosis.
+        driver: as in a diagnosis.
+        stretches: independent stretches of BLOCK_S that it rests on; None where that is no limit.
+    """
+    if verdict == "nothing" and stretches is not None and least_p_value(stretches) > SIGNIFICANT:
+        return _too_few(stretches)
     if verdict == "nothing":
         return _nothing(p_value)
     best = candidates[0]
@@ -25,6 +39,15 @@ def answer_in_words(verdict: Verdict, p_value: float, candidates: list[Candidate
         f"{title} is missing{also}{sign}: adding it changes the held-out error from {best.before:.2%} to "
         f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
         f"p = {p_value:.3g})."
+    )
+
+
+def _too_few(stretches: int) -> str:
+    enough = next(count for count in range(1, 99) if least_p_value(count) <= SIGNIFICANT)
+    return (
+        f"These trials are too short to tell whether anything is missing: only {stretches} independent stretches of "
+        f"{BLOCK_S:g} s, at best p = {least_p_value(stretches):.2g}, and {SIGNIFICANT:g} is needed; record "
+        f"{BLOCK_S * (enough - stretches):g} more seconds of motion at least."
     )
 
 

@@ -115,6 +115,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
     "backlash": ((0.3,), crossing),
     "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
+    "rate_dependent_breakaway": ((), lambda m: [np.zeros(41)]),
     "elasticity": ((), lambda m: [-slope(slope(1.3 * np.sin(m.position) - 0.2))]),
     "encoder_eccentricity": (
         (2.0,),

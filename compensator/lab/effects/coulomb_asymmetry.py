@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
 
@@ -10,6 +10,8 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     """1 while moving."""
     return np.abs(motion.direction)[None]
 
+
+PARAMETERS = (Parameter("half difference of Coulomb friction", "{effort}"),)
 
 EFFECT = Effect(
     name="coulomb_asymmetry",
@@ -20,9 +22,10 @@ EFFECT = Effect(
     ),
     equation=r"\Delta F_c\,|\mathrm{sgn}(\dot q)|",
     columns=columns,
-    parameters=(Parameter("half difference of Coulomb friction", "{effort}"),),
+    parameters=PARAMETERS,
     driver="direction",
     excited_by="motion in both directions, breakaway on both sides at rest",
     source="Saini et al. 2013, section 2.4 (assumed away there)",
     confused_with=("offset",),
+    breakaway=at_rest(columns, PARAMETERS, "direction"),
 )

@@ -12,7 +12,8 @@ from compensator.lab.recording import Condition, FloatArray
 from compensator.lab.reversals import Strokes, since_rest, strokes_of
 
 Shape = tuple[float, ...]
-EffectRows = Literal["sliding", "moving"]
+MotionRows = Literal["sliding", "moving"]
+EffectRows = Literal[MotionRows, "breakaway"]
 SESSION_START = "session_s"  # condition: time from the start of the session to that of the trial [s]
 
 
@@ -121,6 +122,45 @@ def _no_shapes(_: Motion) -> list[Shape]:
 
 
 @dataclass(frozen=True, slots=True)
+class Onset:
+    """Moments at which one trial's joint breaks away: what breakaway columns are computed from. Arrays have shape (e,).
+
+    Attributes:
+        motion: at these moments: at rest, `direction` that of the motion that follows; `load_effort` at rest.
+        rest_s: how long the joint had been at rest.
+        rate: at which the effort rose along the motion [effort/s], above 0.
+    """
+
+    motion: Motion
+    rest_s: FloatArray
+    rate: FloatArray
+
+
+def _no_onset_shapes(_: Onset) -> list[Shape]:
+    return [()]
+
+
+@dataclass(frozen=True, slots=True)
+class BreakawayShare:
+    """What an effect adds to the effort at which a joint at rest breaks away.
+
+    Attributes:
+        columns: (onset, shape) -> array (k, e), one row per parameter.
+        parameters: one per column.
+        driver: the variable to plot breakaway against; a key of `compensator.lab.drivers.DRIVERS`.
+        shapes: nonlinear shape values to scan, given all moments of the study; `shape_names` names them.
+        replaces_lag: the column that stands for seeing the motion late would absorb it, and is left out.
+    """
+
+    columns: Callable[[Onset, Shape], FloatArray]
+    parameters: tuple[Parameter, ...]
+    driver: str
+    shapes: Callable[[Onset], list[Shape]] = _no_onset_shapes
+    shape_names: tuple[str, ...] = ()
+    replaces_lag: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Effect:
     """A named physical mechanism.
 
@@ -143,7 +183,9 @@ class Effect:
             between channels never hides physics.
         builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), or "effort"
             (`predicted`, `effort_rate`), which is the sum of all effects that do not build on it themselves.
-        rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see.
+        rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see;
+            "breakaway" where it shows in the effort of breaking away only.
+        breakaway: its share in that effort; None where it has none, or none that is known.
         facts: attributes of `Facts` that must be known.
         hidden_by: effects in whose free scale it hides: while one of them is in the model, it cannot be judged.
         efforts: quantities of effort that it can show in; empty for all.
@@ -175,6 +217,7 @@ class Effect:
     facts: tuple[str, ...] = ()
     hidden_by: tuple[str, ...] = ()
     efforts: tuple[EffortQuantity, ...] = ()
+    breakaway: BreakawayShare | None = None
     unbounded_in: tuple[EffortQuantity, ...] = ()
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
@@ -187,3 +230,10 @@ class Effect:
     def uses_prediction(self) -> bool:
         """Whether a model must be fitted before the columns can be computed."""
         return self.builds_on is not None
+
+
+def at_rest(
+    columns: Callable[[Motion, Shape], FloatArray], parameters: tuple[Parameter, ...], driver: str
+) -> BreakawayShare:
+    """The share of an effect without shape whose columns hold at rest as they do in motion."""
+    return BreakawayShare(lambda onset, shape: columns(onset.motion, shape), parameters, driver)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
 
@@ -11,6 +11,11 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     sine = np.sin(motion.position)
     return np.array([sine, motion.load_moment_n_m * sine])
 
+
+PARAMETERS = (
+    Parameter("arm moment", "{effort}"),
+    Parameter("load moment scale", "{effort}/(N m)", 0.0),
+)
 
 EFFECT = Effect(
     name="gravity",
@@ -21,13 +26,11 @@ EFFECT = Effect(
     ),
     equation=r"(m_a g l_a + s\,m g l) \sin q",
     columns=columns,
-    parameters=(
-        Parameter("arm moment", "{effort}"),
-        Parameter("load moment scale", "{effort}/(N m)", 0.0),
-    ),
+    parameters=PARAMETERS,
     driver="position",
     excited_by="angles on both sides of 0, slow motion, several loads",
     source="Saini et al. 2013, section 3.2.2; statics",
     confused_with=("spring", "centre_of_mass_angle"),
     carried=True,
+    breakaway=at_rest(columns, PARAMETERS, "position"),
 )

@@ -1,6 +1,6 @@
 """Load-dependent friction, quadratic."""
 
-from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
 
@@ -8,6 +8,8 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     """Square of the transmitted load against the motion."""
     return (motion.load_effort**2 * motion.direction)[None]
 
+
+PARAMETERS = (Parameter("quadratic load loss", "1/{effort}", 0.0),)
 
 EFFECT = Effect(
     name="load_friction_quadratic",
@@ -17,10 +19,11 @@ EFFECT = Effect(
     ),
     equation=r"\mu_2\,\hat\tau_{load}^2\,\mathrm{sgn}(\dot q)",
     columns=columns,
-    parameters=(Parameter("quadratic load loss", "1/{effort}", 0.0),),
+    parameters=PARAMETERS,
     driver="load",
     excited_by="at least three loads spread over a factor of six",
     source="Rhoban/bam, model M6",
     confused_with=("load_friction",),
     builds_on="load",
+    breakaway=at_rest(columns, PARAMETERS, "load"),
 )

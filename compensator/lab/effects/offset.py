@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
 
@@ -10,6 +10,8 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     """A constant."""
     return np.ones((1, len(motion.time_s)))
 
+
+PARAMETERS = (Parameter("offset", "{effort}"),)
 
 EFFECT = Effect(
     name="offset",
@@ -20,9 +22,10 @@ EFFECT = Effect(
     ),
     equation=r"\tau_0",
     columns=columns,
-    parameters=(Parameter("offset", "{effort}"),),
+    parameters=PARAMETERS,
     driver="direction",
     excited_by="motion in both directions, and a reading at rest with the power stage off",
     source="Janot, Gautier, Brunot 2019 (EMPS)",
     confused_with=("coulomb_asymmetry",),
+    breakaway=at_rest(columns, PARAMETERS, "direction"),
 )

@@ -1,6 +1,6 @@
 """Spring or cable torque."""
 
-from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
 
@@ -9,16 +9,19 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     return motion.position[None]
 
 
+PARAMETERS = (Parameter("stiffness", "{effort}/{position}"),)
+
 EFFECT = Effect(
     name="spring",
     title="Spring or cable torque",
     physics=("A cable, hose or balancing spring that pulls towards a rest position; its constant part is the offset."),
     equation=r"k\,q",
     columns=columns,
-    parameters=(Parameter("stiffness", "{effort}/{position}"),),
+    parameters=PARAMETERS,
     driver="position",
     excited_by="slow motion over the whole range",
     source="Hooke",
     confused_with=("gravity", "offset"),
     carried=True,
+    breakaway=at_rest(columns, PARAMETERS, "position"),
 )

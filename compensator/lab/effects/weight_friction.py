@@ -1,6 +1,6 @@
 """Weight-dependent friction."""
 
-from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
 
@@ -8,6 +8,8 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     """Mass of the load against the motion."""
     return (motion.load_kg * motion.direction)[None]
 
+
+PARAMETERS = (Parameter("Coulomb friction per load", "{effort}/kg", 0.0),)
 
 EFFECT = Effect(
     name="weight_friction",
@@ -18,10 +20,11 @@ EFFECT = Effect(
     ),
     equation=r"c\,m\,\mathrm{sgn}(\dot q)",
     columns=columns,
-    parameters=(Parameter("Coulomb friction per load", "{effort}/kg", 0.0),),
+    parameters=PARAMETERS,
     driver="load_kg",
     excited_by="several loads, also balanced ones",
     source="Saini et al. 2013, section 3.2 and Figs 3, 7",
     confused_with=("load_friction", "coulomb"),
     varies_with="load_kg",
+    breakaway=at_rest(columns, PARAMETERS, "load_kg"),
 )
