@@ -126,7 +126,7 @@ def screen_events(bases: Sequence[Base], blocks: Sequence[Block], unit: IntArray
     inflation = max(inflation_of(base.residual) for base in bases)
     for block in blocks:
         base = bases[block.base]
-        directions = _new_directions(base, block)
+        directions = new_directions(base, block)
         count, rank = directions.shape
         if rank == 0:
             continue
