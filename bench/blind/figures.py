@@ -69,8 +69,12 @@ def figures(results: Sequence[Result]) -> list[Figure]:
 
 
 def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
-    families = {"complete": 0.02, "imperfect": 0.05}
-    words = {"complete": "false alarms, complete models", "imperfect": "the same, with delay, jitter, lost rows"}
+    families = {"complete": 0.02, "imperfect": 0.05, "at-rest": 0.02}
+    words = {
+        "complete": "false alarms, complete models",
+        "imperfect": "the same, with delay, jitter, lost rows",
+        "at-rest": "the same as the first, with starts from rest and reversals recorded",
+    }
 
     def alarm(one: Result) -> bool:
         return _answer(one).verdict != "nothing" or _answer(one).unknown

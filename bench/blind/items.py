@@ -58,6 +58,7 @@ FAMILIES: dict[str, Family] = {
         Family("outside", 1, OUTSIDE, 1, LARGE),
         Family("memory", 1, MEMORY, 1, LARGE, memory=True),
         Family("settle", 1, SINGLE, 1, LARGE, settled=True),
+        Family("at-rest", 1, (), 0, memory=True),
     )
 }
 
