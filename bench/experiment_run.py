@@ -1,5 +1,6 @@
 """One experiment under way: its trials one after the other, in a thread of its own, and how it ended."""
 
+import logging
 import threading
 import time
 from collections.abc import Sequence
@@ -9,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bench import session
+from bench import event_log, session
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.live import LiveBuffer
@@ -136,6 +137,8 @@ class ExperimentRun:
     def carry_out(self, prepared: Prepared, store: Store, live: LiveBuffer) -> None:
         """Run the trials, close the drive, close the record. Never raises: how it ended is in `outcome`."""
         self._prepared = prepared
+        kind, parameters = self.request.kind, prepared.parameters.model_dump(mode="json", exclude_defaults=True)
+        event_log.note("run started", experiment_id=self.experiment_id, kind=kind, parameters=parameters)
         outcome, reason = self._run_trials(prepared, store, live)
         try:
             prepared.station.close()
@@ -150,6 +153,8 @@ class ExperimentRun:
             store.finish_experiment(self._id(), outcome, reason, results)
         except Exception as error:
             outcome, reason = _worse(outcome, reason, f"the record could not be closed: {error}")
+        level = logging.INFO if outcome in ("completed", "stopped") else logging.ERROR
+        event_log.note("run ended", level, experiment_id=self.experiment_id, kind=kind, outcome=outcome, reason=reason)
         self.end(outcome, reason)
 
     def _run_trials(self, prepared: Prepared, store: Store, live: LiveBuffer) -> tuple[OutcomeName, str]:
@@ -193,6 +198,9 @@ class ExperimentRun:
         self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
         writer.finish(outcome.outcome, outcome.reason, results)
+        facts: dict[str, Any] = {"name": plan.name, "outcome": outcome.outcome, "reason": outcome.reason}
+        counts = {"cycles": outcome.cycles, "overruns": outcome.overruns}
+        event_log.note("trial ended", experiment_id=self.experiment_id, trial_id=writer.trial_id, **facts, **counts)
         return outcome
 
     def _id(self) -> int:

@@ -14,7 +14,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
-from bench import scheduling
+from bench import event_log, scheduling
 from bench.bench_process.failures import failure_of
 from bench.bench_process.messages import SLOW, VERSION, Call, Hello, Reply
 from bench.bench_process.publisher import GONE, Publisher
@@ -119,6 +119,7 @@ def main() -> None:
             return  # the service sees by ours that we do not understand each other
         hello = connection.recv()
         if isinstance(hello, Hello):
+            event_log.begin_as_chosen()
             _run(connection, line, hello.configuration)
 
 

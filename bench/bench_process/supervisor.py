@@ -1,8 +1,10 @@
 """Starts the bench process when it is wanted, takes in what it says, and sees how it ends."""
 
+import logging
 import threading
 from collections.abc import Callable
 
+from bench import event_log
 from bench.bench_process.calls import Calls
 from bench.bench_process.child import Child
 from bench.bench_process.errors import BenchProcessError
@@ -121,7 +123,10 @@ class Supervisor:
         watchdog = self._mirror.status.description
         within = f" within {watchdog.watchdog_s:g} s" if watchdog is not None else ""
         reason = f"the bench process {how} while it ran; the drive's own watchdog stops the motor{within}"
-        if self._mirror.lose(reason):
+        was_running = self._mirror.lose(reason)
+        level = logging.ERROR if was_running else logging.INFO if self._closed else logging.WARNING
+        event_log.note("bench process ended", level, how=how, while_running=was_running)
+        if was_running:
             self._lost(reason)
         self._mirror.release()
         self._calls.fail(said, f"the bench process {how}; the next start starts it again")

@@ -104,6 +104,14 @@ def options(
             help="SQLite file or database URL; without it friction-bench.sqlite in the working directory.",
         ),
     ] = None,
+    log: Annotated[
+        str | None,
+        typer.Option(
+            envvar="FRICTION_BENCH_LOG",
+            help="File that gets what happens, one JSON object a line: runs, requests that change something, errors; "
+            "- for stderr.",
+        ),
+    ] = None,
     version: Annotated[  # noqa: ARG001  its callback has done it
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
@@ -113,6 +121,10 @@ def options(
     Start with `friction-bench demo`, or `friction-bench serve` and open the page that it names.
     """
     context.obj = BenchSession(config, store)
+    if log:
+        from bench import event_log  # imported when needed: `--help` starts at once
+
+        event_log.begin(log)
 
 
 app.command("serve")(serve.serve)

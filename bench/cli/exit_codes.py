@@ -31,7 +31,8 @@ HELP = """\
 5 the service cannot be reached or refuses the token · 130 ended by Ctrl-C · 143 ended by SIGTERM
 
 **Environment:** FRICTION_BENCH_CONFIG (as --config) · FRICTION_BENCH_STORE (as --store) ·
-FRICTION_BENCH_URL (service for `status` and `stop`) · FRICTION_BENCH_TOKEN (token of the service)
+FRICTION_BENCH_LOG (as --log) · FRICTION_BENCH_URL (service for `status` and `stop`) ·
+FRICTION_BENCH_TOKEN (token of the service)
 """
 
 

@@ -4,12 +4,14 @@ import logging
 import queue
 import threading
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
 
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from bench import event_log
 from bench.service.guard import SAFE_METHODS
 from bench.service.roles import Caller
 from bench.store.audit import AuditEntry
@@ -117,7 +119,9 @@ class AuditTrail:
         finally:
             # too many wrong tokens: those before are noted
             if status != 429 and not scope["state"].get("audit_left_out"):
-                self._add(_entry(scope, status))
+                entry = _entry(scope, status)
+                self._add(entry)
+                event_log.note("request", _level(status), **_facts(entry))
 
 
 def _entry(scope: Scope, status: int) -> AuditEntry:
@@ -134,6 +138,15 @@ def _entry(scope: Scope, status: int) -> AuditEntry:
         status=status,
         detail=_plain(state.get("audit_detail", "")),
     )
+
+
+def _facts(entry: AuditEntry) -> dict[str, Any]:
+    """As the log has it, which stamps its lines itself."""
+    return {name: value for name, value in asdict(entry).items() if name != "at_utc"}
+
+
+def _level(status: int) -> int:
+    return logging.ERROR if status >= 500 else logging.WARNING if status in (401, 403) else logging.INFO
 
 
 def _plain(text: str) -> str:

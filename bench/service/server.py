@@ -4,12 +4,14 @@ import signal
 import socket
 from collections.abc import Callable
 from contextlib import closing
+from importlib.metadata import version
 from types import FrameType
 from typing import NamedTuple
 
 import uvicorn
 from fastapi import FastAPI
 
+from bench import event_log
 from bench.bench_control import BenchControl
 from bench.bench_process import RemoteRunner
 from bench.configuration import BenchConfiguration
@@ -111,7 +113,10 @@ def serve_bench(
                     app = create_app(store, runner, Access(register, is_loopback(address.host), names))
                     for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
                         say(line)
+                    facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}
+                    event_log.note("service started", **facts, version=version("friction-bench"))
                     _serve(BenchServer(app, runner, tls), listener)
+    event_log.note("service ended")
 
 
 def _serve(server: BenchServer, listener: socket.socket) -> None:

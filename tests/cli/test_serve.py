@@ -29,7 +29,7 @@ def _free_port() -> int:
 @pytest.fixture
 def served(tmp_path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
     port = _free_port()
-    words = [sys.executable, "-m", "bench.cli", "serve", "--port", str(port)]
+    words = [sys.executable, "-m", "bench.cli", "--log", "bench.log", "serve", "--port", str(port)]
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         lines = ""
         assert process.stdout is not None
@@ -92,6 +92,12 @@ def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
         [experiment] = store.experiments()
     assert experiment.outcome == "stopped"
     assert "the service was ended" in experiment.reason
+    told = {one["event"]: one for one in map(json.loads, (tmp_path / "bench.log").read_text().splitlines())}
+    assert (told["request"]["path"], told["request"]["status"]) == ("/api/v1/experiments", 201)
+    assert token not in (tmp_path / "bench.log").read_text()
+    assert told["run ended"]["outcome"] == "stopped"
+    assert told["run ended"]["process"] != told["service started"]["process"] == process.pid
+    assert told["service ended"]["level"] == "info"
 
 
 def test_a_token_file_of_an_earlier_version_goes_on_working(command, tmp_path, monkeypatch):
