@@ -55,9 +55,10 @@ class ExampleTrial(BaseModel):
 
 
 class Example(BaseModel):
-    """What an effect adds to the effort of a simulated joint that is swung with two loads."""
+    """What an effect adds to the effort of a simulated joint that is moved with two loads."""
 
     effect: str
+    motion: str = Field(description="what the joint does, in a sentence")
     effort_unit: str
     driver: str = Field(description="the variable that drives the effect")
     driver_unit: str
@@ -76,7 +77,7 @@ def catalogue(limit: Limit = 100, offset: Offset = 0) -> Catalogue:
 
 @router.get("/{name}/example", summary="A small simulated example", responses=problems(404, 422))
 async def example(request: Request, name: Annotated[str, Path(max_length=100, examples=["backlash"])]) -> Example:
-    """To be looked at: a joint that is swung with two loads, without the effect, and what the effect adds."""
+    """To be looked at: a joint that is moved with two loads, without the effect, and what the effect adds."""
 
     def call() -> Any:
         from bench.study import effect_example

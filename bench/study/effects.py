@@ -28,6 +28,7 @@ def effect_example(name: str) -> dict[str, Any]:
         raise NotFoundError(str(error)) from error
     return {
         "effect": name,
+        "motion": found.motion,
         "effort_unit": found.effort_unit,
         "driver": found.driver_title,
         "driver_unit": found.driver_unit,

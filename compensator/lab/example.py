@@ -6,16 +6,18 @@ fitted with. It is to be looked at; nothing is concluded from it.
 
 from dataclasses import dataclass
 from functools import cache
+from itertools import repeat
 
 import numpy as np
 
 from compensator.lab.assembly import make_dataset
+from compensator.lab.breakaway_rows import at_rest_motion
 from compensator.lab.catalogue import default_effects, effect_named
 from compensator.lab.dataset import Dataset, Processing
 from compensator.lab.drivers import DRIVERS
-from compensator.lab.effects.effect import SESSION_START, Effect
+from compensator.lab.effects.effect import SESSION_START, Effect, Onset, Parameter
 from compensator.lab.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
-from compensator.lab.fit import fit_model
+from compensator.lab.fit import Fit, fit_model
 from compensator.lab.prediction import with_own_prediction
 from compensator.lab.recording import FloatArray, Recording
 
@@ -27,6 +29,9 @@ ARM_M, INERTIA_KG_M2, ARM_MOMENT_N_M, COULOMB_N_M, VISCOUS_N_M_S = 0.3, 0.02, 0.
 TORQUE_PER_CURRENT_N_M_A = 1.0
 RESTS_S, RAMP_S = ((2.6, 3.0), (6.0, 7.2)), 0.05  # from, to; how quickly it stops
 SMOOTH_RAD_S = 0.02  # of the example's sign of speed
+STARTS, RATES_N_M_S, STARTS_REST_S = 24, (0.02, 2.0), (0.2, 0.2, 1.0, 1.0, 5.0, 5.0)
+SWUNG = "A joint swings to and fro and rests twice."
+PUSHED = "A joint that hangs down is pushed to and fro from rest, each time more quickly: each point is a start."
 
 
 @dataclass(frozen=True)
@@ -52,11 +57,13 @@ class Example:
 
     Attributes:
         effect: which.
+        motion: what the joint does, in a sentence.
         effort_unit, driver_title, driver_unit: of the values.
         trials: one per load.
     """
 
     effect: Effect
+    motion: str
     effort_unit: str
     driver_title: str
     driver_unit: str
@@ -72,14 +79,11 @@ def example_of(name: str) -> Example:
     """
     effect = effect_named(name)
     quantity: EffortQuantity = "torque" if not effect.efforts or "torque" in effect.efforts else "current_estimate"
+    if effect.rows == "breakaway":
+        return _of_starts(effect, quantity)
     dataset = _joint(quantity)
     shapes = effect.shapes(dataset.trials[0].motion)
-    columns = dataset.columns(effect, shapes[len(shapes) // 2])
-    signs = [-1.0 if one.high <= 0.0 else 1.0 for one in effect.parameters]
-    # of a sine and its cosine, or two stiffnesses, the second is to be seen but not to hide the first
-    raw = columns @ np.array([sign / (1.0 + index) for index, sign in enumerate(signs)])
-    size = float(np.sqrt(np.mean(raw**2)))
-    added = raw * (SHARE * float(np.sqrt(np.mean(dataset.effort**2))) / size if size > 0.0 else 0.0)
+    added = _added(dataset.columns(effect, shapes[len(shapes) // 2]), effect.parameters, dataset.effort)
     driver = DRIVERS[effect.driver]
     trials = []
     for index, (trial, load_kg) in enumerate(zip(dataset.trials, LOADS_KG, strict=True)):
@@ -87,12 +91,49 @@ def example_of(name: str) -> Example:
         values = dataset.rows_of([driver.of(one) for one in dataset.trials])[rows]
         trials.append(ExampleTrial(load_kg, dataset.time_of(trial), values, dataset.effort[rows], added[rows]))
     unit = dataset.effort_definition.unit
-    return Example(effect, unit, driver.title, driver.unit_in(unit, dataset.facts), tuple(trials))
+    return Example(effect, SWUNG, unit, driver.title, driver.unit_in(unit, dataset.facts), tuple(trials))
+
+
+def _added(columns: FloatArray, parameters: tuple[Parameter, ...], effort: FloatArray) -> FloatArray:
+    """What columns (n, k) add, as large as is to be seen beside the effort."""
+    signs = [-1.0 if one.high <= 0.0 else 1.0 for one in parameters]
+    # of a sine and its cosine, or two stiffnesses, the second is to be seen but not to hide the first
+    raw: FloatArray = columns @ np.array([sign / (1.0 + index) for index, sign in enumerate(signs)])
+    size = float(np.sqrt(np.mean(raw**2)))
+    return raw * (SHARE * float(np.sqrt(np.mean(effort**2))) / size if size > 0.0 else 0.0)
+
+
+def _of_starts(effect: Effect, quantity: EffortQuantity) -> Example:
+    """Of an effect that nothing but breakaway shows."""
+    share = effect.breakaway
+    assert share is not None, f"{effect.name} counts breakaway rows and has no breakaway columns"
+    fit, dataset = _fitted(quantity), _joint(quantity)
+    rates, direction = np.geomspace(*RATES_N_M_S, STARTS), np.resize([1.0, -1.0], STARTS)
+    rest_s = np.resize(STARTS_REST_S, STARTS)
+    time_s = np.cumsum(rest_s + COULOMB_N_M / rates)
+    index, hanging = np.zeros(STARTS, dtype=np.int64), np.zeros(STARTS)
+    onsets = [
+        Onset(at_rest_motion(fit, one.motion, index, hanging, direction), rest_s, rates) for one in dataset.trials
+    ]
+    shapes = share.shapes(onsets[0])
+    columns = [share.columns(onset, shapes[len(shapes) // 2]).T for onset in onsets]
+    without = [onset.motion.load_effort + direction * COULOMB_N_M / TORQUE_PER_CURRENT_N_M_A for onset in onsets]
+    added = np.split(_added(np.concatenate(columns), share.parameters, np.concatenate(without)), len(onsets))
+    values = {"rest": rest_s, "effort_rate": rates}[share.driver]
+    trials = tuple(ExampleTrial(*one) for one in zip(LOADS_KG, repeat(time_s), repeat(values), without, added))
+    driver, unit = DRIVERS[share.driver], dataset.effort_definition.unit
+    return Example(effect, PUSHED, unit, driver.title, driver.unit_in(unit, dataset.facts), trials)
 
 
 @cache
 def _joint(quantity: EffortQuantity) -> Dataset:
     """The joint without anything special, with the effort that its model predicts: some effects build on that."""
+    return with_own_prediction(_fitted(quantity))
+
+
+@cache
+def _fitted(quantity: EffortQuantity) -> Fit:
+    """The model of the joint."""
     facts = Facts(
         torque_per_current_n_m_a=TORQUE_PER_CURRENT_N_M_A,
         gear_ratio=20.0,
@@ -102,7 +143,7 @@ def _joint(quantity: EffortQuantity) -> Dataset:
     )
     recordings = [_recording(load_kg, number) for number, load_kg in enumerate(LOADS_KG)]
     dataset = make_dataset(recordings, facts, Processing(CUTOFF_HZ, "all"))
-    return with_own_prediction(fit_model(dataset, list(default_effects(facts))))
+    return fit_model(dataset, list(default_effects(facts)))
 
 
 def _recording(load_kg: float, number: int) -> Recording:

@@ -11,7 +11,7 @@ export function examplePlot(place, example) {
   const slider = h("input", { type: "range", id: "example-size", min: "0", max: String(MOST), step: "0.05", value: "1" });
   const load = h("select", { id: "example-load" }, example.trials.map((trial, index) => h("option", { value: String(index) }, `${number(1000 * trial.load_kg)} g at the tip`)));
   const [time, driver] = [h("div"), h("div", { class: "plot", role: "figure", "aria-label": `What the effect adds, against ${example.driver}` })];
-  replace(place, h("p", { class: "soft" }, "A joint swings to and fro and rests twice. The slider changes how much of the effect there is; a model without it would be wrong by the lower curve."),
+  replace(place, h("p", { class: "soft" }, `${example.motion} The slider changes how much of the effect there is; a model without it would be wrong by the lower curve.`),
     h("div", { class: "row" }, h("label", { for: "example-size" }, "How much of it", slider), h("label", { for: "example-load" }, "Load", load)), time, driver);
   const chart = new Chart(time, { label: "Effort of the joint with and without the effect", height: 340 });
   const show = () => {
