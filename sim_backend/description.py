@@ -1,6 +1,7 @@
 """What a simulated drive says of itself."""
 
 from collections.abc import Iterable
+from functools import cache
 from importlib.metadata import version
 from math import pi
 
@@ -25,7 +26,7 @@ def describe(
         device=device,
         vendor="friction-bench",
         product="simulated joint",
-        firmware=version("friction-bench"),
+        firmware=_firmware(),
         serial=f"seed {seed}",
         simulated=True,
         modes=frozenset(modes),
@@ -34,6 +35,12 @@ def describe(
         max_rate_hz=1.0 / COARSEST_STEP_S,
         watchdog_s=watchdog_s,
     )
+
+
+@cache
+def _firmware() -> str:
+    """Version of this software; looking for it among what is installed takes longer than starting the drive."""
+    return version("friction-bench")
 
 
 def _measured(parameters: PlantParameters) -> set[str]:

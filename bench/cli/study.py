@@ -10,6 +10,7 @@ from bench.cli import study_tables as tables
 from bench.cli.bench_session import session_of
 from bench.cli.cores import Cluster, Workers
 from bench.cli.output import Json, print_json, say, table, write_whole
+from bench.cli.service import DEFAULT_URL, Url
 
 app = typer.Typer(no_args_is_help=True)
 StudyId = Annotated[int, typer.Argument(metavar="STUDY", help="Number of the study.")]
@@ -22,6 +23,7 @@ _HOLD_OUT = (
 )
 _WHERE = "Use only trials of which this holds; repeatable."
 _START = "Run them one after the other: the joint moves. Then add them to the study, and diagnose again."
+_QUEUE = "Put them into the queue of the service that runs, on the same store; then `study extend` adds what completed."
 _BENCH = "Move the joint once with each model not tried yet: the error of the reflected load, in grams."
 _EXTEND = "Experiment whose trials are added; repeatable. Without it, those that were run for the study."
 _BASE = "Effect of the first model; repeatable. Without it, the rigid joint with General Kinetic Friction."
@@ -126,13 +128,19 @@ def suggest(
     model: Model = None,
     trials: Annotated[int, typer.Option(min=1, max=50, help="Trials at most.")] = 6,
     start: Annotated[bool, typer.Option("--start", help=_START)] = False,
+    queue: Annotated[bool, typer.Option("--queue", help=_QUEUE)] = False,
+    url: Url = DEFAULT_URL,
     as_json: Json = False,
 ) -> None:
     """Which trials would tell the rivals apart: of the bench's own kinds, inside its limits, by d' per minute."""
-    from bench.cli.study_trials import carry_out_all, suggested
+    from bench.cli.study_trials import carry_out_all, queue_all, suggested
 
+    if start and queue:
+        raise typer.BadParameter("--start runs the trials here, --queue on the service: give one of them")
     found = suggested(session_of(context), study, model, trials)
-    if start:
+    if queue:
+        queue_all(session_of(context), found, url, as_json)
+    elif start:
         if not as_json:
             tables.suggestion(found)
         carry_out_all(session_of(context), found, as_json)

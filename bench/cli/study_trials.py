@@ -1,4 +1,5 @@
-"""`friction-bench study suggest --start`: runs what is suggested, adds it to the study, and diagnoses again."""
+"""`friction-bench study suggest`: with --start runs what is suggested, adds it to the study, and diagnoses again; with
+--queue has a service run it."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,7 @@ from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import ExitCode
 from bench.cli.output import print_json, say
 from bench.cli.run import carry_out
+from bench.cli.service import ask
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Experiment
@@ -41,6 +43,19 @@ def carry_out_all(session: BenchSession, found: dict[str, Any], as_json: bool) -
         raise typer.Exit(signal_code)
     if len(completed) < len(found["trials"]):
         raise typer.Exit(ExitCode.NOT_COMPLETED)
+
+
+def queue_all(session: BenchSession, found: dict[str, Any], url: str, as_json: bool) -> None:
+    """Put every suggested trial into the queue of a service: all or none."""
+    names = ("kind", "parameters")
+    items = [{**{name: one[name] for name in names}, "note": found["note"]} for one in found["trials"]]
+    queued = ask(session, "POST", url, "/queue", {"items": items}) if items else {"item_ids": []}
+    if as_json:
+        print_json({"suggested": found, **queued})
+        return
+    tables.suggestion(found)
+    if items:
+        say(f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found['study_id']}")
 
 
 def _added(session: BenchSession, study_id: int, completed: list[int]) -> dict[str, Any]:

@@ -74,3 +74,19 @@ def test_tags_of_a_run_are_found_again(command):
         ["new grease", "winter"]
     ]
     assert json.loads(command("experiments", "--tag", "summer", "--json").stdout) == []
+
+
+def test_what_a_study_suggests_goes_into_the_queue_with_the_study_s_note(asked, command, monkeypatch):
+    trials = [{"kind": "steps", "parameters": {"repeats": 1, "load_kg": load_kg}} for load_kg in (0.0, 0.05)]
+    found = {"study_id": 4, "note": "suggested for study 4", "trials": trials}
+    monkeypatch.setattr("bench.cli.study_trials.suggested", lambda *_: found)
+    assert asked("queue", "pause", "--json")["state"] == "held"
+    assert asked("study", "suggest", "4", "--queue", "--json")["item_ids"] == [1, 2]
+    waiting = asked("queue", "list", "--json")["waiting"]
+    assert [(one["kind"], one["parameters"]["load_kg"], one["note"]) for one in waiting] == [
+        ("steps", 0.0, "suggested for study 4"),
+        ("steps", 0.05, "suggested for study 4"),
+    ]
+    both = command("study", "suggest", "4", "--queue", "--start")
+    assert both.exit_code == 2
+    assert "--queue on the service" in both.stderr
