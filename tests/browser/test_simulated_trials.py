@@ -55,7 +55,7 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
         deadline -= 1
         assert deadline, queue
     page.get_by_role("button", name="Add the recorded trials to the study").click()
-    page.get_by_text(re.compile(r"[5-9] training trials, 2 held out")).wait_for()
+    page.get_by_text(re.compile(r"^([5-9]|\d\d) training trials, 2 held out")).wait_for()
 
     page.get_by_role("button", name="Diagnose").click()
     named.filter(has_text="Load-dependent friction").first.get_by_role("button", name="Add").click()

@@ -17,10 +17,22 @@ export function equation(source) {
     const math = element("math", content);
     math.setAttribute("display", "block");
     math.setAttribute("aria-label", source);
-    return h("div", { class: "equation" }, math);
+    return reachable(h("div", { class: "equation" }, math));
   } catch {
     return h("code", { class: "equation" }, source);
   }
+}
+
+// one that is wider than its place is scrolled, also by the keyboard; the others are no stops of the Tab key
+function reachable(place) {
+  new ResizeObserver(() => {
+    if (place.scrollWidth > place.clientWidth) {
+      place.tabIndex = 0;
+      place.setAttribute("role", "group");
+      place.setAttribute("aria-label", "Equation, to be scrolled");
+    } else for (const name of ["tabindex", "role", "aria-label"]) place.removeAttribute(name);
+  }).observe(place);
+  return place;
 }
 
 function element(name, ...children) {
