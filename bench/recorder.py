@@ -73,7 +73,8 @@ class Recorder:
 
     BLOCK_S = 0.04  # of wall time: what is not committed cannot be seen, and a plot is watched at 20 updates a second
     BLOCK_ROWS = 4000
-    BACKLOG = 160  # blocks that may wait for the sink
+    BACKLOG = 256  # blocks that may wait for a sink that goes on, slowly
+    STALL_S = 6.4  # how long a sink may be at one block while a real joint moves: a locked database, a failing disk
     LAST_PATIENCE_S = 60.0  # how long the end is waited for: the joint is off by then, and the rows are worth it
 
     def __init__(self, sink: Sink, channels: int, patience_s: float = 0.0) -> None:
@@ -84,6 +85,7 @@ class Recorder:
         self._events: list[Event] = []
         self._handed_s = time.monotonic()
         self._ending = False
+        self._at_block_since_s: float | None = None  # the sink; None where it is at none
         self._queue: queue.Queue[tuple[Rows, list[Event]] | None] = queue.Queue(self.BACKLOG)
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
@@ -124,6 +126,7 @@ class Recorder:
     def _hand_over(self) -> None:
         self._check()
         self._handed_s = time.monotonic()
+        self._check_progress()
         rows = self._rows.rows()
         if len(rows) == 0 and not self._events:
             return
@@ -144,6 +147,14 @@ class Recorder:
         if self.error is not None:
             raise RecordingError(f"the store failed: {self.error}") from self.error
 
+    def _check_progress(self) -> None:
+        since_s = self._at_block_since_s
+        if self._patience_s == 0.0 and since_s is not None and self._handed_s - since_s > self.STALL_S:
+            raise RecordingError(
+                f"the store does not keep up: it has been at one block for more than {self.STALL_S:g} s; "
+                "look for a locked database, or a failing disk"
+            )
+
     def _write(self) -> None:
         while not (self._ending and self._queue.empty()):
             block = self._queue.get()
@@ -152,6 +163,9 @@ class Recorder:
             if self.error is not None:
                 continue  # drain, so that the loop is never blocked by a sink that is gone
             try:
+                self._at_block_since_s = time.monotonic()
                 self._sink.append(*block)
             except BaseException as error:  # whatever it is, the loop has to hear of it
                 self.error = error
+            finally:
+                self._at_block_since_s = None

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -86,6 +87,29 @@ def test_a_sink_that_hangs_does_not_hang_the_loop_for_good(monkeypatch, patience
     with pytest.raises(RecordingError, match="has not taken"):
         recorder.close()
     release.set()
+
+
+def test_a_real_joint_does_not_move_on_while_one_block_takes_too_long(monkeypatch):
+    monkeypatch.setattr(Recorder, "STALL_S", 0.05)
+    monkeypatch.setattr(Recorder, "BLOCK_ROWS", 1)
+    held = threading.Event()
+
+    class Locked(ListSink):
+        def append(self, rows, events=()):
+            held.wait(30.0)
+            super().append(rows, events)
+
+    sink = Locked()
+    recorder, began_s = Recorder(sink, 1), time.monotonic()
+    with pytest.raises(RecordingError, match=r"at one block for more than 0\.05 s"):
+        while time.monotonic() - began_s < 5.0:
+            recorder.row((1.0,))
+            time.sleep(0.001)
+    assert 0.05 <= time.monotonic() - began_s < 1.0
+    held.set()
+    with suppress(RecordingError):
+        recorder.close()
+    assert sink.blocks  # what it was at is kept
 
 
 def fill(recorder, rows=range(100)):

@@ -21,7 +21,7 @@ STOP_S = PERIOD_S + BRAKING_S + HOST_S  # the cycle that sees the wish, and the 
 REST_S = 0.5  # for a request to a busy service
 LAST_ANSWER_S = 2.0 * ANSWER_TIMEOUT_S  # the driver asks twice
 BLOCK_S = Recorder.BLOCK_S
-LOCKED_S = Recorder.BACKLOG * BLOCK_S  # blocks that wait for the database before the run ends
+LOCKED_S = Recorder.STALL_S + 2.0 * BLOCK_S  # at one block, till the next one asks after it
 
 
 @dataclass(frozen=True)
