@@ -30,10 +30,12 @@ from bench.service import (
     recording_sets,
     studies,
     trials,
+    turns,
 )
 from bench.service.access import Access
 from bench.service.audit_trail import AuditTrail, AuditWriter
 from bench.service.guard import Guard
+from bench.service.live_events import LiveEvents
 from bench.service.token_register import REFRESH_S
 from bench.store import Store
 
@@ -111,6 +113,7 @@ def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        turns.prepare()
         trail.start()
         conductor.begin()
         looking = asyncio.create_task(_look_again(access))
@@ -136,6 +139,7 @@ def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
     app.state.lease = lease
     app.state.conductor = conductor
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
+    app.state.live_events = LiveEvents(app.state, store, runner, lease)
     problems.install(app)
     conditional.install(app)
     api = APIRouter(prefix=PREFIX)

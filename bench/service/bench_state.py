@@ -159,7 +159,7 @@ async def _reason(request: Request) -> str:
     dependencies=[Depends(require_lease)],
     responses=problems(401, 403, 409, 422),
 )
-async def go_on(runner: RunnerOf, request: Request, body: Continue) -> Accepted:
+def go_on(runner: RunnerOf, request: Request, body: Continue) -> Accepted:
     """409 where that prompt is not the one that is open now: an answer that comes late moves nothing."""
     runner.answer(body.prompt)
     note(request, f"answered prompt {body.prompt} of experiment {runner.status().experiment_id}")

@@ -11,7 +11,7 @@ from bench.service.access import allow_read
 from bench.service.leases import LeaseOf, lease_now
 from bench.service.live_events import LiveEvents
 from bench.service.live_rows import Rows, rows_of
-from bench.service.services import RunnerOf, StoreOf
+from bench.service.services import RunnerOf
 from bench.service.status import Status, status_of
 
 MOST_ROWS = 2000
@@ -43,9 +43,6 @@ class LiveNow(BaseModel):
 )
 async def live(
     request: Request,
-    store: StoreOf,
-    runner: RunnerOf,
-    lease: LeaseOf,
     after_row: AfterRow = -1,
     limit: MostRows = MOST_ROWS,
     last_event_id: LastEvent = None,
@@ -55,7 +52,7 @@ async def live(
     With the `id` of the last `rows` event as `Last-Event-ID`, all rows since then come first, at most 2000 an event,
     from memory or from the store; what cannot be sent again is told by `event: gap`.
     """
-    events = LiveEvents(request.app.state, store, runner, lease)
+    events: LiveEvents = request.app.state.live_events
     return StreamingResponse(
         events.stream(after_row, limit, last_event_id),
         media_type="text/event-stream",

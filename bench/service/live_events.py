@@ -3,10 +3,11 @@
 import asyncio
 import json
 import time
+from collections import OrderedDict
 from collections.abc import AsyncIterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 import anyio.to_thread
 
@@ -26,20 +27,39 @@ PERIOD_S = 0.025  # shorter than a block of the recorder: each is told by itself
 STATUS_LOOKED_AT = 2  # periods: whether it is new
 STATUS_EVERY_S = 0.5  # in between, only what is new is sent
 ALL_ROWS = 10**6  # more than the live buffer keeps
+MOST_WRITTEN = 16  # events of rows that are kept for listeners who are about to hear them
 
 
-@dataclass(frozen=True, slots=True)
-class LiveEvents:
-    """Makes the events for one listener.
+class _Told(NamedTuple):
+    """A status as it is told.
 
     Attributes:
-        state: of the application; `life` names this process, `ending` ends the stream.
+        at_s: when it was looked at.
+        key: what makes it new.
+        event: as text.
     """
 
-    state: Any
-    store: Store
-    runner: BenchControl
-    lease: Lease
+    at_s: float
+    key: str
+    event: str
+
+
+class LiveEvents:
+    """Makes the events of all listeners. They hear the same: each event is written once, and told to every one of them.
+
+    Used on the event loop alone.
+
+    Args:
+        state: of the application; `life` names this process, `ending` ends the stream.
+        store: where rows are that are live no more.
+        runner: of the bench.
+        lease: of the bench.
+    """
+
+    def __init__(self, state: Any, store: Store, runner: BenchControl, lease: Lease) -> None:
+        self.state, self.store, self.runner, self.lease = state, store, runner, lease
+        self._rows: OrderedDict[tuple[object, ...], str] = OrderedDict()
+        self._status = _Told(-inf, "", "")
 
     async def stream(self, after_row: int, limit: int, last_event_id: str | None) -> AsyncIterator[str]:
         """Events as text, until the listener goes or the service ends."""
@@ -57,13 +77,12 @@ class LiveEvents:
             found = self.runner.live(after_row, limit)
             if len(found.rows) or (found.restarted and found.last_row != after_row):
                 after_row = found.last_row
-                yield _event("rows", rows_of(found).model_dump_json(), Mark.of(self.state.life, found))
+                yield self._rows_event(found)
             if period % STATUS_LOOKED_AT == 0:
-                status = self._status()
-                key = _without_progress(status)
-                if key != shown or time.monotonic() - told_s >= STATUS_EVERY_S:
-                    shown, told_s = key, time.monotonic()
-                    yield _event("status", json.dumps(status))
+                status = self._status_now()
+                if status.key != shown or time.monotonic() - told_s >= STATUS_EVERY_S:
+                    shown, told_s = status.key, time.monotonic()
+                    yield status.event
             period += 1
             await asyncio.sleep(PERIOD_S)
 
@@ -113,9 +132,21 @@ class LiveEvents:
         mark = Mark(self.state.life, -1, piece.trial.id, piece.first_row + piece.rows)
         return _event("rows", rows.model_dump_json(), mark)
 
-    def _status(self) -> dict[str, Any]:
-        simulated = is_simulated(self.runner.configuration)
-        return status_of(self.runner.status(), simulated, lease_now(self.lease.current()))
+    def _rows_event(self, found: LiveRows) -> str:
+        key = (found.trial_id, found.last_row, len(found.rows), found.restarted)
+        if key not in self._rows:
+            self._rows[key] = _event("rows", rows_of(found).model_dump_json(), Mark.of(self.state.life, found))
+            while len(self._rows) > MOST_WRITTEN:
+                self._rows.popitem(last=False)
+        return self._rows[key]
+
+    def _status_now(self) -> _Told:
+        now_s = time.monotonic()
+        if now_s - self._status.at_s >= PERIOD_S:
+            simulated = is_simulated(self.runner.configuration)
+            status = status_of(self.runner.status(), simulated, lease_now(self.lease.current()))
+            self._status = _Told(now_s, _without_progress(status), _event("status", json.dumps(status)))
+        return self._status
 
 
 def _without_progress(status: dict[str, Any]) -> str:

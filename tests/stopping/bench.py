@@ -1,5 +1,6 @@
 """A bench whose drive is a simulated device in a process of its own, and the programs that run it."""
 
+import multiprocessing
 import os
 import sqlite3
 import subprocess
@@ -29,6 +30,7 @@ HARDWARE_PRIORITY = 20  # of the device, where that is permitted: real ones do n
 ROOT = Path(__file__).parents[2]
 PATIENCE_S = 120.0
 PARAMETERS = {"loads_kg": [0.05], "waveforms": ["multisine"], "duration_s": 600, "repeats": 1}
+CLIENTS, ASKED_FOR = 40, ("trials?limit=1000", "experiments?limit=1000", "bench", "live/now")
 OPTIONS = ["--loads-kg", "0.05", "--waveforms", "multisine", "--duration-s", "600", "--repeats", "1"]
 
 
@@ -120,8 +122,13 @@ class Service:
 
     def __init__(self, process: "subprocess.Popen[bytes]", port: int) -> None:
         self.process = process
+        self._port = port
+        self.client = self.another_client()
+
+    def another_client(self) -> httpx.Client:
+        """One that has no connection yet."""
         headers = {"Authorization": f"Bearer {TOKEN}"}
-        self.client = httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1", headers=headers, timeout=PATIENCE_S)
+        return httpx.Client(base_url=f"http://127.0.0.1:{self._port}/api/v1", headers=headers, timeout=PATIENCE_S)
 
     def wait_until_up(self, bench: Bench) -> None:
         def answers() -> bool:
@@ -150,25 +157,34 @@ class Service:
 
 @contextmanager
 def busy(service: Service) -> Iterator[None]:
-    """Forty clients that ask for whatever takes long, without a pause."""
-    over = threading.Event()
-    paths = ("/trials?limit=1000", "/experiments?limit=1000", "/bench", "/live/now")
-
-    def read(number: int) -> None:
-        with httpx.Client(base_url=service.client.base_url, timeout=PATIENCE_S) as client:
-            while not over.is_set():
-                client.get(paths[number % len(paths)])
-
-    readers = [threading.Thread(target=read, args=(number,)) for number in range(40)]
-    for reader in readers:
-        reader.start()
+    """Forty clients that ask for whatever takes long, without a pause; in a process of their own, as clients are."""
+    context = multiprocessing.get_context("spawn")
+    over, answers = context.Event(), context.Value("q", 0)
+    clients = context.Process(target=_ask, args=(str(service.client.base_url), over, answers))
+    clients.start()
+    deadline_s = time.monotonic() + PATIENCE_S
     try:
-        time.sleep(0.3)
+        while answers.value < len(ASKED_FOR) and time.monotonic() < deadline_s:
+            time.sleep(0.01)
         yield
     finally:
         over.set()
-        for reader in readers:
-            reader.join()
+        clients.join()
+
+
+def _ask(base_url: str, over: Any, answers: Any) -> None:
+    def ask(number: int) -> None:
+        with httpx.Client(base_url=base_url, timeout=PATIENCE_S) as client:
+            while not over.is_set():
+                client.get(ASKED_FOR[number % len(ASKED_FOR)])
+                with answers.get_lock():
+                    answers.value += 1
+
+    readers = [threading.Thread(target=ask, args=(number,)) for number in range(CLIENTS)]
+    for reader in readers:
+        reader.start()
+    for reader in readers:
+        reader.join()
 
 
 def is_there(process_id: int) -> bool:

@@ -5,7 +5,7 @@
 The drive is a simulated device in a process of its own, over Modbus TCP; when the motor was off is what the device
 says. All runs share one store and one drive: that the next run starts is part of what is tested. After each: the
 database is sound, every row that was seen committed is there, the rows have no gap, how much was lost, and what the
-record says.
+record says. A line for each run as it ends, and a table at the end, also after Ctrl-C.
 """
 
 import argparse
@@ -49,6 +49,12 @@ class Ending:
     lost_s: float
     rows: int
     problems: list[str] = field(default_factory=list)
+
+    def in_words(self) -> str:
+        """One line."""
+        found = "; ".join(self.problems) or "as stated"
+        off = f"off after {self.off_s:.3f} of {self.way.off_s:.3f} s"
+        return f"{self.way.name:28} | {off} | lost {self.lost_s:.3f} of {ALLOWED_LOSS_S:.3f} s | {found}"
 
 
 class Killer:
@@ -187,8 +193,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--way", action="append", help="only this one; repeatable")
     arguments = parser.parse_args()
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell has it for what it starts in the background
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    for number in (signal.SIGINT, signal.SIGTERM):  # a shell has what it starts in the background ignore the first
+        signal.signal(number, signal.default_int_handler)
     ways = [way for way in WAYS if not arguments.way or way.name in arguments.way]
     endings = []
     with tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder, kills_bench(Path(folder)) as bench:
@@ -197,12 +203,13 @@ def main() -> None:
             for number in range(arguments.kills):
                 ending = killer.end_one(ways[number % len(ways)])
                 endings.append(ending)
-                for problem in ending.problems:
-                    print(f"run {number + 1}, {ending.way.name}: {problem}", flush=True)  # noqa: T201
+                print(f"{number + 1:4}/{arguments.kills} {ending.in_words()}", flush=True)  # noqa: T201
+        except KeyboardInterrupt:
+            print(f"interrupted after {len(endings)} of {arguments.kills}")  # noqa: T201
         finally:
             print("\n".join(table(endings)), flush=True)  # noqa: T201
             killer.leave()
-    sys.exit(any(ending.problems for ending in endings))
+    sys.exit(len(endings) < arguments.kills or any(ending.problems for ending in endings))
 
 
 if __name__ == "__main__":

@@ -106,8 +106,10 @@ def _stop_over_rest(scene: Scene) -> float:
 
 
 def _stop_when_busy(scene: Scene) -> float:
-    with busy(scene.served):
-        return _stop_over_rest(scene)
+    with busy(scene.served), scene.served.another_client() as client:
+        now_s = time.monotonic()
+        client.post("/stop", json={"reason": "cable is caught"})
+        return now_s
 
 
 def _fill_the_disk(scene: Scene) -> float:

@@ -1,0 +1,97 @@
+"""STOP waits for nothing that others ask for."""
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from urllib.parse import urlsplit
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from bench.bench_control import BenchControl
+from tests.service import running_service as service_of_tests
+from tests.service.running_service import TOKEN, RunningService, running_service
+
+CLIENTS = 40
+ANSWERED_WITHIN_S = 0.25  # a few turns of the interpreter; forty threads of 5 ms each make it over a second
+
+
+class Busy:
+    """What routes of the test do until it is over."""
+
+    def __init__(self) -> None:
+        self.over = threading.Event()
+        self.begun = threading.Semaphore(0)
+
+    def compute(self) -> None:
+        self.begun.release()
+        while not self.over.is_set():
+            pass
+
+    def wait(self, _prompt_number: int = 1) -> None:
+        self.begun.release()
+        self.over.wait(30.0)
+
+
+@contextmanager
+def asked(service: RunningService, request: str, times: int) -> Iterator[None]:
+    """Send a request many times, and read no answer."""
+    address = urlsplit(service.url)
+    with ExitStack() as sockets:
+        for _ in range(times):
+            client = sockets.enter_context(socket.create_connection((address.hostname, address.port)))
+            client.sendall(request.replace("\n", "\r\n").encode())
+        yield
+
+
+def stopped_after_s(service: RunningService) -> float:
+    """As a client sees it that has no connection yet."""
+    headers = {"Authorization": f"Bearer {TOKEN}"}
+    with httpx.Client(base_url=f"{service.url}/api/v1", headers=headers, timeout=30) as client:
+        begun_s = time.monotonic()
+        assert client.post("/stop").status_code == 200
+        return time.monotonic() - begun_s
+
+
+@pytest.fixture
+def busy() -> Iterator[Busy]:
+    found = Busy()
+    yield found
+    found.over.set()
+
+
+@pytest.mark.wall_clock
+def test_stop_does_not_wait_for_forty_clients_who_ask_for_what_takes_long(tmp_path, busy, monkeypatch) -> None:
+    make = service_of_tests.create_app
+
+    def with_one_more_route(*words: object) -> FastAPI:
+        app = make(*words)  # type: ignore[arg-type]
+        app.get("/long")(lambda: busy.compute())
+        return app
+
+    monkeypatch.setattr(service_of_tests, "create_app", with_one_more_route)
+    with (
+        running_service(tmp_path) as service,
+        asked(service, "GET /long HTTP/1.1\nHost: localhost\n\n", CLIENTS),
+    ):
+        busy.begun.acquire()
+        time.sleep(0.2)  # all who may are at it
+        waits_s = sorted(stopped_after_s(service) for _ in range(5))
+        busy.over.set()
+    assert waits_s[2] < ANSWERED_WITHIN_S
+
+
+def test_stop_does_not_wait_for_an_answer_to_a_prompt_that_the_bench_is_slow_to_take(tmp_path, busy, monkeypatch):
+    with running_service(tmp_path) as service:
+        runner: BenchControl = service.runner
+        monkeypatch.setattr(runner, "answer", busy.wait)
+        body = '{"prompt": 1}'
+        head = f"POST /api/v1/continue HTTP/1.1\nHost: localhost\nAuthorization: Bearer {TOKEN}\n"
+        kind = f"Content-Type: application/json\nContent-Length: {len(body)}\n\n{body}"
+        with asked(service, head + kind, 1):
+            busy.begun.acquire()
+            assert stopped_after_s(service) < 10.0  # the bench takes 30 s
+            busy.over.set()
