@@ -11,6 +11,7 @@ from typing import Any, Literal
 from bench.clock import Clock
 from bench.cycle import OFF, RECORDED, Action, Procedure, Reading, row_of
 from bench.errors import ConfigurationError, LimitTrip
+from bench.late_cycles import LateCycles, braking_cycles
 from bench.limits import Guard
 from bench.recorder import Recorder, Sink
 from bench.servo import CurrentServo
@@ -21,7 +22,6 @@ from drivers.errors import DriveStateError
 __all__ = ["OFF", "RECORDED", "Action", "ControlLoop", "Outcome", "OutcomeName", "Procedure", "Reading"]
 
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
-BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
 OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
 
 
@@ -78,6 +78,7 @@ class ControlLoop:
         self._origin_s = 0.0
         self._previous: Sample | None = None
         self._velocity_rad_s = 0.0
+        self._late = LateCycles(clock, period_s)
         self.cycles = 0
         self.last_reading: Reading | None = None
 
@@ -120,7 +121,7 @@ class ControlLoop:
             stop.ask("interrupted from the keyboard")
             return Outcome("stopped", stop.reason)
         except LimitTrip as trip:
-            return Outcome("tripped", str(trip))
+            return Outcome("tripped", f"{trip}{self._late.explain(self.cycles)}")
         except Exception as error:
             return Outcome("failed", str(error) or type(error).__name__)
 
@@ -139,6 +140,7 @@ class ControlLoop:
     def _check_before_motion(self) -> str:
         """Take a sample with the power off, and say what forbids motion."""
         self.cycles = 0
+        self._late = LateCycles(self._clock, self._period_s)
         self._previous = None
         self._velocity_rad_s = 0.0
         sample = self._fresh_sample()
@@ -167,7 +169,7 @@ class ControlLoop:
 
     def _run_cycles(self, procedure: Procedure, recorder: Recorder, stop: StopRequest) -> dict[str, Any]:
         exchange, check, wait, record = self._drive.exchange, self._guard.check, self._clock.wait, recorder.row
-        send, stopping = procedure.send, stop.is_set
+        send, stopping, look = procedure.send, stop.is_set, self._late.look
         action = next(procedure)
         self._clock.start(self._period_s)
         while True:
@@ -178,6 +180,7 @@ class ControlLoop:
             sample = exchange(command)
             reading, estimate_a = self._read(sample)
             self.cycles += 1
+            look(self.cycles)
             self.last_reading = reading
             record(row_of(action, reading, estimate_a))
             if action.event is not None:
@@ -247,7 +250,7 @@ class ControlLoop:
             return []
         try:
             self._drive.quick_stop()
-            for _ in range(ceil(BRAKING_S / self._period_s)):
+            for _ in braking_cycles(self._clock, self._period_s):
                 self._clock.wait()
                 sample = self._drive.exchange(OFF)
                 reading, estimate_a = self._read(sample)

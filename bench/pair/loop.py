@@ -14,7 +14,8 @@ from typing import Any
 from bench.clock import Clock
 from bench.cycle import OFF, Action, Reading
 from bench.errors import LimitTrip
-from bench.loop import BRAKING_S, WAKING_S, Outcome
+from bench.late_cycles import LateCycles, braking_cycles
+from bench.loop import WAKING_S, Outcome
 from bench.pair.cycle import PAIR_RECORDED, PairAction, PairProcedure, PairReading, Reach, Truth, pair_row
 from bench.pair.joint import PairJoint
 from bench.recorder import Recorder, Sink
@@ -60,6 +61,7 @@ class PairLoop:
         self._period_s = period_s
         self._truth = truth
         self._operate = operate
+        self._late = LateCycles(clock, period_s)
         self.cycles = 0
         self.last_reading: Reading | None = None
 
@@ -105,13 +107,14 @@ class PairLoop:
             stop.ask("interrupted from the keyboard")
             return Outcome("stopped", stop.reason)
         except LimitTrip as trip:
-            return Outcome("tripped", str(trip))
+            return Outcome("tripped", f"{trip}{self._late.explain(self.cycles)}")
         except Exception as error:
             return Outcome("failed", str(error) or type(error).__name__)
 
     def _check_before_motion(self) -> str:
         """Take samples with the power off, and say what forbids motion."""
         self.cycles = 0
+        self._late = LateCycles(self._clock, self._period_s)
         samples = {joint: joint.drive.exchange(OFF) for joint in self._joints}
         self._clock.start(self._period_s)
         for _ in range(ceil(WAKING_S / self._period_s)):
@@ -137,6 +140,7 @@ class PairLoop:
             if stop.is_set():
                 return None
             reading = self._cycle(action, recorder)
+            self._late.look(self.cycles)
             self._master.check(reading.master, action.master.target_rad)
             self._slave.check(reading.slave, action.slave.target_rad)
             try:
@@ -171,7 +175,7 @@ class PairLoop:
         """Let both drives brake until both stand, and record it; says what went wrong and is not known yet."""
         powered = [joint for joint in self._joints if joint.is_powered]
         notes = [note for joint in powered for note in _attempt(joint, joint.drive.quick_stop, known)]
-        for _ in range(ceil(BRAKING_S / self._period_s) if powered else 0):
+        for _ in braking_cycles(self._clock, self._period_s) if powered else ():
             with suppress(BaseException):  # a second Ctrl-C, too: on to power-off
                 self._clock.wait()
             if not self._braking_cycle(recorder):

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 
-from bench.loop import BRAKING_S
+from bench.late_cycles import BRAKING_S
 from bench.recorder import Recorder
 from bench.store.custody import LEFT_RUNNING
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S

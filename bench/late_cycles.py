@@ -1,0 +1,51 @@
+"""Cycles that a late host loses: what they do to a run that goes on, and to one that is being ended."""
+
+from collections.abc import Iterator
+from math import ceil
+
+from bench.clock import Clock
+
+BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
+TOLD_S = 0.5  # how long after a loss a limit that trips is put down to it, too
+
+
+class LateCycles:
+    """Remembers when the host was late last.
+
+    Between two cycles the drive goes on with the last command. A position servo whose drive was left with a current has
+    a joint that is elsewhere when the host is back: the limit that trips then is right, but tells half of it.
+
+    Args:
+        clock: of the loop.
+        period_s: control period [s].
+    """
+
+    def __init__(self, clock: Clock, period_s: float) -> None:
+        self._clock = clock
+        self._period_s = period_s
+        self._seen = clock.overruns
+        self._lost = 0
+        self._at_cycle = 0
+
+    def look(self, cycle: int) -> None:
+        """When a cycle begins."""
+        overruns = self._clock.overruns
+        if overruns != self._seen:
+            self._lost, self._at_cycle = overruns - self._seen, cycle
+            self._seen = overruns
+
+    def explain(self, cycle: int) -> str:
+        """What the drive did meanwhile, where cycles were lost a moment ago; else ""."""
+        ago_s = (cycle - self._at_cycle) * self._period_s
+        if not self._lost or ago_s > TOLD_S:
+            return ""
+        late = f"the host was late by {self._lost * self._period_s:.3g} s ({self._lost} cycles) {ago_s:.3g} s before"
+        return f"; {late}, and the drive went on with the last command meanwhile: see what kept the host busy"
+
+
+def braking_cycles(clock: Clock, period_s: float) -> Iterator[None]:
+    """The cycles for which a joint may brake. Those that a late host loses count: a brake is given a time."""
+    done, lost_before = 0, clock.overruns
+    while done + clock.overruns - lost_before < ceil(BRAKING_S / period_s):
+        yield
+        done += 1
