@@ -1,0 +1,118 @@
+"""The experiments of a store."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+from typing import Any
+
+from bench.store import experiments
+from bench.store.custody import UNWRITTEN, Custody
+from bench.store.database import Database
+from bench.store.errors import StoreError
+from bench.store.importing import Import
+from bench.store.records import Experiment
+from compensator.lab.recording import Recording
+
+
+class ExperimentStore:
+    """What was started or imported, and how it ended; `Store` is one."""
+
+    custody: Custody
+    _database: Database
+
+    def begin_experiment(
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        source: str,
+        provenance: dict[str, Any],
+        rig: dict[str, Any],
+        operator: str = "",
+        note: str = "",
+    ) -> int:
+        """Start an experiment from `source` "simulated", "real" or "imported". Returns its id.
+
+        For `provenance` see `bench.provenance`; `rig` is the rig as in `rig.toml`.
+        """
+        values = {
+            "kind": kind,
+            "parameters": parameters,
+            "source": source,
+            "provenance": provenance,
+            "rig": rig,
+            "operator": operator,
+            "note": note,
+        }
+        self.custody.write_noted()
+        self.custody.settle()
+        with self._database.writing() as connection:
+            return experiments.add(connection, self.custody.token(), values)
+
+    def finish_experiment(
+        self, experiment_id: int, outcome: str, reason: str = "", results: dict[str, Any] | None = None
+    ) -> None:
+        """Close an experiment; a trial of it that still runs is given the same outcome and reason.
+
+        Raises:
+            NotFoundError: no such experiment.
+            StoreStateError: it is finished already.
+        """
+        try:
+            with self._database.writing() as connection:
+                experiments.finish(connection, experiment_id, outcome, reason, results or {})
+        except UNWRITTEN:
+            self.custody.note(experiment_id, outcome, reason)
+            raise
+
+    def experiment(self, experiment_id: int) -> Experiment:
+        """One experiment, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return self.custody.as_ended(experiments.get(connection, experiment_id))
+
+    def experiments(
+        self,
+        kind: str | None = None,
+        outcome: str | None = None,
+        source: str | None = None,
+        tag: str | None = None,
+        limit: int | None = None,
+        offset: int = 0,
+    ) -> list[Experiment]:
+        """Experiments, newest first; all of them without a limit."""
+        with self._database.reading() as connection:
+            found = experiments.find(connection, kind, outcome, source, tag, limit, offset)
+        return list(map(self.custody.as_ended, found))
+
+    def annotate(self, experiment_id: int, note: str | None = None, tags: Iterable[str] | None = None) -> None:
+        """Change the note and the tags of an experiment, also of one that has ended; None leaves as it is.
+
+        Raises:
+            NotFoundError: no such experiment.
+            StoreValueError: a tag that cannot be kept.
+        """
+        with self._database.writing() as connection:
+            experiments.annotate(connection, experiment_id, note, tags)
+
+    def add_imported(
+        self,
+        kind: str,
+        parameters: dict[str, Any],
+        provenance: dict[str, Any],
+        rig: dict[str, Any],
+        recordings: Iterable[tuple[Recording, str, str]],
+    ) -> int:
+        """Add an experiment that was recorded elsewhere, with its trials: all, or nothing. Returns its id.
+
+        Each recording comes with its trial's outcome and reason.
+        """
+        values = {"kind": kind, "parameters": parameters, "provenance": provenance, "rig": rig}
+        with self._database.writing():
+            token = self.custody.token()
+        found = Import(self._database, token, values)
+        try:
+            for recording, outcome, reason in recordings:
+                found.add(recording, outcome, reason)
+            return found.finish()
+        except BaseException:
+            with suppress(StoreError):  # a full or locked database: the next to open it removes what came in
+                found.abandon()
+            raise

@@ -1,0 +1,129 @@
+"""The trials of a store, and what was measured in them."""
+
+from collections.abc import Mapping, Sequence
+
+from bench.store import samples, trials
+from bench.store.conditions import Wanted
+from bench.store.custody import Custody
+from bench.store.database import Database
+from bench.store.errors import StoreValueError
+from bench.store.records import Condition, Event, Trial
+from bench.store.reduction import MIN_POINTS
+from bench.store.trial_writer import TrialWriter
+from bench.store.window import Stretch, reduced
+from compensator.lab.recording import FloatArray, Recording
+
+
+class TrialStore:
+    """Trials, their samples and their events; `Store` is one."""
+
+    custody: Custody
+    _database: Database
+
+    def begin_trial(
+        self,
+        experiment_id: int,
+        name: str,
+        kind: str,
+        conditions: Mapping[str, Condition],
+        channels: Sequence[str],
+    ) -> TrialWriter:
+        """Start a trial of a running experiment.
+
+        Args:
+            experiment_id: the experiment that it is part of.
+            name: unique within the experiment.
+            kind: what is done ("steps", "load-sweep").
+            conditions: what is held constant; finite numbers, text, bools.
+            channels: names from `compensator.lab.channels`, in the order of the columns of the rows.
+
+        Raises:
+            NotFoundError: no such experiment.
+            StoreStateError: the experiment is finished.
+            StoreValueError: the name is taken, or a condition or channel cannot be kept.
+        """
+        with self._database.writing() as connection:
+            trial_id = trials.add(connection, experiment_id, name, kind, conditions, channels)
+        return TrialWriter(self._database, trial_id, tuple(channels))
+
+    def trial(self, trial_id: int) -> Trial:
+        """One trial, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return self.custody.as_ended(trials.get(connection, trial_id))
+
+    def trials(
+        self,
+        experiment_id: int | None = None,
+        kind: str | None = None,
+        outcome: str | None = None,
+        source: str | None = None,
+        conditions: Mapping[str, Wanted] | None = None,
+        limit: int | None = None,
+        offset: int = 0,
+    ) -> list[Trial]:
+        """Trials in the order in which they were made; all of them without a limit.
+
+        `conditions` maps a condition to the wanted value, or to the (lowest, highest) wanted number.
+        """
+        with self._database.reading() as connection:
+            wanted = conditions or {}
+            found = trials.find(connection, experiment_id, kind, outcome, source, wanted, limit, offset)
+        return list(map(self.custody.as_ended, found))
+
+    def events(self, trial_id: int) -> list[Event]:
+        """The events of a trial, in order of time, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            trials.get(connection, trial_id)
+            return trials.events(connection, trial_id)
+
+    def samples(self, trial_id: int, channels: Sequence[str] | None = None) -> dict[str, FloatArray]:
+        """Channel name -> samples, each of shape (rows,): what is committed now.
+
+        All channels of the trial where `channels` is None.
+
+        Raises:
+            NotFoundError: no such trial, or it has no such channel.
+        """
+        with self._database.reading() as connection:
+            trial = trials.get(connection, trial_id)
+            return samples.read(connection, trial, trial.channels if channels is None else channels)
+
+    def recording(self, trial_id: int) -> Recording:
+        """A trial as a recording set would hold it: its conditions, all its channels, its events.
+
+        Raises:
+            NotFoundError: no such trial.
+        """
+        trial = self.trial(trial_id)
+        return Recording(trial.name, trial.kind, dict(trial.conditions), self.samples(trial_id), self.events(trial_id))
+
+    def part(self, trial: Trial, first_row: int, rows: int) -> FloatArray:
+        """Some rows of a trial, all its channels, shape (channels, up to `rows`): for whoever goes through all of it.
+
+        Raises:
+            NotFoundError: the trial was removed meanwhile.
+        """
+        with self._database.reading() as connection:
+            return samples.read_part(connection, trial, first_row, rows)
+
+    def samples_reduced(
+        self, trial_id: int, channels: Sequence[str] | None, points: int, between_s: Stretch | None = None
+    ) -> dict[str, FloatArray]:
+        """As `samples`, always with time_s, reduced to the rows that a plot needs.
+
+        Args:
+            trial_id: the trial.
+            channels: all channels of the trial where None.
+            points: rows that each channel may ask for, at least 4; all channels share the rows returned.
+            between_s: a stretch of the trial [s]; None for all of it.
+
+        Raises:
+            NotFoundError: no such trial, or it has no such channel.
+            StoreValueError: too few points.
+        """
+        if points < MIN_POINTS:
+            raise StoreValueError(f"points is {points}; wanted at least {MIN_POINTS}")
+        with self._database.reading() as connection:
+            trial = trials.get(connection, trial_id)
+            names = list(dict.fromkeys(["time_s", *(trial.channels if channels is None else channels)]))
+            return reduced(connection, trial, names, points, between_s)
