@@ -4,11 +4,13 @@
 
 One trial at 1 kHz on the simulated drive, again and again, in turn alone and beside 50 readers, an export and a
 diagnosis that are asked for without a pause. Readers are in a process of their own, on the same machine. Printed:
-cycles lost, and how late cycles began, of both, and the ratio of each pair of neighbours.
+cycles lost, and how late cycles began, of both, and p99 beside the readers over that of the stretches alone before and
+after, so that a machine that drifts cancels.
 
-The bound beside it, in the same run: a bare process that only waits for its deadlines (`bare_loop`), alone and beside
-the same readers. In a virtual machine the host takes the processor away now and then: how long, the kernel counts, and
-is printed, too.
+The bound beside it, in the same run: a bare process that only waits for its deadlines with the loop's priority
+(`bare_loop`), alone and beside the same readers, in turn with the trials. And during each stretch, a process on each
+processor whose priority is above the loop's (`host_watch`): where even that one is held up, the host was, and the
+cycles that are lost in the same moments are counted as the host's. Both counts are printed.
 """
 
 import argparse
@@ -25,55 +27,23 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from multiprocessing.synchronize import Event
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import httpx
-import numpy as np
 import tomli_w
 
 from bench.configuration import default_configuration
 from tests.service import bare_loop, timed_process
+from tests.service.host_watch import watched
+from tests.service.lateness import Measured, Stretch, report
 from tests.service.recorded_joint import recording_set_zip
+from tests.service.timed_process import Cycles
 
 TOKEN = "a-token-for-the-benchmark"
 PERIOD_S = 0.001
 STREAMS, ASKING = 30, ("/bench", "/trials?limit=100")  # 30 watch; 10 each ask for these
 ASKED_EVERY_S = 0.5
-ASKED_RATIO = 1.05
 ROOT = Path(__file__).parents[2]
-BARE, ALONE, BESIDE, BARE_BESIDE = (
-    "only waiting, alone",
-    "trial, alone",
-    "trial, beside 50 readers ...",
-    "only waiting, beside 50 readers ...",
-)
-COLUMNS = {BARE: (True, False), ALONE: (False, False), BESIDE: (False, True), BARE_BESIDE: (True, True)}
-"""Name of what is measured: whether it only waits, whether it is beside the readers."""
-
-
-class Round(NamedTuple):
-    """One trial.
-
-    Attributes:
-        late_s: how late each cycle began.
-        lost: cycles that were lost.
-        served: answers given meanwhile.
-        stolen_s: for how long the host had taken a processor of this machine away, all processors together.
-    """
-
-    late_s: np.ndarray
-    lost: int
-    served: int
-    stolen_s: float
-
-
-def stolen_s() -> float:
-    """Since the start of the machine, all processors together; 0 where the kernel does not say."""
-    try:
-        fields = Path("/proc/stat").read_text().split("\n", 1)[0].split()
-    except OSError:
-        return 0.0
-    return int(fields[8]) / os.sysconf("SC_CLK_TCK")
 
 
 async def _watch(port: int, served: Any) -> None:
@@ -144,20 +114,20 @@ class Bench:
         self.scheduling = found["provenance"]["control_loop"]["scheduling"]
         return experiment_id
 
-    def measured(self, seconds: float, beside: bool, bare: bool) -> Round:
+    def measured(self, seconds: float, what: Measured) -> Stretch:
         """A trial, or a bare process, alone or not."""
         served = multiprocessing.get_context("spawn").Value("q", 0)
-        with self._serving(served) if beside else nullcontext():
-            before, stolen_before_s = served.value, stolen_s()
-            late_s, lost = self._bare(seconds) if bare else self._trial(seconds)
-            return Round(late_s, lost, served.value - before, stolen_s() - stolen_before_s)
+        with self._serving(served) if what.beside else nullcontext():
+            before = served.value
+            with watched() as gaps:
+                cycles = self._waiting(seconds) if what.waits else self._trial(seconds)
+            return Stretch(cycles, gaps, served.value - before)
 
-    def _trial(self, seconds: float) -> tuple[np.ndarray, int]:
-        experiment_id = self.trial(seconds)
-        (trial,) = self._client.get("/trials", params={"experiment_id": experiment_id}).json()["items"]
-        return timed_process.read(self._folder)[-1], trial["results"]["overruns"]
+    def _trial(self, seconds: float) -> Cycles:
+        self.trial(seconds)
+        return timed_process.read(self._folder)[-1]
 
-    def _bare(self, seconds: float) -> tuple[np.ndarray, int]:
+    def _waiting(self, seconds: float) -> Cycles:
         return bare_loop.run(self._folder / "bare", int(seconds / PERIOD_S), PERIOD_S)
 
     @contextmanager
@@ -215,30 +185,6 @@ def _wait_until_up(port: int) -> None:
             time.sleep(0.1)
 
 
-def report(rounds: dict[str, list[Round]]) -> Iterator[str]:
-    """The table, and the ratios."""
-    yield (
-        f"{'at 1 kHz':33} | cycles | lost | late [us]: median |  p99 | p99.9 |   max | taken by the host [ms] "
-        "| answers served"
-    )
-    for name, measured in rounds.items():
-        late_us = 1e6 * np.concatenate([one.late_s for one in measured])
-        p50, p99, p999 = np.percentile(late_us, (50, 99, 99.9))
-        lost, served = sum(one.lost for one in measured), sum(one.served for one in measured)
-        yield (
-            f"{name:33} | {len(late_us):6} | {lost:4} | {p50:17.1f} | {p99:4.0f} | {p999:5.0f} | {late_us.max():5.0f} "
-            f"| {1e3 * sum(one.stolen_s for one in measured):22.0f} | {served}"
-        )
-    p99_s = [[float(np.percentile(one.late_s, 99)) for one in rounds[name]] for name in (ALONE, BESIDE)]
-    pairs = [with_readers / without for without, with_readers in zip(*p99_s, strict=True)]
-    ratio = float(np.median(pairs))
-    lost, bound = (sum(one.lost for one in rounds[name]) for name in (BESIDE, BARE_BESIDE))
-    met = "" if ratio <= ASKED_RATIO and not lost else "   NOT MET"
-    yield f"p99 beside / alone, pair by pair: {', '.join(f'{one:.2f}' for one in pairs)}; median {ratio:.2f}"
-    yield f"asked: no cycle lost, p99 at most x {ASKED_RATIO}; measured: {lost} lost, x {ratio:.2f}{met}"
-    yield f"bound: a process that only waits lost {bound} beside the same readers"
-
-
 def main() -> None:
     """Measure, in one run, and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -247,12 +193,14 @@ def main() -> None:
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="friction-bench-rates-") as folder, service(Path(folder)) as bench:
         bench.prepare(arguments.seconds)
-        rounds: dict[str, list[Round]] = {name: [] for name in COLUMNS}
-        for _ in range(arguments.rounds):
-            for name, (bare, beside) in COLUMNS.items():
-                rounds[name].append(bench.measured(arguments.seconds, beside, bare))
+        found: dict[Measured, list[Stretch]] = {what: [] for what in Measured}
+        order = [one for _ in range(arguments.rounds) for one in Measured] + [Measured.WAITING, Measured.ALONE]
+        for number, what in enumerate(order, 1):
+            stretch = bench.measured(arguments.seconds, what)
+            found[what].append(stretch)
+            print(f"{number}/{len(order)} {what.value}: {stretch.in_words(PERIOD_S)}", flush=True)
         print(f"control loop: a process of its own, {bench.scheduling}; {os.cpu_count()} cores")
-    print("\n".join(report(rounds)))
+    print("\n".join(report(found, PERIOD_S)))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import sys
 from functools import partial
 from pathlib import Path
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,10 +19,11 @@ from bench.clock import WallClock
 
 FOLDER = "FRICTION_BENCH_TIMED_FOLDER"
 MOST_CYCLES = 200_000
+_PAIR = struct.Struct("=2d")
 
 
 class TimedClock(WallClock):
-    """Writes how late each cycle begins [s] into a file of its own: nothing else is done in a cycle because of it."""
+    """Writes when each cycle is due and how late it begins into a file of its own: nothing else is done in a cycle."""
 
     numbers = itertools.count()
 
@@ -29,22 +31,34 @@ class TimedClock(WallClock):
         super().__init__()
         path = Path(os.environ[FOLDER]) / f"cycles-{next(self.numbers):03}"
         with path.open("w+b") as file:
-            file.write(bytes(8 * MOST_CYCLES))
+            file.write(bytes(_PAIR.size * MOST_CYCLES))
             file.flush()
-            self._late = mmap.mmap(file.fileno(), 8 * MOST_CYCLES)
+            self._pairs = mmap.mmap(file.fileno(), _PAIR.size * MOST_CYCLES)
         self._noted = 0
 
     def wait(self) -> None:
         due_s = self._deadline_s + self._period_s
         super().wait()
-        struct.pack_into("=d", self._late, 8 * self._noted, perf_counter() - due_s)
+        _PAIR.pack_into(self._pairs, _PAIR.size * self._noted, due_s, perf_counter() - due_s)
         self._noted += 1
 
 
-def read(folder: Path) -> list[np.ndarray]:
-    """How late the cycles of each experiment began [s], in the order of the experiments."""
-    found = [np.fromfile(path) for path in sorted(folder.glob("cycles-*"))]
-    return [late[: np.flatnonzero(late)[-1] + 1] for late in found]
+class Cycles(NamedTuple):
+    """The cycles of one experiment, arrays of one length.
+
+    Attributes:
+        due_s: when each had to begin, by `perf_counter()`, which all processes of a machine share.
+        late_s: how late it began.
+    """
+
+    due_s: np.ndarray
+    late_s: np.ndarray
+
+
+def read(folder: Path) -> list[Cycles]:
+    """The cycles of each experiment, in the order of the experiments."""
+    found = [np.fromfile(path).reshape(-1, 2) for path in sorted(folder.glob("cycles-*"))]
+    return [Cycles(*pairs[: np.flatnonzero(pairs[:, 0])[-1] + 1].T) for pairs in found]
 
 
 def main() -> None:
