@@ -1,6 +1,6 @@
 """The load that a motor current reflects, by the torque constant, the gear ratio and the lever of the rig."""
 
-from math import sin
+from math import copysign, sin
 
 from bench.errors import ConfigurationError
 from bench.rig import Rig
@@ -33,6 +33,19 @@ def load_current_a(load_kg: float, angle_rad: float, rig: Rig) -> float:
     torque_n_m_a, length_m = _lever(rig)
     moment_kg_m = load_kg * length_m + _own_moment_kg_m(rig)
     return moment_kg_m * STANDARD_GRAVITY_M_S2 * sin(angle_rad) / torque_n_m_a
+
+
+def arm_angle_rad(position_rad: float, load_current_a: float, rig: Rig) -> float:
+    """Angle of the arm [rad] behind the free play, which a load closes on one side; the sensor is before it.
+
+    Args:
+        position_rad: by the sensor; its zero lies in the middle of the free play.
+        load_current_a: of the load; none leaves the arm anywhere within the free play, in the middle on average.
+        rig: free play that it leaves out counts as none.
+    """
+    if load_current_a == 0.0:
+        return position_rad
+    return position_rad - copysign((rig.gear.backlash_rad or 0.0) / 2.0, load_current_a)
 
 
 def _own_moment_kg_m(rig: Rig) -> float:

@@ -26,6 +26,7 @@ class RestSettings(Section):
     delay: Row = Field(default=(0.0, 0.0, 0.0), description="k0, k1, k2: what a ramp gains before motion is seen")
     floor_a: float = quantity(1e-6, "A", "Least scatter of one breakaway", gt=0)
     scatter: float = quantity(0.0, "", "Scatter of one breakaway, as a share of friction", ge=0)
+    moment_scatter: float = quantity(0.0, "", "The same, as a share of friction with what a moment adds", ge=0)
 
     def calibration(self) -> RestCalibration:
         """For the compensator."""

@@ -30,11 +30,13 @@ class Breakaway(NamedTuple):
         direction: 1 or -1.
         current_a: of the motor when the motion was seen, back-EMF left out [A].
         rate_a_s: at which the current was ramped, above 0 [A/s].
+        position_rad: where the sensor stood before; NaN where that was not kept.
     """
 
     direction: float
     current_a: float
     rate_a_s: float
+    position_rad: float = nan
 
 
 class BreakawayFit(NamedTuple):
@@ -49,6 +51,7 @@ class BreakawayFit(NamedTuple):
         load_variance, friction_variance: of the two currents, as shares of that of one breakaway.
         ramped_a, ramp: half of what lies between the breakaways as they were seen [A], and the mean of r^(2/3) there:
             whoever knows k better takes k times that off.
+        position_rad: mean of where the sensor stood; NaN where that was not kept.
     """
 
     load_current_a: Interval
@@ -60,6 +63,7 @@ class BreakawayFit(NamedTuple):
     friction_variance: float
     ramped_a: float
     ramp: float
+    position_rad: float = nan
 
 
 def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
@@ -74,8 +78,8 @@ def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
     Raises:
         ModelParameterError: too few, or one direction only.
     """
-    rows = np.array(breakaways, dtype=np.float64).reshape(-1, 3)
-    direction, current_a, rate = rows.T
+    rows = np.array([tuple(one) for one in breakaways], dtype=np.float64).reshape(-1, 4)
+    direction, current_a, rate, position_rad = rows.T
     columns = np.column_stack([np.ones_like(direction), direction, direction * rate**DELAY_POWER])
     columns = columns if len(set(rate.tolist())) > 1 else columns[:, :2]
     count, unknowns = columns.shape
@@ -91,7 +95,8 @@ def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
     delay = solution[2] if unknowns > 2 else 0.0
     ramped_a = float(np.mean(direction * (current_a - solution[0])))
     ramp = float(np.mean(rate**DELAY_POWER))
-    return BreakawayFit(load, friction, delay, scatter_a, count, variances[0], variances[1], ramped_a, ramp)
+    stood_rad = float(np.mean(position_rad))
+    return BreakawayFit(load, friction, delay, scatter_a, count, variances[0], variances[1], ramped_a, ramp, stood_rad)
 
 
 def _interval(value: float, half: float) -> Interval:

@@ -26,16 +26,22 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtri, stdtrit
 
 from compensator.breakaway_fit import BreakawayFit
 from compensator.errors import CalibrationError
 from compensator.gear_loss import GearLoss
-from compensator.interval import Interval
+from compensator.interval import CONFIDENCE, Interval
 
 BAND = 1.959964
 FLOOR_A = 1e-6  # least scatter, where a joint shows none
 LEAST_POINTS = 6
-SPREAD = 0.95  # of what a free arm may carry, either way: all of it is equally likely
+UNKNOWNS = 3  # of a fit at two rates
+UNLIKELY = 1e-4  # that a search scatters so much by chance
+# a free arm may carry any load up to what its friction holds, all equally likely; 0.96 of that, and free teeth ruled
+# out wrongly 1 time in 100, make 95 %
+SPREAD = 0.96
+RULED_OUT = 2.575829
 
 
 class RestPoint(NamedTuple):
@@ -73,7 +79,8 @@ class RestCalibration:
         covariance: of the three, in that order; rows of A, A, 1.
         slope, offset_a, offset_sd_a: b, e and the standard deviation of e.
         delay: k0, k1, k2.
-        floor_a, scatter: standard deviation of one breakaway: sqrt(floor^2 + (scatter F)^2).
+        floor_a, scatter, moment_scatter: standard deviation of one breakaway: sqrt(floor^2 + (scatter F)^2 +
+            (moment_scatter D)^2). What the teeth lose may scatter with friction or not.
         asymmetry_told: 95 % interval of r.
     """
 
@@ -87,6 +94,7 @@ class RestCalibration:
     delay: tuple[float, ...] = (0.0, 0.0, 0.0)
     floor_a: float = FLOOR_A
     scatter: float = 0.0
+    moment_scatter: float = 0.0
 
     @property
     def asymmetry_told(self) -> Interval:
@@ -101,9 +109,9 @@ class RestCalibration:
             max(self.slope + more, 0.0), min(max(self.slope - more, 0.0), 0.99), 2.0 * max(self.step_a, 0.0)
         )
 
-    def scatter_a(self, friction_a: float) -> float:
-        """Standard deviation of one breakaway [A]."""
-        return sqrt(self.floor_a**2 + (self.scatter * friction_a) ** 2)
+    def scatter_a(self, friction_a: float, half_a: float) -> float:
+        """Standard deviation of one breakaway [A], by F and D."""
+        return hypot(self.floor_a, self.scatter * friction_a, self.moment_scatter * half_a)
 
     def estimate(self, found: BreakawayFit) -> RestEstimate:
         """Load and friction from the breakaways of one search."""
@@ -114,12 +122,24 @@ class RestCalibration:
         load_a = self._load_a(found.load_current_a.value, half_a) if touches else 0.0
         friction_a = max(half_a - self.slope * abs(load_a) - self.offset_a * touches, 0.0)
         # as many one way as the other: mean and half difference are equally sure
-        noise_a = self.scatter_a(half_a) / sqrt(found.breakaways)
+        noise_a = self._noise_a(found, self.scatter_a(friction_a, half_a)) / sqrt(found.breakaways)
         friction_width_a = BAND * sqrt(1.0 + self.slope**2) * noise_a
         return RestEstimate(
             self._load(found, load_a, friction_a, noise_a),
             Interval(friction_a, friction_a - friction_width_a, friction_a + friction_width_a),
         )
+
+    @staticmethod
+    def _noise_a(found: BreakawayFit, known_a: float) -> float:
+        """Scatter of one breakaway [A]: the calibrated one, unless this search itself scatters by far more.
+
+        Then this is not what was calibrated - a disturbance, another gear - and the search's own scatter counts, with
+        the t quantile of so few in place of the normal one.
+        """
+        freedom = found.breakaways - UNKNOWNS
+        if freedom < 1 or not found.scatter_a**2 * freedom > known_a**2 * chdtri(freedom, UNLIKELY):
+            return known_a
+        return found.scatter_a * float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0)) / BAND
 
     @property
     def _least_a(self) -> float:
@@ -136,11 +156,11 @@ class RestCalibration:
         mean_a = found.load_current_a.value
         free_a = mean_a - self.asymmetry * found.friction_current_a.value
         unseen_a, ends_a = self._width_a(0.0, friction_a, noise_a), [load_a]
-        if load_a == 0.0 or abs(free_a) <= unseen_a:
-            half_a = max(SPREAD * hypot(self._held_a, BAND * self.offset_sd_a), unseen_a / self.gain)
+        if load_a == 0.0 or abs(free_a) <= RULED_OUT / BAND * unseen_a:
+            half_a = max(SPREAD * hypot(self._held_a, BAND * self.offset_sd_a), unseen_a / self._per_load(0.0))
             ends_a += [-half_a, half_a]
         touching_a = self._load_a(mean_a, self._half_a(found, 1.0, abs(free_a)))
-        width_a = self._width_a(touching_a, friction_a, noise_a) / self.gain
+        width_a = self._width_a(touching_a, friction_a, noise_a) / self._per_load(copysign(1.0, touching_a))
         if abs(touching_a) + width_a >= self._held_a:
             ends_a += [touching_a - width_a, touching_a + width_a]
         return Interval(load_a, min(ends_a), max(ends_a))
@@ -149,6 +169,7 @@ class RestCalibration:
         """Half of the 95 % interval of M under a load, by the scatter of breakaways and by what was calibrated."""
         gradient = np.array([load_a, float(np.sign(load_a)), friction_a])
         known_a2 = float(gradient @ np.array(self.covariance) @ gradient)
+        known_a2 += (self.asymmetry * self.offset_sd_a) ** 2
         return BAND * sqrt((1.0 + self.asymmetry**2) * noise_a**2 + known_a2)
 
     def _half_a(self, found: BreakawayFit, touches: float, load_a: float) -> float:
@@ -160,7 +181,11 @@ class RestCalibration:
         """L from M and D, where the teeth touch."""
         way = copysign(1.0, mean_a - self.asymmetry * half_a)
         left_a = mean_a - way * self.step_a - self.asymmetry * (half_a - self.offset_a)
-        return left_a / (self.gain - self.asymmetry * self.slope * way)
+        return left_a / self._per_load(way)
+
+    def _per_load(self, way: float) -> float:
+        """What M less r D grows by with the load on a side; with neither side given, on average."""
+        return self.gain - self.asymmetry * self.slope * way
 
 
 def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
@@ -172,18 +197,30 @@ def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
     _check(points)
     load_a, weight_kg = _column(points, "load_current_a"), _column(points, "load_kg")
     found = [point.found for point in points]
-    floor_a, scatter = _scatter(found)
     ones, touches = np.ones_like(load_a), (load_a != 0.0).astype(float)
     ramped_a, ramp = _column(found, "ramped_a"), _column(found, "ramp")
-    weights = np.sqrt(_column(found, "breakaways")) / np.hypot(floor_a, scatter * ramped_a)
-    delay, _ = _fit([ones, touches, np.abs(load_a)], _column(found, "delay"), weights)
-    half_a = ramped_a - (np.column_stack([ones, touches, np.abs(load_a)]) @ delay) * ramp
-    (f0, f1, slope, offset_a), told = _fit([ones, weight_kg, np.abs(load_a), touches], half_a, weights)
+    counts = np.sqrt(_column(found, "breakaways"))
+    delays, columns = [ones, touches, np.abs(load_a)], [ones, weight_kg, np.abs(load_a), touches]
+
+    def ramps_off_a(weights: NDArray[np.float64]) -> tuple[list[float], NDArray[np.float64]]:
+        delay, _ = _fit(delays, _column(found, "delay"), weights)
+        return delay, ramped_a - (np.column_stack(delays) @ delay) * ramp
+
+    # once with equal weights, for what the scatter goes with
+    _, half_a = ramps_off_a(counts)
+    (f0, f1, _, _), _ = _fit(columns, half_a, counts)
+    friction_a = np.maximum(f0 + f1 * weight_kg, 0.0)
+    floor_a, scatter, moment_scatter = _scatter(found, friction_a, half_a)
+    weights = counts / np.sqrt(floor_a**2 + (scatter * friction_a) ** 2 + (moment_scatter * half_a) ** 2)
+    delay, half_a = ramps_off_a(weights)
+    (f0, f1, slope, offset_a), told = _fit(columns, half_a, weights)
     mean_a = np.array([one.load_current_a.value for one in found])
     (gain, step_a, asymmetry), covariance = _fit([load_a, np.sign(load_a), f0 + f1 * weight_kg], mean_a, weights)
     known = tuple(map(tuple, covariance.tolist()))
     offset_sd_a = sqrt(float(told[3, 3]))
-    return RestCalibration(gain, step_a, asymmetry, known, slope, offset_a, offset_sd_a, tuple(delay), floor_a, scatter)
+    return RestCalibration(
+        gain, step_a, asymmetry, known, slope, offset_a, offset_sd_a, tuple(delay), floor_a, scatter, moment_scatter
+    )
 
 
 def _column(items: Sequence[RestPoint] | Sequence[BreakawayFit], name: str) -> NDArray[np.float64]:
@@ -204,20 +241,21 @@ def _fit(
     return solution, covariance
 
 
-def _scatter(found: Sequence[BreakawayFit]) -> tuple[float, float]:
-    """Floor and share of the scatter of a breakaway, from that within each search."""
+def _scatter(
+    found: Sequence[BreakawayFit], friction_a: NDArray[np.float64], half_a: NDArray[np.float64]
+) -> tuple[float, float, float]:
+    """Floor, and shares of F and D, of the scatter of a breakaway, from that within each search."""
     from scipy.optimize import nnls  # imported when needed: every command starts with this file
 
     variance = np.array([one.scatter_a**2 for one in found])
-    friction_a = np.array([one.friction_current_a.value for one in found])
     scale = np.mean(variance) or FLOOR_A**2
     # a variance is as uncertain as it is large: weighed by where the first fit puts it
-    columns = np.column_stack([np.ones_like(variance), friction_a**2])
+    columns = np.column_stack([np.ones_like(variance), friction_a**2, half_a**2])
     weights = np.ones_like(variance)
     for _ in range(5):
         solution = nnls(columns * weights[:, None] / scale, variance * weights / scale)[0]
         weights = scale / np.maximum(columns @ solution, 0.01 * scale)
-    return max(sqrt(solution[0]), FLOOR_A), sqrt(solution[1])
+    return max(sqrt(solution[0]), FLOOR_A), sqrt(solution[1]), sqrt(solution[2])
 
 
 def _check(points: Sequence[RestPoint]) -> None:

@@ -288,7 +288,7 @@ def _let_go(settings: RestSearchSettings, state: RestSearchState, reading: Searc
     ends_a = (low_a, current_a) if sign > 0.0 else (current_a, high_a)
     breakaways = progress.breakaways
     if sweep >= COARSE_SWEEPS:
-        breakaways = (*breakaways, Breakaway(sign, current_a, _rate_a_s(settings, sweep)))
+        breakaways = (*breakaways, Breakaway(sign, current_a, _rate_a_s(settings, sweep), state.anchor_rad))
     state = state._replace(progress=progress._replace(ends_a=ends_a, breakaways=breakaways, sweep=sweep + 1))
     if ends_a[1] <= ends_a[0]:
         return _fail(state, Reason.NO_BAND)

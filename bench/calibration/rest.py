@@ -7,11 +7,11 @@ from math import isfinite, sin
 from typing import NamedTuple
 
 from bench.errors import ConfigurationError
-from bench.reflected_load import LEAST_LEVER, load_current_a
+from bench.reflected_load import LEAST_LEVER, arm_angle_rad, load_current_a
 from bench.rest import RestSettings
 from bench.rig import Rig
 from bench.store import Trial
-from compensator.breakaway_fit import Breakaway, fit
+from compensator.breakaway_fit import Breakaway, BreakawayFit, fit
 from compensator.errors import CalibrationError
 from compensator.rest_calibration import RestPoint, calibrate
 
@@ -53,9 +53,20 @@ def searched_trials(trials: Iterable[Trial], rig: Rig) -> list[SearchedTrial]:
         fitted = fit([Breakaway(*one) for one in breakaways])
         if isfinite(fitted.scatter_a):
             load_kg = float(trial.conditions["load_kg"])
-            load_a = load_current_a(load_kg, angle_rad, rig) if abs(sin(angle_rad)) >= LEAST_LEVER else 0.0
-            found.append(SearchedTrial(trial.id, RestPoint(load_a, load_kg, fitted)))
+            found.append(
+                SearchedTrial(trial.id, RestPoint(_known_load_a(load_kg, angle_rad, fitted, rig), load_kg, fitted))
+            )
     return found
+
+
+def _known_load_a(load_kg: float, angle_rad: float, fitted: BreakawayFit, rig: Rig) -> float:
+    """Current of a known load [A], where the arm truly was; 0 straight down, where the teeth carry nothing."""
+    if abs(sin(angle_rad)) < LEAST_LEVER:
+        return 0.0
+    about_a = load_current_a(load_kg, angle_rad, rig)
+    if not isfinite(fitted.position_rad):
+        return about_a
+    return load_current_a(load_kg, arm_angle_rad(fitted.position_rad, about_a, rig), rig)
 
 
 def rest_of(trials: Sequence[Trial], rig: Rig) -> ToldAtRest:

@@ -1,6 +1,6 @@
 """One trial at rest: go to an angle, settle, note the uncompensated current, search, note the compensated one."""
 
-from math import pi
+from math import isnan, pi
 from typing import Any
 
 from bench.configuration import BenchConfiguration
@@ -8,14 +8,15 @@ from bench.experiments.joint import Joint
 from bench.experiments.rest_estimate import RestFinding, finding
 from bench.experiments.search import Found
 from bench.loop import Procedure
-from bench.reflected_load import reflected_load_kg
+from bench.reflected_load import arm_angle_rad, reflected_load_kg
 
 SEARCH_S = {"paper": 6.0, "improved": 2.5}  # of one search, roughly
 MOVES_S = 3.0  # to the angle and back, roughly
 RIGHT_ANGLE_RAD = pi / 2
 _NAMES = (
     "min_current_a", "max_current_a", "load_current_a", "friction_current_a", "load_currents_a", "load_interval_a",
-    "friction_interval_a", "reflected_load_kg", "reflected_interval_kg", "breakaways", "search_s", "search_travel_rad",
+    "friction_interval_a", "arm_angle_rad", "reflected_load_kg", "reflected_interval_kg", "breakaways", "search_s",
+    "search_travel_rad",
 )  # fmt: skip
 
 
@@ -42,8 +43,9 @@ def measure_at_rest(
         load_current_a, friction_current_a: eqs (9), (10), from all searches; corrected where known loads have told how.
         load_currents_a: eq. (9) of each search.
         load_interval_a, friction_interval_a: 95 %, [low, high]; None where the searches do not tell.
-        reflected_load_kg: what the load current amounts to at this angle; None near angle 0. With its interval.
-        breakaways: [direction, current_a, rate_a_s] of each.
+        arm_angle_rad: of the arm behind the free play during the searches, as far as the sensor before it tells.
+        reflected_load_kg: what the load current amounts to at that angle; None near angle 0. With its interval.
+        breakaways: [direction, current_a, rate_a_s, position_rad] of each.
         search_s, search_travel_rad: time and motion of one search, mean.
         search_failure: why there is no estimate; "" where there is. Without one all but the first two are None.
     """
@@ -63,15 +65,17 @@ def measure_at_rest(
             return results | _no_estimate(one.failure)
         yield from joint.reflect(angle_rad, finding(found, configuration).load_current_a)
     yield from joint.move(0.0)
-    return results | _estimate(found, angle_rad, configuration)
+    return results | _estimate(found, steady.position_rad, configuration)
 
 
 def _no_estimate(failure: str) -> dict[str, Any]:
     return {**dict.fromkeys(_NAMES), "search_failure": failure}
 
 
-def _estimate(found: list[Found], angle_rad: float, configuration: BenchConfiguration) -> dict[str, Any]:
+def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfiguration) -> dict[str, Any]:
     whole = finding(found, configuration)
+    stood_rad = steady_rad if isnan(whole.position_rad) else whole.position_rad
+    angle_rad = arm_angle_rad(stood_rad, whole.load_current_a, configuration.rig)
     values = (
         whole.min_current_a,
         whole.max_current_a,
@@ -80,6 +84,7 @@ def _estimate(found: list[Found], angle_rad: float, configuration: BenchConfigur
         [finding([one], configuration).load_current_a for one in found],
         whole.load_interval_a,
         whole.friction_interval_a,
+        angle_rad,
         reflected_load_kg(whole.load_current_a, angle_rad, configuration.rig),
         _reflected_interval(whole, angle_rad, configuration),
         [list(breakaway) for one in found for breakaway in one.breakaways],

@@ -18,6 +18,7 @@ class RestFinding:
         min_current_a, max_current_a: at which the joint lets go, at rate 0 where two rates tell.
         load_current_a, friction_current_a: eqs (9), (10), corrected.
         load_interval_a, friction_interval_a: 95 %, [low, high]; None where the searches do not tell.
+        position_rad: where the joint stood, by the sensor, mean of all breakaways; NaN where the search kept none.
     """
 
     min_current_a: float
@@ -26,6 +27,7 @@ class RestFinding:
     friction_current_a: float
     load_interval_a: list[float] | None
     friction_interval_a: list[float] | None
+    position_rad: float
 
 
 def finding(found: Sequence[Found], configuration: BenchConfiguration) -> RestFinding:
@@ -35,7 +37,9 @@ def finding(found: Sequence[Found], configuration: BenchConfiguration) -> RestFi
     load, friction = plain.load_current_a, plain.friction_current_a
     if configuration.rest is not None:
         load, friction = configuration.rest.calibration().estimate(plain)
-    return RestFinding(mean_a - half_a, mean_a + half_a, load.value, friction.value, _ends(load), _ends(friction))
+    return RestFinding(
+        mean_a - half_a, mean_a + half_a, load.value, friction.value, _ends(load), _ends(friction), plain.position_rad
+    )
 
 
 def fitted(found: Sequence[Found]) -> BreakawayFit:

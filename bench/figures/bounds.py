@@ -30,7 +30,8 @@ def rest_bound_g(rows: Sequence[Mapping[str, Any]], configuration: BenchConfigur
         return None
     calibration = configuration.rest.calibration()
     found = [
-        calibration.scatter_a(row["friction_current_a"]) / sqrt(len(row["breakaways"]))
+        calibration.scatter_a(row["friction_current_a"], (row["max_current_a"] - row["min_current_a"]) / 2.0)
+        / sqrt(len(row["breakaways"]))
         for row in rows
         if row.get("breakaways") and row.get("friction_current_a") is not None
     ]

@@ -47,3 +47,9 @@ def with_seed(configuration: BenchConfiguration, seed: int) -> BenchConfiguratio
     """The same rig, with another seed of its scatter."""
     drive = configuration.drive.model_copy(update={"seed": seed})
     return configuration.model_copy(update={"drive": drive})
+
+
+def seed_of(configuration: BenchConfiguration) -> int:
+    """Of the scatter of a simulated rig."""
+    assert isinstance(configuration.drive, SimulatedDriveSettings)
+    return configuration.drive.seed

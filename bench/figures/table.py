@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from bench.configuration import BenchConfiguration
+from bench.figures.coverage import Share
 from bench.figures.rows import ASKED, BESIDE, Asked
 from bench.figures.trials import SeedResults
 
 COLUMNS = (
-    "quantity", "paper", "asked", "measured#", "worst seed#", "reached", "rigs: mean#", "rigs: median#",
-    "rigs: worst#", "rigs: reached#",
+    "quantity", "paper", "asked", "measured#", "of trials, 95 %", "worst seed#", "reached", "rigs: mean#",
+    "of trials, 95 % ", "rigs: median#", "rigs: worst#", "rigs: reached#",
 )  # fmt: skip
 
 
@@ -27,6 +28,7 @@ class FigureRow:
         reached: None where nothing was asked.
         rigs_mean, rigs_median, rigs_worst, rigs_reached: over the drawn rigs; the share of them that reach it.
         seeds, rigs: how many gave a number.
+        sure, rigs_sure: "low .. high (of so many)", the binomial 95 % interval of a share of all trials; "-" otherwise.
     """
 
     name: str
@@ -43,14 +45,17 @@ class FigureRow:
     rigs_reached: float
     seeds: int
     rigs: int
+    sure: str = "-"
+    rigs_sure: str = "-"
 
     def cells(self) -> tuple[object, ...]:
         """One row, in the order of `COLUMNS`."""
         name = f"{self.name} [{self.unit}]" if self.unit else self.name
         reached = "-" if self.reached is None else ("yes" if self.reached else "no")
+        rigs_reached = "-" if isnan(self.rigs_reached) else f"{self.rigs_reached:.0%}"
         return (
-            name, self.paper, self.asked, self.measured, self.worst_seed, reached, self.rigs_mean, self.rigs_median,
-            self.rigs_worst, f"{self.rigs_reached:.0%}" if not isnan(self.rigs_reached) else "-",
+            name, self.paper, self.asked, self.measured, self.sure, self.worst_seed, reached, self.rigs_mean,
+            self.rigs_sure, self.rigs_median, self.rigs_worst, rigs_reached,
         )  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
@@ -102,7 +107,19 @@ def _row(
         sum(reached) / len(reached) if reached and judged else nan,
         len(numbers),
         len(drawn),
+        _sure(asked, [(seed, own) for seed in seeds]),
+        _sure(asked, [(found, bench) for bench, found in rigs]),
     )
+
+
+def _sure(asked: Asked, found: Sequence[tuple[SeedResults, BenchConfiguration]]) -> str:
+    """What the share of all trials together may be."""
+    if asked.share is None:
+        return "-"
+    shares = [asked.share(*one) for one in found]
+    whole = Share(sum(one.held for one in shares), sum(one.trials for one in shares))
+    low, high = whole.interval()
+    return f"{100.0 * low:.1f} .. {100.0 * high:.1f} ({whole.trials})" if whole.trials else "-"
 
 
 def _reaches(asked: Asked, number: float) -> bool:

@@ -1,15 +1,18 @@
 """What is run for the figures, through the ordinary loop: a calibration of the rig, then trials with other seeds."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+
 from bench.calibration import calibrate, friction_of
 from bench.calibration.selection import rest_settings_of
 from bench.configuration import BenchConfiguration
-from bench.figures.rigs import with_seed
+from bench.figures.rigs import seed_of, with_seed
 from bench.paper.measurements import Measurement, measure, quietly
 from bench.store import Store
 
@@ -26,6 +29,9 @@ TRIALS = {
     "speeds": Measurement("steady-speeds", {}),
     "sinusoid": Measurement("sinusoid", {}),
 }
+DRAWN = 5  # loads, and as many angles
+FLATTEST_RAD = 0.25  # of the angles drawn, either side of straight down: below, hardly any load reaches the teeth
+CALIBRATIONS = 4  # of a drawn rig, that its intervals are judged by
 SHORT = Measurement("load-sweep", {"loads_kg": (0.0, 0.05, 0.1), "angles_rad": (RIGHT_ANGLE_RAD,), "searches": 1})
 
 
@@ -34,8 +40,8 @@ class SeedResults:
     """Summaries of the experiments of one seed, by name; and why one is missing.
 
     Attributes:
-        results: "loads", "steps", "speeds", "sinusoid"; "paper" and "quick": one flow chart, and one search of two
-            breakaways each way, under the same loads.
+        results: "loads", "steps", "speeds", "sinusoid"; "drawn": loads and angles drawn at random; "paper" and
+            "quick": one flow chart, and one search of two breakaways each way, under the same loads.
         failures: name -> reason.
     """
 
@@ -61,10 +67,25 @@ def run_seed(configuration: BenchConfiguration) -> SeedResults:
     quick = configuration.search.model_copy(update={"pairs": 2})
     wanted = [(name, configuration, one) for name, one in TRIALS.items()]
     wanted += [
+        ("drawn", configuration, drawn_loads(seed_of(configuration))),
         ("paper", configuration.model_copy(update={"search": flow_chart, "rest": None}), SHORT),
         ("quick", configuration.model_copy(update={"search": quick}), SHORT),
     ]
-    results, failures = {}, {}
+    return _run(wanted)
+
+
+def drawn_loads(seed: int) -> Measurement:
+    """Trials at rest where nothing is special: no load or angle that a calibration knows."""
+    generator = np.random.default_rng(seed)
+    loads_kg = generator.uniform(0.0, CALIBRATED_KG[-1], DRAWN)
+    angles_rad = generator.choice((-1.0, 1.0), DRAWN) * generator.uniform(FLATTEST_RAD, RIGHT_ANGLE_RAD, DRAWN)
+    return Measurement("load-sweep", {"loads_kg": loads_kg.tolist(), "angles_rad": angles_rad.tolist()})
+
+
+def _run(wanted: Sequence[tuple[str, BenchConfiguration, Measurement]]) -> SeedResults:
+    """Each experiment, with why one is missing."""
+    results: dict[str, dict[str, Any]] = {}
+    failures: dict[str, str] = {}
     with TemporaryDirectory() as folder:
         store = Store.open(f"sqlite:///{Path(folder) / 'trials.sqlite'}")
         try:
@@ -84,4 +105,20 @@ def run_rig(configuration: BenchConfiguration, calibration_seed: int, seed: int)
         known = calibrated(with_seed(configuration, calibration_seed))
     except Exception as error:
         return SeedResults({}, {"everything": f"its calibration failed: {error}"})
-    return run_seed(with_seed(known, seed))
+    found = run_seed(with_seed(known, seed))
+    # an error of the calibration is that of all trials after it: a share held needs several
+    for again in range(1, CALIBRATIONS):
+        _add_drawn(found, configuration, calibration_seed + again, seed + again)
+    return found
+
+
+def _add_drawn(found: SeedResults, configuration: BenchConfiguration, calibration_seed: int, seed: int) -> None:
+    """More trials at random loads and angles, after another calibration of the rig."""
+    try:
+        known = calibrated(with_seed(configuration, calibration_seed))
+    except Exception as error:
+        found.failures[f"calibration {calibration_seed}"] = str(error)
+        return
+    more = _run([("drawn", with_seed(known, seed), drawn_loads(seed))])
+    found.results.setdefault("drawn", {"rows": []})["rows"] += more.results.get("drawn", {}).get("rows", [])
+    found.failures.update(more.failures)

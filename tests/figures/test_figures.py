@@ -8,9 +8,10 @@ import pytest
 from bench.configuration import default_configuration
 from bench.figures import figures_table, rigs
 from bench.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
+from bench.figures.coverage import Share, true_load_a
 from bench.figures.rigs import drawn_rig
 from bench.figures.table import COLUMNS
-from bench.figures.trials import SeedResults
+from bench.figures.trials import SeedResults, drawn_loads
 from bench.reflected_load import load_current_a
 from bench.rest import RestSettings
 from sim_backend.presets import paper
@@ -35,10 +36,16 @@ def results(error_kg=2e-4, held=True, search_s=2.0, hanging_a=0.001, ratio=0.05,
         "load_interval_a": None,
         "load_current_a": hanging_a,
     }
-    stroke = {"mean_error_kg": error_kg, "forward_mean_error_kg": stroke_kg, "backward_mean_error_kg": -stroke_kg}
+    stroke = {
+        "mean_error_kg": error_kg,
+        "mean_absolute_error_kg": 1e-3,
+        "forward_mean_error_kg": stroke_kg,
+        "backward_mean_error_kg": -stroke_kg,
+    }
     return SeedResults(
         {
             "loads": {"rows": [raised, hanging]},
+            "drawn": {"rows": [raised]},
             "steps": {"spread_ratio": 50.0},
             "speeds": {"rows": [stroke]},
             "sinusoid": {"rms_ratio": ratio},
@@ -66,19 +73,49 @@ def test_each_figure_is_taken_from_its_trials():
     assert row(rows, "steady speeds 100").measured == pytest.approx(0.2)
     assert row(rows, "sinusoid").measured == pytest.approx(0.05)
     assert row(rows, "95 %").measured == 100.0
-    assert row(rows, "that interval, 90 degrees").measured == 100.0
+    assert row(rows, "that interval, in the sweep").measured == 100.0
     assert row(rows, "time of a search").measured == pytest.approx(0.25)
     assert row(rows, "error rms of that search").measured == pytest.approx(0.5)
-    assert row(rows, "steady speeds: mean absolute error of each").measured == pytest.approx(0.5)
+    assert row(rows, "steady speeds, each stroke").measured == pytest.approx(0.5)
+    assert row(rows, "steady speeds, every control cycle").measured == pytest.approx(1.0)
 
 
 def test_a_load_that_hangs_straight_down_is_left_out_of_the_interval_at_90_degrees():
     seed = results(held=False)
     _, hanging = seed.results["loads"]["rows"]
     hanging["load_interval_a"] = [-0.01, 0.01]
-    rows = table(seed)
-    assert row(rows, "95 %").measured == 50.0
-    assert row(rows, "that interval, 90 degrees").measured == 0.0
+    assert row(table(seed), "that interval, in the sweep").measured == 0.0
+
+
+def test_the_truth_is_where_the_arm_hung_and_not_where_it_was_sent():
+    rig = CONFIGURATION.rig
+    sent_rad, stood_rad = 0.5, 0.504
+    row_there = {"load_kg": 0.1, "angle_rad": sent_rad, "breakaways": [[1.0, 0.3, 0.6, stood_rad]] * 2}
+    # the load pulls the arm to the lower side of the free play
+    arm_rad = stood_rad - rig.gear.backlash_rad / 2.0
+    assert true_load_a(row_there, rig) == pytest.approx(load_current_a(0.1, arm_rad, rig))
+    assert true_load_a({**row_there, "breakaways": [[1.0, 0.3, 0.6]]}, rig) == load_current_a(0.1, sent_rad, rig)
+
+
+def test_a_share_is_as_sure_as_its_trials_are_many():
+    # Clopper and Pearson, 95 of 100: 0.8872 .. 0.9836
+    assert Share(95, 100).interval() == pytest.approx((0.8872, 0.9836), abs=1e-4)
+    assert Share(0, 10).interval() == pytest.approx((0.0, 0.3085), abs=1e-4)
+    assert Share(10, 10).interval() == pytest.approx((0.6915, 1.0), abs=1e-4)
+
+
+def test_the_share_of_all_trials_is_told_with_its_interval():
+    found = row(table(results(), results(held=False), drawn=[results()]), "95 %")
+    assert found.sure == "1.3 .. 98.7 (2)"
+    assert found.rigs_sure == "2.5 .. 100.0 (1)"
+    assert row(table(results()), "sinusoid").sure == "-"
+
+
+def test_loads_and_angles_are_drawn_anew_with_each_seed_and_never_straight_down():
+    one, again, other = drawn_loads(1), drawn_loads(1), drawn_loads(2)
+    assert one == again != other
+    assert all(0.25 <= abs(angle_rad) <= pi / 2 for angle_rad in one.parameters["angles_rad"])
+    assert all(0.0 <= load_kg <= 0.1 for load_kg in one.parameters["loads_kg"])
 
 
 def test_the_mean_of_the_seeds_and_the_worst_of_them():
@@ -95,7 +132,7 @@ def test_the_mean_of_the_seeds_and_the_worst_of_them():
         ("Table 1, 90 degrees: largest", {"error_kg": -1.1e-3}),
         ("angle 0", {"hanging_a": -0.006}),
         ("steady speeds 100", {"error_kg": 9e-4}),
-        ("steady speeds: mean absolute error of each", {"stroke_kg": 9e-4}),
+        ("steady speeds, each stroke", {"stroke_kg": 9e-4}),
         ("sinusoid", {"ratio": 0.13}),
         ("time of a search", {"search_s": 4.1}),
         ("95 %", {"held": False}),
@@ -150,7 +187,9 @@ def test_the_friction_that_is_drawn_round_is_that_of_the_paper_rig():
 
 def test_scatter_of_friction_bounds_the_mean_of_breakaways():
     rest = RestSettings(scatter=0.02, floor_a=1e-9)
-    rows = [{"friction_current_a": 0.2, "breakaways": [[1.0, 0.2, 0.1]] * 16}]
+    rows = [
+        {"friction_current_a": 0.2, "min_current_a": -0.2, "max_current_a": 0.2, "breakaways": [[1.0, 0.2, 0.1]] * 16}
+    ]
     per_g_a = load_current_a(1e-3, pi / 2, CONFIGURATION.rig)
     bound_g = rest_bound_g(rows, CONFIGURATION.model_copy(update={"rest": rest}))
     assert bound_g == pytest.approx(sqrt(2.0 / pi) * 0.02 * 0.2 / 4.0 / per_g_a)
