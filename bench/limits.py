@@ -79,16 +79,16 @@ class Guard:
             LimitTrip: naming the quantity, its value, the limit and the unit.
         """
         low, high, speed, current, temperature, error, age, slow_age = self._bounds
-        position_rad = sample.position_rad
+        _, age_s, position_rad, _, _, _, _, temperature_c, _, ages, _ = sample
         # written so that NaN passes, except for the position and the age
         if (
             low <= position_rad <= high
             and not (velocity_rad_s > speed or velocity_rad_s < -speed)
             and not (current_a > current or current_a < -current)
-            and not sample.temperature_c > temperature
+            and not temperature_c > temperature
             and not (target_rad - position_rad > error or target_rad - position_rad < -error)
-            and sample.age_s <= age
-            and (sample.ages is ALL_NEW or _slow_age_s(sample) <= slow_age)
+            and age_s <= age
+            and (ages is ALL_NEW or _slow_age_s(sample) <= slow_age)
         ):
             return
         violation = next(self._violations(sample, velocity_rad_s, current_a, target_rad))

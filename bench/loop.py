@@ -21,6 +21,7 @@ from drivers.errors import DriveStateError
 
 __all__ = ["OFF", "RECORDED", "Action", "ControlLoop", "Outcome", "OutcomeName", "Procedure", "Reading"]
 
+_OFF, _DUTY, _CURRENT, _ENABLED = Mode.OFF, Mode.DUTY, Mode.CURRENT, Status.ENABLED  # at hand, see cycle.py
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
 OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
 
@@ -183,10 +184,12 @@ class ControlLoop:
             look(self.cycles)
             self.last_reading = reading
             record(row_of(action, reading, estimate_a))
-            if action.event is not None:
-                recorder.event(reading.time_s, *action.event)
-            check(sample, reading.velocity_rad_s, reading.current_a, action.target_rad)
-            if self._mode is not Mode.OFF and sample.status is not Status.ENABLED:
+            _, target_rad, _, event = action
+            time_s, _, velocity_rad_s, current_a = reading
+            if event is not None:
+                recorder.event(time_s, *event)
+            check(sample, velocity_rad_s, current_a, target_rad)
+            if self._mode is not _OFF and sample.status is not _ENABLED:
                 if sample.status is Status.FAULT:
                     exchange(command)  # a drive in fault refuses it, and says what the fault is
                 raise DriveStateError(
@@ -201,13 +204,13 @@ class ControlLoop:
     def _wire_command(self, command: Command) -> Command:
         """The command in a mode that the drive closes itself; powers the stage for it where it is not."""
         mode, value, _ = command
-        if mode is Mode.CURRENT and not self._has_current_mode:
+        if mode is _CURRENT and not self._has_current_mode:
             if self._current_servo is None or self._previous is None:
                 raise ConfigurationError(
                     "the drive has no current mode, and the rig lacks the resistance, back-EMF constant or gear ratio "
                     "that eq. (3) needs to do without; add them to the rig"
                 )
-            mode = Mode.DUTY
+            mode = _DUTY
             value = self._current_servo.duty(value, self._previous, self._velocity_rad_s)
             command = Command(mode, value)
         if mode is not self._mode:
@@ -225,15 +228,15 @@ class ControlLoop:
 
     def _read(self, sample: Sample) -> tuple[Reading, float]:
         """The reading of a sample, and its current by eq. (3) (NaN where that is not known)."""
-        velocity_rad_s = sample.velocity_rad_s
+        time_s, _, _, velocity_rad_s, _, measured_a, _, _, _, _, _ = sample
         if velocity_rad_s != velocity_rad_s:  # NaN
             velocity_rad_s = self._derived_velocity(sample)
         self._velocity_rad_s = velocity_rad_s
         self._previous = sample
         servo = self._current_servo
         estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
-        current_a = estimate_a if isnan(sample.current_a) else sample.current_a
-        return Reading(sample.time_s - self._origin_s, sample, velocity_rad_s, current_a), estimate_a
+        current_a = estimate_a if isnan(measured_a) else measured_a
+        return Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a), estimate_a
 
     def _derived_velocity(self, sample: Sample) -> float:
         previous = self._previous

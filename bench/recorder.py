@@ -36,17 +36,19 @@ class RowBuffer:
     def __init__(self, width: int, rows: int) -> None:
         self._width, self._more = width, rows
         self._room = self._filled = 0
-        self._row = Struct(f"={width}d")
+        row = Struct(f"{width}d")
+        self._size, self._pack = row.size, row.pack_into
         self._memory = bytearray()
 
     def append(self, row: Row) -> int:
         """Take one row; return how many there are."""
-        if self._filled == self._room:
+        filled = self._filled
+        if filled == self._room:
             self._room += self._more
-            self._memory.extend(bytes(self._more * self._row.size))
-        self._row.pack_into(self._memory, self._filled * self._row.size, *row)
-        self._filled += 1
-        return self._filled
+            self._memory.extend(bytes(self._more * self._size))
+        self._pack(self._memory, filled * self._size, *row)
+        self._filled = filled = filled + 1
+        return filled
 
     def rows(self) -> Rows:
         """A copy of all rows, shape (n, values in a row)."""

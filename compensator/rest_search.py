@@ -40,6 +40,11 @@ class Phase(Enum):
     FAILED = "failed"
 
 
+# at hand: Python 3.11 takes 0.1 us to find a member of an Enum
+_RAMP, _SETTLING = Phase.RAMP, (Phase.SETTLE_BEFORE, Phase.SETTLE_AFTER)
+_ENDED = (Phase.DONE, Phase.FAILED)
+
+
 @dataclass(frozen=True, slots=True)
 class RestSearchSettings:
     """How the search is run. Cycles are control cycles.
@@ -133,7 +138,7 @@ class RestSearchState(NamedTuple):
     @property
     def finished(self) -> bool:
         """True when the search ended, with or without an estimate."""
-        return self.progress.phase in (Phase.DONE, Phase.FAILED)
+        return self.progress.phase in _ENDED
 
 
 Step = tuple[RestSearchState, float | None]
@@ -150,20 +155,20 @@ def advance(settings: RestSearchSettings, state: RestSearchState, reading: Searc
     Returns:
         The next state, and the current to command [A], or None while the position servo has the joint.
     """
-    if state.finished:
-        return state, None
     progress, position_rad = state.progress, reading.position_rad
+    phase = progress.phase
+    if phase in _ENDED:
+        return state, None
     if isnan(position_rad) or isnan(reading.current_a):
         return _fail(state, Reason.LOST_SAMPLE)
     state = _track(settings, state, position_rad)
-    phase = progress.phase
-    if phase is Phase.SETTLE_BEFORE or phase is Phase.SETTLE_AFTER:
+    if phase in _SETTLING:
         return _settle(settings, state, reading)
     if abs(position_rad - progress.set_point_rad) > settings.excursion_rad:
         return _fail(state, Reason.EXCURSION)
-    if phase is Phase.STOP:
-        return _stop(settings, state, reading)
-    return _stand(settings, state, reading) if phase is Phase.STAND else _ramp(settings, state, reading)
+    if phase is _RAMP:
+        return _ramp(settings, state, reading)
+    return _stop(settings, state, reading) if phase is Phase.STOP else _stand(settings, state, reading)
 
 
 def _fail(state: RestSearchState, reason: Reason) -> Step:

@@ -15,7 +15,7 @@ from sim_backend.contact import contact_energy
 from sim_backend.current_sensor import measured_current
 from sim_backend.gravity import gravity_energy
 from sim_backend.hose import Bend, hose_energy
-from sim_backend.jit import jitted_and_cached
+from sim_backend.jit import jitted, jitted_and_cached
 from sim_backend.obstacles import obstacles_energy
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import Records
@@ -25,8 +25,8 @@ from sim_backend.state import State
 from sim_backend.step import step
 
 Floats = NDArray[np.float64]
-# places in the measurement that the kernel hands out
-POSITION, VELOCITY, CURRENT, TEMPERATURE, SUPPLY = range(5)
+Measured = tuple[float, float, float, float, float]
+"""Position [rad], velocity [rad/s], current [A], temperature [degC], supply [V]."""
 
 
 @dataclass(frozen=True)
@@ -38,46 +38,77 @@ class Whole:
     state: State
 
 
-def _advance_of(mechanisms: int) -> Callable[..., None]:
+@jitted
+def _cycle(
+    whole: Whole, history: Floats, stage: int, demand: float, steps: int, step_s: float, window: int, delay: int,
+) -> Measured:  # fmt: skip
+    """Advance by some steps at one demand, then measure; arguments as of `advance`."""
+    plant, constants, state = whole.parameters, whole.constants, whole.state
+    ratio, length = plant.gear.ratio, len(history)
+    place = int(state.steps % length)
+    for _ in range(steps):
+        step(plant, constants, state, stage, demand, step_s)
+        place = place + 1 if place + 1 < length else 0
+        history[place, 0] = state.rotor_rad
+        history[place, 1] = state.current_a
+    seen, before = (place - delay) % length, (place - delay - window) % length
+    unit_rad = radians_per_count(plant.encoder, ratio)
+    now_counts = counts(plant.encoder, plant.eccentricity, ratio, history[seen, 0])
+    gained = now_counts - counts(plant.encoder, plant.eccentricity, ratio, history[before, 0])
+    return (
+        now_counts * unit_rad,
+        gained * unit_rad / (window * step_s),
+        measured_current(state, plant.current_sensor, history[seen, 1]),
+        state.housing_c if plant.heat.present else np.nan,
+        state.supply_v,
+    )
+
+
+def _advance_of(mechanisms: int) -> Callable[..., Measured]:
     def advance(
-        plants: Records, history: Floats, measured: Floats, stage: int, demands: Floats, steps: int,
+        plants: Records, history: Floats, stage: int, demand: float, steps: int,
         step_s: float, window: int, delay: int,
-    ) -> None:  # fmt: skip
-        """Advance the plant demand after demand, and measure after each.
+    ) -> Measured:  # fmt: skip
+        """Advance the plant at one demand, and measure.
 
         Args:
             plants: `record.pack(Whole)`, shape (1,); its state is advanced in place.
             history: last rotor angles and currents, shape (n, 2), n > window + delay; a ring, advanced in place.
-            measured: filled with position [rad], velocity [rad/s], current [A], temperature [degC],
-                supply [V]; shape (demands, 5).
             stage: state of the power stage, see motor.py.
-            demands: duty or current [A], after the stage; shape (demands,).
-            steps: number of steps at each demand.
+            demand: duty or current [A], after the stage.
+            steps: number of steps.
             step_s: length of a step [s].
             window: steps over which the drive measures speed.
             delay: steps by which all measurement is late.
         """
         mechanisms  # noqa: B018  (part of the cache's key, see below)
-        plant, constants, state = plants[0].parameters, plants[0].constants, plants[0].state
-        ratio, length = plant.gear.ratio, len(history)
-        unit_rad = radians_per_count(plant.encoder, ratio)
-        place = state.steps % length
-        for row in range(len(demands)):
-            for _ in range(steps):
-                step(plant, constants, state, stage, demands[row], step_s)
-                place = place + 1 if place + 1 < length else 0
-                history[place, 0] = state.rotor_rad
-                history[place, 1] = state.current_a
-            seen, before = (place - delay) % length, (place - delay - window) % length
-            now_counts = counts(plant.encoder, plant.eccentricity, ratio, history[seen, 0])
-            gained = now_counts - counts(plant.encoder, plant.eccentricity, ratio, history[before, 0])
-            measured[row, POSITION] = now_counts * unit_rad
-            measured[row, VELOCITY] = gained * unit_rad / (window * step_s)
-            measured[row, CURRENT] = measured_current(state, plant.current_sensor, history[seen, 1])
-            measured[row, TEMPERATURE] = state.housing_c if plant.heat.present else np.nan
-            measured[row, SUPPLY] = state.supply_v
+        return _cycle(plants[0], history, stage, demand, steps, step_s, window, delay)
 
     return jitted_and_cached(advance)
+
+
+def _follow_of(mechanisms: int) -> Callable[..., None]:
+    def follow(
+        plants: Records, history: Floats, measured: Floats, stage: int, demands: Floats, steps: int,
+        step_s: float, window: int, delay: int,
+    ) -> None:  # fmt: skip
+        """Advance the plant demand after demand, and measure after each; without the interpreter's lock.
+
+        Of shape (demands,) are the demands, and (demands, 5) the measurement, filled with what `advance` returns; all
+        else is as of `advance`.
+        """
+        mechanisms  # noqa: B018
+        for row in range(len(demands)):
+            position_rad, velocity_rad_s, current_a, temperature_c, supply_v = _cycle(
+                plants[0], history, stage, demands[row], steps, step_s, window, delay
+            )
+            measured[row, 0] = position_rad
+            measured[row, 1] = velocity_rad_s
+            measured[row, 2] = current_a
+            measured[row, 3] = temperature_c
+            measured[row, 4] = supply_v
+
+    return jitted_and_cached(follow, nogil=True)
 
 
 def _fingerprint() -> int:
@@ -91,7 +122,7 @@ def _fingerprint() -> int:
 # numba's cache knows when this file changes, not when a mechanism that it calls does;
 # the value of a closure variable is part of the cache's key
 _MECHANISMS = _fingerprint()
-advance = _advance_of(_MECHANISMS)
+advance, follow = _advance_of(_MECHANISMS), _follow_of(_MECHANISMS)
 
 
 def _stored_energy_of(mechanisms: int) -> Callable[[Records], float]:

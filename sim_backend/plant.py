@@ -11,7 +11,7 @@ from sim_backend.clutch import Clutch
 from sim_backend.constants import constants_of
 from sim_backend.errors import ParameterError
 from sim_backend.gravity import STANDARD_GRAVITY_M_S2, Load
-from sim_backend.kernel import Whole, advance, stored_energy
+from sim_backend.kernel import Measured, Whole, advance, follow, stored_energy
 from sim_backend.operator import Operator
 from sim_backend.parameters import PlantParameters
 from sim_backend.record import pack
@@ -74,8 +74,6 @@ class Plant:
         self._whole = pack(Whole(parameters, constants_of(parameters), at_rest(seed, parameters.heat.start_c)))
         self._state = self._whole["state"]  # a view of it
         self._state["supply_v"] = parameters.supply.voltage_v
-        self._demand, self._measured = np.zeros(1), np.zeros((1, 5))
-        self._row: NDArray[np.float64] = self._measured[0]
         # the record's own count of steps, at hand: reading a record from Python takes as long as a control cycle
         self._origin_s, self._steps = 0.0, 0
         self.step_s = step_s
@@ -101,7 +99,7 @@ class Plant:
         """Simulated time since the plant was made [s]."""
         return self._origin_s + self._steps * self.step_s
 
-    def advance(self, stage: int, demand: float, steps: int) -> NDArray[np.float64]:
+    def advance(self, stage: int, demand: float, steps: int) -> Measured:
         """Advance at a constant demand and measure.
 
         Args:
@@ -110,16 +108,11 @@ class Plant:
             steps: number of integration steps.
 
         Returns:
-            position [rad], velocity [rad/s], current [A], temperature [degC], supply [V] as the drive measures them;
-            shape (5,), overwritten by the next call.
+            position [rad], velocity [rad/s], current [A], temperature [degC], supply [V] as the drive measures them.
         """
-        self._demand[0] = demand
-        advance(
-            self._whole, self._history, self._measured, stage, self._demand, steps,
-            self.step_s, self._window, self._delay,
-        )  # fmt: skip
         self._steps += steps
-        return self._row
+        # an int would have the kernel compiled for itself
+        return advance(self._whole, self._history, stage, float(demand), steps, self.step_s, self._window, self._delay)
 
     def follow(self, stage: int, demands: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
         """Advance demand after demand, as many calls of `advance` would, without the interpreter's lock.
@@ -133,7 +126,7 @@ class Plant:
             what the drive measures after each demand, columns as of `advance`; shape (n, 5).
         """
         measured = np.zeros((len(demands), 5))
-        advance(
+        follow(
             self._whole, self._history, measured, stage, np.ascontiguousarray(demands, dtype=np.float64), steps,
             self.step_s, self._window, self._delay,
         )  # fmt: skip

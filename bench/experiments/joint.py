@@ -15,6 +15,7 @@ from bench.servo import PositionServo
 from compensator.zero_speed_search import SearchReading
 from drivers.contract import Command, Mode
 
+_CURRENT = Mode.CURRENT  # at hand, see bench/cycle.py
 Result = TypeVar("Result")
 Part = Generator[Action, Reading, Result]
 
@@ -96,13 +97,13 @@ class Joint:
 
     def push(self, command: Command, event: tuple[str, str] | None = None) -> Part[Reading]:
         """One cycle of a command of one's own; no position is asked for."""
-        self._command_a = command.value if command.mode is Mode.CURRENT else self._command_a
+        self._command_a = command.value if command.mode is _CURRENT else self._command_a
         self._reading = yield Action(command, event=event)
         return self._reading
 
     def grip(self, dead_band_rad: float) -> None:
         """Let the servo of the bench work down to another error; `settle` keeps to that of the configuration."""
-        self._servo.settings = self._servo.settings.model_copy(update={"dead_band_rad": dead_band_rad})
+        self._servo.use(self._servo.settings.model_copy(update={"dead_band_rad": dead_band_rad}))
 
     def brake(self, acceleration_rad_s2: float) -> Part[None]:
         """From any speed to rest, after `push`; the servo takes over from the current that flows."""
@@ -120,6 +121,7 @@ class Joint:
             ExperimentError: it does not, in the time that the configuration gives it.
         """
         rest_rad, currents_a = nan, [0.0]
+        settled_cycles = self._motion.settled_cycles
         for _ in range(ceil(self._motion.settle_timeout_s / self._period_s)):
             reading = self._reading = yield self._towards(target_rad)
             position_rad = reading.sample.position_rad
@@ -128,7 +130,7 @@ class Joint:
                 rest_rad = position_rad
                 currents_a.clear()
             currents_a.append(reading.current_a)
-            if len(currents_a) > self._motion.settled_cycles and in_place:
+            if len(currents_a) > settled_cycles and in_place:
                 return Steady(position_rad, sum(currents_a) / len(currents_a))
         raise ExperimentError(
             f"the joint did not settle within {self._dead_band_rad:.4g} rad of {target_rad:.4g} rad in "
@@ -142,15 +144,15 @@ class Joint:
         reading, phase = self._last(), search.phase
         start_s, travel_rad = reading.time_s, 0.0
         while not search.finished:
-            current_a = search.advance(SearchReading(reading.sample.position_rad, reading.current_a, self._command_a))
             last_rad = reading.sample.position_rad
+            current_a = search.advance(SearchReading(last_rad, reading.current_a, self._command_a))
             event = None if search.phase is phase else ("search", search.phase)
             phase = search.phase
             if current_a is None:
                 action = self._towards(set_point_rad, event=event)
             else:
                 self._command_a = current_a
-                action = Action(Command(Mode.CURRENT, current_a), set_point_rad, nan, event)
+                action = Action(Command(_CURRENT, current_a), set_point_rad, nan, event)
             reading = self._reading = yield action
             travel_rad += abs(reading.sample.position_rad - last_rad)
         return replace(search.found(), seconds=reading.time_s - start_s, travel_rad=travel_rad)
@@ -176,7 +178,7 @@ class Joint:
             self._command_a = self._servo.current_a(
                 target_rad, reading.sample.position_rad, reading.velocity_rad_s, velocity_rad_s
             )
-            command = Command(Mode.CURRENT, self._command_a)
+            command = Command(_CURRENT, self._command_a)
         return Action(command, target_rad, load_current_a, event)
 
     def _last(self) -> Reading:

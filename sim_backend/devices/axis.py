@@ -134,7 +134,7 @@ class Axis:
         self._apply(demand)
         measured = self.plant.advance(self.applied.stage, self.applied.value, _STEPS)
         self._ticks += 1
-        self.seen = self._sample(*measured.tolist())
+        self.seen = self._sample(*measured)
         self._count_overload()
 
     def _apply(self, demand: Demand) -> None:
@@ -156,7 +156,7 @@ class Axis:
             )
 
     def _look(self) -> Sample:
-        return self._sample(*self.plant.advance(OPEN, 0.0, 0).tolist())
+        return self._sample(*self.plant.advance(OPEN, 0.0, 0))
 
     def _sample(
         self, position_rad: float, velocity_rad_s: float, current_a: float, temperature_c: float, supply_v: float

@@ -173,6 +173,12 @@ def loop_work(configuration: BenchConfiguration, plan: TrialPlan, notes: Notes) 
     return partial(loop.run, played(notes), NoSink(), StopRequest())
 
 
+def together_work(configuration: BenchConfiguration, plan: TrialPlan) -> Callable[[], object]:
+    """Loop, drive and procedure as in a trial, and no store."""
+    loop = loop_of(configuration, opened(configuration, plan).drive)
+    return partial(loop.run, plan.procedure(), NoSink(), StopRequest())
+
+
 def whole_us(configuration: BenchConfiguration, kind: str) -> float:
     """CPU time per cycle of a whole experiment: with its store, and the beginning and end of each trial."""
     with tempfile.TemporaryDirectory() as folder, Store.open(f"sqlite:///{folder}/bench.sqlite") as store:
@@ -198,8 +204,12 @@ def report(kind: str) -> Iterator[str]:
         "procedure, its servo and search": us * best_s(lambda: procedure_work(plan, notes)),
         "loop: eq. (3), limits, rows": us * best_s(lambda: loop_work(configuration, plan, notes)),
     }
-    together_us, most_us = sum(parts.values()), whole_us(configuration, kind)
-    parts |= {"store, start and end of each trial": most_us - together_us, "together": most_us}
+    together_us, most_us = us * best_s(lambda: together_work(configuration, plan)), whole_us(configuration, kind)
+    parts |= {
+        "what they cost one another (caches)": together_us - sum(parts.values()),
+        "store, start and end of each trial": most_us - together_us,
+        "together": most_us,
+    }
     yield f"{kind}: {len(notes.readings)} cycles of {1e3 * PERIOD_S:g} ms, CPU time per cycle"
     for name, part_us in parts.items():
         yield f"  {part_us:5.1f} us  {name}"

@@ -4,6 +4,7 @@ import pytest
 from sim_backend import presets
 from sim_backend.batch import Course, run_batch, run_course
 from sim_backend.errors import ParameterError
+from sim_backend.kernel import advance
 from sim_backend.motor import VOLTAGE
 from sim_backend.plant import Plant
 from tests.sim_backend.plants import parameters
@@ -17,11 +18,19 @@ def _course(seed: int) -> Course:
 
 def test_course_is_what_call_after_call_would_do() -> None:
     plant = Plant(presets.paper(), seed=3)
-    rows = [plant.advance(VOLTAGE, demand, 50).tolist() for demand in DEMANDS * 1.3]
+    rows = [list(plant.advance(VOLTAGE, demand, 50)) for demand in DEMANDS * 1.3]
     outcome = run_course(_course(3))
     assert str(outcome.measured.tolist()) == str(rows)
     assert outcome.truth == plant.truth()
     assert outcome.energy == plant.energy()
+
+
+def test_whole_number_for_demand_is_no_other_kernel() -> None:
+    plant = Plant(presets.paper())
+    plant.advance(VOLTAGE, 0.0, 1)
+    compiled = len(advance.signatures)  # type: ignore[attr-defined]
+    plant.advance(VOLTAGE, 0, 1)
+    assert len(advance.signatures) == compiled  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(("batch", "workers"), [(1, 1), (3, 2), (12, 2), (12, 5)])

@@ -68,6 +68,6 @@ def test_every_mechanism_changes_what_the_drive_measures(name: str) -> None:
         rows = []
         for cycle in range(1200):  # back and forth, with rests
             duty = (0.5, 0.0, -0.5, 0.12)[cycle // 100 % 4]
-            rows.append(plant.advance(VOLTAGE, duty, 50).copy())
+            rows.append(plant.advance(VOLTAGE, duty, 50))
         seen.append(np.array(rows))
     assert not np.array_equal(seen[0], seen[1], equal_nan=True)

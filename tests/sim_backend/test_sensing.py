@@ -30,8 +30,8 @@ def test_speed_is_counts_gained_over_the_window() -> None:
 
 def test_latency_shows_the_past() -> None:
     prompt, late = plant(), plant(latency={"delay_s": 3e-3})
-    seen = [prompt.advance(VOLTAGE, 0.3, 10).copy() for _ in range(20)]
-    delayed = [late.advance(VOLTAGE, 0.3, 10).copy() for _ in range(20)]
+    seen = [prompt.advance(VOLTAGE, 0.3, 10) for _ in range(20)]
+    delayed = [late.advance(VOLTAGE, 0.3, 10) for _ in range(20)]
     assert np.array_equal(np.array(delayed)[3:, :2], np.array(seen)[:-3, :2])
     assert prompt.truth() == late.truth()
 
