@@ -6,7 +6,6 @@ from types import TracebackType
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.clock import VirtualClock
 from bench.configuration import BenchConfiguration
@@ -19,6 +18,23 @@ from bench.servo import current_servo
 from bench.session import CONDITION, Session
 from bench.stop_request import StopRequest
 from compensator.lab.recording import Event, FloatArray, Recording
+
+
+@dataclass
+class Memory:
+    """A sink that keeps the rows and events of one trial."""
+
+    blocks: list[FloatArray] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+
+    def append(self, rows: FloatArray, events: Sequence[tuple[float, str, str]] = ()) -> None:
+        """Keep rows of shape (n, channels), and what happened while they came."""
+        self.blocks.append(rows)
+        self.events += [Event(*event) for event in events]
+
+    def channels(self) -> dict[str, FloatArray]:
+        """Every channel of `RECORDED`; all NaN where it was not measured."""
+        return dict(zip(RECORDED, np.concatenate(self.blocks).T.copy(), strict=True))
 
 
 class InMemoryBench:
@@ -49,27 +65,11 @@ class InMemoryBench:
             ExperimentError: it did not complete; why is told.
         """
         self._equipment.technician.hang_load(plan.load_kg, plan.balanced)
-        kept = _Memory()
+        kept = Memory()
         outcome = self._loop.run(plan.procedure(), kept, StopRequest())
         if outcome.outcome != "completed":
             raise ExperimentError(f"trial '{plan.name}': {outcome.outcome}: {outcome.reason}")
         conditions = {**plan.conditions, CONDITION: self._session.seconds()}
         self._session.passed(self._loop.last_reading.time_s if self._loop.last_reading else 0.0)
-        return Recording(plan.name, kind, conditions, kept.channels(), kept.events)
-
-
-@dataclass
-class _Memory:
-    """Rows and events of one trial."""
-
-    blocks: list[NDArray[np.float64]] = field(default_factory=list)
-    events: list[Event] = field(default_factory=list)
-
-    def append(self, rows: NDArray[np.float64], events: Sequence[tuple[float, str, str]] = ()) -> None:
-        self.blocks.append(rows)
-        self.events += [Event(*event) for event in events]
-
-    def channels(self) -> dict[str, FloatArray]:
-        """The channels that were measured."""
-        columns = np.concatenate(self.blocks).T.copy()
-        return {name: column for name, column in zip(RECORDED, columns, strict=True) if not np.isnan(column).all()}
+        measured = {name: column for name, column in kept.channels().items() if not np.isnan(column).all()}
+        return Recording(plan.name, kind, conditions, measured, kept.events)

@@ -1,6 +1,5 @@
 """One experiment through the ordinary loop, into memory, with what the arm truly leans on beside each row."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +10,9 @@ from bench.configuration import BenchConfiguration
 from bench.drive_factory import make_equipment, wall_torque_n_m
 from bench.errors import ExperimentError
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.in_memory import Memory
 from bench.limits import Guard
-from bench.loop import RECORDED, ControlLoop, Procedure
+from bench.loop import ControlLoop, Procedure
 from bench.servo import current_servo
 from bench.stop_request import StopRequest
 from compensator.kinetic_friction import FloatArray
@@ -61,29 +61,15 @@ def record(configuration: BenchConfiguration, kind_name: str, **parameters: Any)
         drive.close()
 
 
-class _Memory:
-    """A sink that keeps everything."""
-
-    def __init__(self) -> None:
-        self.blocks: list[FloatArray] = []
-        self.events: list[Event] = []
-
-    def append(self, rows: FloatArray, events: Sequence[tuple[float, str, str]] = ()) -> None:
-        self.blocks.append(rows)
-        self.events += [Event(*event) for event in events]
-
-
 def _run(
     loop: ControlLoop, drive: Drive, procedure: Procedure, name: str, conditions: dict[str, Condition]
 ) -> Recorded:
-    memory = _Memory()
+    memory = Memory()
     leant: list[float] = []
     outcome = loop.run(_witnessed(procedure, drive, leant), memory, StopRequest())
     if outcome.outcome != "completed":
         raise ExperimentError(f"trial '{name}': {outcome.outcome}: {outcome.reason}")
-    rows = np.vstack(memory.blocks)
-    channels = {channel: rows[:, index] for index, channel in enumerate(RECORDED)}
-    return Recorded(conditions, outcome.results, memory.events, channels | {"wall_n_m": np.array(leant)})
+    return Recorded(conditions, outcome.results, memory.events, memory.channels() | {"wall_n_m": np.array(leant)})
 
 
 def _witnessed(procedure: Procedure, drive: Drive, leant: list[float]) -> Procedure:

@@ -141,14 +141,14 @@ def bench_ratio() -> tuple[float, float]:
 @numba.njit(nogil=True)  # type: ignore[untyped-decorator]
 def bare_arithmetic(number: float) -> float:
     """Work that asks nothing of the machine but its cores: no memory, no interpreter, no lock."""
-    for _ in range(1_000_000):
+    for _ in range(5_000_000):
         number = 3.9 * number * (1.0 - number)
     return number
 
 
 def thread_scaling() -> tuple[float, float]:
     """Rate with two threads over that with one, of (a batch of plants, bare arithmetic): best rounds, run in turns."""
-    demands = np.where(np.arange(100) // 10 % 2, 0.3, -0.3)
+    demands = np.where(np.arange(400) // 40 % 2, 0.3, -0.3)
     courses = [
         Course(parameters=presets.paper(), seed=seed, stage=VOLTAGE, demands=demands, steps=500) for seed in range(8)
     ]
@@ -160,7 +160,7 @@ def thread_scaling() -> tuple[float, float]:
             list(pool.map(bare_arithmetic, np.linspace(0.3, 0.4, len(courses))))
 
     works = [partial(work, threads) for work in (lambda n: list(run_batch(courses, n)), bare) for threads in (1, 2)]
-    one_s, two_s, bare_one_s, bare_two_s = np.min([[best_s(work, 1) for work in works] for _ in range(30)], axis=0)
+    one_s, two_s, bare_one_s, bare_two_s = np.min([[best_s(work, 1) for work in works] for _ in range(12)], axis=0)
     return float(one_s / two_s), float(bare_one_s / bare_two_s)
 
 
