@@ -28,7 +28,7 @@ class LabEndedError(BenchError, ConnectionError):
 class Lab(Protocol):
     """Calls functions of `bench.study`; each waits for its result."""
 
-    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
         """The function's result, ready for JSON. `args` and `kwargs` are those after the store."""
 
     def close(self) -> None:
@@ -45,7 +45,7 @@ class LabHere:
     def __init__(self, store: Store) -> None:
         self._store = store
 
-    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
         """See `Lab`."""
         from bench import study  # the lab is imported when it is first needed: `serve` starts at once
 
@@ -69,7 +69,7 @@ class LabProcesses:
         self._lock = threading.Lock()
         self._closed = False
 
-    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
         """See `Lab`.
 
         Raises:

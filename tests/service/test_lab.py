@@ -53,7 +53,7 @@ def lab_processes() -> set[int]:
 
 
 def test_it_answers_as_the_lab_of_this_process_does(lab, store, experiment_id):
-    found = lab.call("create_study", "arm", [experiment_id], hold_out=["repeat=2"])
+    found = lab.call("create_study", name="arm", experiment_ids=[experiment_id], hold_out=["repeat=2"])
     here = LabHere(store)
     assert lab.call("list_studies") == here.call("list_studies")
     study_id = found["study_id"]
@@ -71,7 +71,8 @@ def test_it_lets_other_programs_go_first_and_is_used_again(lab):
     lab.call("list_studies")
     lab.call("list_studies")
     (process,) = lab_processes() - before
-    assert os.getpriority(os.PRIO_PROCESS, process) >= NICENESS
+    ours = os.getpriority(os.PRIO_PROCESS, 0)
+    assert os.getpriority(os.PRIO_PROCESS, process) == min(ours + NICENESS, 19)
 
 
 def test_one_that_was_killed_is_said_and_another_one_answers(lab):
