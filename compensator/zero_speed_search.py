@@ -261,7 +261,7 @@ def _watch_departure(settings: SearchSettings, state: SearchState, reading: Sear
         return _break_away(state)
     if travel_rad < -settings.clear_travel_rad:
         return _fail(state, Reason.WRONG_WAY)
-    if in_dead_band and state.still_cycles > settings.settled_cycles:
+    if state.still_cycles > settings.settled_cycles:
         # it stopped by itself: not the joint; go on from here
         state = state._replace(anchor_rad=reading.position_rad, departure_a=nan, step_cycles=0, step_sum_a=0.0)
         return state, state.command_a
