@@ -6,22 +6,24 @@ import { equation } from "./equation.js";
 import { examplePlot } from "./example.js";
 import { nameOf, number } from "./format.js";
 import { attempt } from "./problem.js";
+import { together } from "./together.js";
 
 export function effectView(place, name) {
   const [text, picture] = [h("div"), h("div")];
   let plot = null;
   let left = false;
   replace(place, h("p", {}, h("a", { href: "#learn" }, "All effects")), text, panel("A simulated example", picture));
-  attempt(text, async () => {
+  const described = attempt(text, async () => {
     const { items } = await get("/effects");
     const effect = items.find((one) => one.name === name);
     if (!effect) throw new Error(`There is no effect ${name}.`);
     replace(text, description(effect, items));
   });
-  attempt(picture, async () => {
+  const computed = attempt(picture, async () => {
     const example = await get(`/effects/${encodeURIComponent(name)}/example`);
     if (!left) plot = examplePlot(picture, example);
   }, { busy: "Computing …" });
+  together(place, [described, computed]);
   return () => {
     left = true;
     plot?.close();
