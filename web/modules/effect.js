@@ -9,7 +9,7 @@ import { attempt } from "./problem.js";
 import { together } from "./together.js";
 
 export function effectView(place, name) {
-  const [text, picture] = [h("div"), h("div")];
+  const [text, picture] = [h("div"), h("div", { class: "example" })];
   let plot = null;
   let left = false;
   replace(place, h("p", {}, h("a", { href: "#learn" }, "All effects")), text, panel("A simulated example", picture));
@@ -19,11 +19,11 @@ export function effectView(place, name) {
     if (!effect) throw new Error(`There is no effect ${name}.`);
     replace(text, description(effect, items));
   });
-  const computed = attempt(picture, async () => {
+  attempt(picture, async () => {
     const example = await get(`/effects/${encodeURIComponent(name)}/example`);
     if (!left) plot = examplePlot(picture, example);
   }, { busy: "Computing …" });
-  together(place, [described, computed]);
+  together(place, [described]);
   return () => {
     left = true;
     plot?.close();
