@@ -15,7 +15,8 @@ pytestmark = pytest.mark.browser
 SHIFTS = """new Promise((resolve) => {
   const shifts = [];
   new PerformanceObserver((list) => {
-    for (const one of list.getEntries()) if (!one.hadRecentInput) shifts.push([one.value, one.sources.map((s) => s.node?.outerHTML?.slice(0, 120))]);
+    for (const one of list.getEntries().filter((each) => !each.hadRecentInput))
+      shifts.push([one.value, one.sources.map((source) => source.node?.outerHTML?.slice(0, 120))]);
   }).observe({ type: 'layout-shift', buffered: true });
   setTimeout(() => resolve(shifts), 300);
 })"""
