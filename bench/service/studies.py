@@ -1,6 +1,7 @@
 """/studies: compare measured with predicted, name the missing effect, add it, watch the error fall."""
 
-from typing import Annotated, Literal
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -9,7 +10,8 @@ from bench.service import conditional
 from bench.service.access import allow_read, require_token
 from bench.service.attachment import attachment
 from bench.service.audit_trail import note
-from bench.service.compute import in_lab
+from bench.service.compute import in_worker
+from bench.service.json_numbers import plain
 from bench.service.pages import Limit, Offset, cut
 from bench.service.problems import problems
 from bench.service.services import RunnerOf, StoreOf
@@ -108,6 +110,16 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
     response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
 
 
+async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
+    def call() -> Any:
+        from bench import study  # the lab is imported when it is first needed: `serve` starts at once
+
+        function: Callable[..., Any] = getattr(study, function_name)
+        return plain(function(store, *args, **kwargs))
+
+    return await in_worker(request, call)
+
+
 @router.post(
     "",
     status_code=201,
@@ -115,9 +127,9 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def create(request: Request, response: Response, body: NewStudy) -> Study:
+async def create(request: Request, response: Response, store: StoreOf, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
-    found = await in_lab(request, "create_study", **body.model_dump())
+    found = await _lab(request, "create_study", store, **body.model_dump())
     response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
     note(request, f"made study {found['study_id']} ({body.name})")
     return Study.model_validate(found)
@@ -138,9 +150,9 @@ def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
     dependencies=[Depends(kept)],
     responses=problems(404) | conditional.ANSWER,
 )
-async def study(request: Request, study_id: StudyId) -> Study:
+async def study(request: Request, store: StoreOf, study_id: StudyId) -> Study:
     """Its trials, their roles, and the newest model."""
-    return Study.model_validate(await in_lab(request, "describe", study_id))
+    return Study.model_validate(await _lab(request, "describe", store, study_id))
 
 
 @router.get(
@@ -149,9 +161,9 @@ async def study(request: Request, study_id: StudyId) -> Study:
     dependencies=[Depends(kept)],
     responses=problems(404, 422) | conditional.ANSWER,
 )
-async def compare(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
+async def compare(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Comparison:
     """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
-    return Comparison.model_validate(await in_lab(request, "compare", study_id, model_id=model_id))
+    return Comparison.model_validate(await _lab(request, "compare", store, study_id, model_id=model_id))
 
 
 @router.get(
@@ -160,9 +172,9 @@ async def compare(request: Request, study_id: StudyId, model_id: ModelId = None)
     dependencies=[Depends(kept)],
     responses=problems(404, 422) | conditional.ANSWER,
 )
-async def diagnose(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
+async def diagnose(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return Diagnosis.model_validate(await in_lab(request, "diagnose", study_id, model_id=model_id))
+    return Diagnosis.model_validate(await _lab(request, "diagnose", store, study_id, model_id=model_id))
 
 
 @router.get(
@@ -171,9 +183,9 @@ async def diagnose(request: Request, study_id: StudyId, model_id: ModelId = None
     dependencies=[Depends(kept)],
     responses=problems(404, 422) | conditional.ANSWER,
 )
-async def ladder(request: Request, study_id: StudyId) -> Ladder:
+async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
     """Training and held-out error of every model of the study."""
-    return Ladder.model_validate(await in_lab(request, "ladder", study_id))
+    return Ladder.model_validate(await _lab(request, "ladder", store, study_id))
 
 
 @router.get(
@@ -189,9 +201,9 @@ async def ladder(request: Request, study_id: StudyId) -> Ladder:
         **problems(404, 422),
     },
 )
-async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
+async def report(request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId) -> Response:
     """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
-    page: str = await in_lab(request, "report_html", study_id, runner.configuration)
+    page: str = await _lab(request, "report_html", store, study_id, runner.configuration)
     headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
     return Response(page, media_type="text/html", headers=headers)
 
@@ -203,10 +215,10 @@ async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Respo
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
+async def change(request: Request, store: StoreOf, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
     name = "add_effect" if body.action == "add" else "drop_effect"
-    found = await in_lab(request, name, study_id, body.effect, model_id=body.model_id)
+    found = await _lab(request, name, store, study_id, body.effect, model_id=body.model_id)
     note(request, f"made model {found['model_id']}: {body.action} {body.effect}")
     return Changed.model_validate(found)
 
@@ -218,9 +230,9 @@ async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def search(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
+async def search(request: Request, store: StoreOf, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    found = await in_lab(request, "search", study_id, **body.model_dump())
+    found = await _lab(request, "search", store, study_id, **body.model_dump())
     note(request, f"made {len(found['steps'])} models, the last of them {found['model_id']}")
     return Searched.model_validate(found)
 
@@ -231,9 +243,11 @@ async def search(request: Request, study_id: StudyId, body: SearchFrom) -> Searc
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def suggest(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
+async def suggest(
+    request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId, body: SuggestFrom
+) -> Suggested:
     """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
-    found = await in_lab(request, "suggest", study_id, runner.configuration, **body.model_dump())
+    found = await _lab(request, "suggest", store, study_id, runner.configuration, **body.model_dump())
     return Suggested.model_validate(found)
 
 
@@ -244,9 +258,9 @@ async def suggest(request: Request, runner: RunnerOf, study_id: StudyId, body: S
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def extend(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
+async def extend(request: Request, store: StoreOf, study_id: StudyId, body: MoreTrials) -> Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
-    return Extended.model_validate(await in_lab(request, "extend_study", study_id, body.experiment_ids))
+    return Extended.model_validate(await _lab(request, "extend_study", store, study_id, body.experiment_ids))
 
 
 @router.post(
@@ -256,9 +270,9 @@ async def extend(request: Request, study_id: StudyId, body: MoreTrials) -> Exten
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def use(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
+async def use(request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
     """Kept as a calibration, which the bench uses from the next experiment on."""
-    return Used.model_validate(await in_lab(request, "use", study_id, runner.configuration, body.model_id))
+    return Used.model_validate(await _lab(request, "use", store, study_id, runner.configuration, body.model_id))
 
 
 @router.delete(

@@ -124,6 +124,8 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
         jerk=signals.jerk,
         direction=np.tanh(signals.velocity / max(scales.noise, TINY_SHARE * scales.slow)),
         load_effort=nothing,
+        inertia_beyond=0.0,
+        parting=nothing,
         predicted=nothing,
         effort_rate=nothing,
         temperature_c=signals.temperature_c,

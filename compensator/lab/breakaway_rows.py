@@ -165,6 +165,7 @@ def at_rest_motion(fit: Fit, motion: Motion, index: IntArray, position: FloatArr
         jerk=nothing,
         direction=direction,
         load_effort=nothing,
+        parting=nothing,
         predicted=nothing,
         effort_rate=nothing,
         temperature_c=motion.temperature_c[index],

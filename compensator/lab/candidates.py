@@ -73,6 +73,11 @@ class Candidates:
         """The same candidates judged on top of one more block."""
         return replace(self, bases=[base.extended(block.columns) for base in self.bases])
 
+    def with_columns(self, columns: FloatArray) -> "Candidates":
+        """The same candidates judged on top of more columns, given over all rows, shape (N, k)."""
+        tested = columns[self.rows] * self.weights[:, None]
+        return replace(self, bases=[base.extended(tested) for base in self.bases])
+
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
     """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.

@@ -210,19 +210,32 @@ class Dataset:
         """Thin arrays (n,) given per trial, without filtering; shape (N,)."""
         return np.concatenate([rows[trial.picked] for trial, rows in zip(self.trials, full_rate, strict=True)])
 
-    def with_prediction(self, load_effort: Sequence[FloatArray], predicted: Sequence[FloatArray]) -> "Dataset":
-        """The same rows, with the predicted load and effort in every trial's motion (n,) each."""
+    def with_prediction(
+        self,
+        load_effort: Sequence[FloatArray],
+        predicted: Sequence[FloatArray],
+        beyond: Sequence[tuple[float, FloatArray]],
+    ) -> "Dataset":
+        """The same rows, with the predicted load and effort in every trial's motion (n,) each.
+
+        Args:
+            load_effort: of each trial's motion.
+            predicted: of each trial's motion.
+            beyond: `inertia_beyond` and `parting` of each trial's motion.
+        """
         trials = tuple(
             replace(
                 trial,
                 motion=replace(
                     trial.motion,
                     load_effort=load,
+                    inertia_beyond=inertia,
+                    parting=parting,
                     predicted=total,
                     effort_rate=rate_of_change(total, trial.signals.rate_hz),
                 ),
             )
-            for trial, load, total in zip(self.trials, load_effort, predicted, strict=True)
+            for trial, load, total, (inertia, parting) in zip(self.trials, load_effort, predicted, beyond, strict=True)
         )
         return replace(self, trials=trials)
 

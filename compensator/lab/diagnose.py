@@ -9,13 +9,13 @@ import numpy as np
 
 from compensator.lab.breakaway_family import breakaway_answer
 from compensator.lab.breakaway_rows import breakaway_rows
-from compensator.lab.candidates import gather
+from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import candidates, catalogue, effect_named
 from compensator.lab.data_checks import data_problems
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.evidence import screen
+from compensator.lab.evidence import kept_evidence, screen
 from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
 from compensator.lab.fit import Fit, widened
 from compensator.lab.regimes import Regime
@@ -29,7 +29,8 @@ def diagnose(fit: Fit) -> Diagnosis:
     Four families are judged one after the other: effects of the joint that show in steady sliding; effects with
     memory, which live near reversals and starts; effects that show in the effort of breaking away from rest; effects of
     the measuring chain. The first that has something missing
-    is the answer, the others are notes: while something large is missing, the smaller may be its shadow.
+    is the answer, the others are notes: while something large is missing, the smaller may be its shadow. For the same
+    reason a larger effect with memory goes before one of steady sliding.
 
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
@@ -45,10 +46,12 @@ def diagnose(fit: Fit) -> Diagnosis:
     generic = screen(gathered.bases, gathered.curves.blocks, stretch)
     steady = answer_of(fit, gathered, screen(gathered.bases, physical, stretch), generic)
     chain = answer_of(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
-    memory, not_judged = _memory(fit)
+    memory, wide, not_judged = _memory(fit)
     rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit))
     families = [steady, *(answer for answer in (memory, rest) if answer is not None), chain]
     first = _first_of(families)
+    if memory is not None and wide is not None and first is steady and _casts(wide, memory, steady):
+        first = memory
     others = [answer for answer in families if answer is not first]
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [answer.sentence for answer in others if answer.verdict == "missing"]
@@ -75,7 +78,7 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     return screening.evidence[0].block.name if screening.evidence else None
 
 
-def _memory(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
+def _memory(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:
     """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
     dataset = fit.dataset
     trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
@@ -83,11 +86,21 @@ def _memory(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
     if near_reversals < FEWEST_REVERSAL_ROWS:
         why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
-        return None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
+        return None, None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
     gathered = gather(wide, "moving")
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
-    return answer_of(wide, gathered, screening, None), gathered.left_out
+    return answer_of(wide, gathered, screening, None), gathered, gathered.left_out
+
+
+def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
+    """Whether what steady sliding speaks for is the shadow of a larger effect with memory, which stands without it."""
+    if memory.verdict != "missing" or steady.verdict != "missing" or memory.strength <= steady.strength:
+        return False
+    shadow = steady.candidates[0]
+    given = wide.with_columns(wide.fit.dataset.columns(shadow.effect, shadow.shape))
+    name = memory.candidates[0].effect.name
+    return kept_evidence(given.bases, [block for block in given.named if block.name == name])[name] > steady.strength
 
 
 def _first_of(families: list[Answer]) -> Answer:

@@ -41,13 +41,15 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
 def is_confirmed(candidate: Candidate) -> bool:
     """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
 
-    The p-value cannot fall far where a few stretches hold most of the evidence; a very strong score stands without it.
+    Near reversals, what explains nothing unless it is larger, smaller, or of the other sign than it can be, is the
+    shadow of something else. The p-value cannot fall far where a few stretches hold most of the evidence; a very
+    strong score stands without it.
     """
     no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
     falls = candidate.before - candidate.after >= LEAST_FALL
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     helps = candidate.gain.low > 0.0 and candidate.gain.value >= least and falls
-    return candidate.score > 0.0 and no_luck and helps
+    return candidate.score > 0.0 and no_luck and helps and (candidate.physical or candidate.rows != "moving")
 
 
 def _with_effect(fit: Fit, item: Evidence) -> Fit:

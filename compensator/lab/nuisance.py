@@ -13,7 +13,7 @@ from compensator.lab.effects.effect import Motion, MotionRows
 from compensator.lab.recording import FloatArray
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
-KNOWN_PLAY = ("known_play_friction", "known_play_inertia")  # free play that the owner knows is not missing
+KNOWN_PLAY = {"known_play_less": 0.6, "known_play": 1.0, "known_play_more": 1.6}  # of what the owner knows: not missing
 
 
 def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[str, FloatArray]:
@@ -27,8 +27,9 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
         return named
     named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
     if dataset.facts.backlash_rad:
-        columns = dataset.columns(backlash.EFFECT, (dataset.facts.backlash_rad,))
-        named |= dict(zip(KNOWN_PLAY, columns.T, strict=True))
+        gaps = [(share * dataset.facts.backlash_rad,) for share in KNOWN_PLAY.values()]
+        found = dataset.unchecked_columns(backlash.EFFECT, gaps)
+        named |= {name: columns[:, 0] for name, columns in zip(KNOWN_PLAY, found, strict=True)}
     return named
 
 

@@ -77,6 +77,8 @@ class OnlineFriction:
             jerk=nothing,
             direction=np.sign(speed),
             load_effort=load_n_m,
+            inertia_beyond=0.0,
+            parting=nothing,
             predicted=nothing,
             effort_rate=nothing,
             temperature_c=temperature_c * ones,

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
-from compensator.lab.recording import FloatArray
 
 if TYPE_CHECKING:
     from compensator.lab.dataset import Dataset
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 def with_own_prediction(fit: "Fit") -> "Dataset":
     """The fit's rows, with its own predicted load and effort in every motion."""
     per_torque = effort_per_torque(fit)
-    loads, totals = [], []
+    loads, totals, beyond = [], [], []
     for trial in fit.dataset.trials:
         load = np.zeros(len(trial.motion.time_s))
         total = np.zeros(len(trial.motion.time_s))
@@ -31,9 +30,12 @@ def with_own_prediction(fit: "Fit") -> "Dataset":
             total += part
             if term.effect.carried:
                 load += part
-        loads.append(load + _load_inertia_effort(fit, trial.motion, per_torque))
+        known = _inertia_beyond(fit, trial.motion, per_torque)
+        inertia = known if trial.motion.facts.arm_inertia_kg_m2 else _whole_inertia(fit, trial.motion)
+        beyond.append((inertia, (load + inertia * trial.motion.acceleration) / (inertia or np.inf)))
+        loads.append(load + known * trial.motion.acceleration)
         totals.append(total)
-    return fit.dataset.with_prediction(loads, totals)
+    return fit.dataset.with_prediction(loads, totals, beyond)
 
 
 def effort_per_torque(fit: "Fit") -> float | None:
@@ -50,12 +52,15 @@ def effort_per_torque(fit: "Fit") -> float | None:
     return float(arm / max(moments)) if max(moments) > 0.0 and arm > 0.0 else None
 
 
-def _load_inertia_effort(fit: "Fit", motion: Motion, per_torque: float | None) -> FloatArray:
-    """Effort that accelerates what hangs beyond the gear; all of a linear joint's inertia where that is not known."""
+def _inertia_beyond(fit: "Fit", motion: Motion, per_torque: float | None) -> float:
+    """Effort per acceleration of what hangs beyond the gear, as far as that is known; of a linear joint, all of it."""
     beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
     if beyond_kg_m2 > 0.0 and per_torque is not None:
-        return per_torque * beyond_kg_m2 * motion.acceleration
-    if motion.facts.joint == "rotary":
-        return np.zeros(len(motion.time_s))
+        return per_torque * beyond_kg_m2
+    return 0.0 if motion.facts.joint == "rotary" else _whole_inertia(fit, motion)
+
+
+def _whole_inertia(fit: "Fit", motion: Motion) -> float:
+    """Effort per acceleration of everything, rotor and all: the best guess where no drawing tells."""
     inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)
-    return np.zeros(len(motion.time_s)) if inertia is None else inertia.coefficients[0] * motion.acceleration
+    return 0.0 if inertia is None else float(inertia.coefficients @ (1.0, motion.load_inertia_kg_m2))

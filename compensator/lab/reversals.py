@@ -60,18 +60,6 @@ def deflection(strokes: Strokes, distance: float) -> FloatArray:
     return state
 
 
-def in_free_play(strokes: Strokes, gap: float) -> NDArray[np.bool_]:
-    """Where the motor side crosses a gap and carries nothing beyond it, shape (n,): the play operator.
-
-    The far side is held by its own friction. It begins in contact in the direction of the first stroke.
-    """
-    ends = _ends(strokes)
-    left = np.zeros(len(ends))  # of the gap, ahead of the motor, at the start of each stroke
-    for k in range(1, len(left)):
-        left[k] = gap - max(left[k - 1] - ends[k - 1], 0.0)
-    return strokes.travel < left[strokes.index]
-
-
 def since_rest(
     position: FloatArray, velocity: FloatArray, time_s: FloatArray, slow: float
 ) -> tuple[FloatArray, FloatArray]:

@@ -99,3 +99,14 @@ def test_an_effect_that_stands_out_is_named_and_the_result_can_be_kept() -> None
     assert found.answer is not None
     assert found.answer.first == found.names
     assert Result.from_json(json.loads(json.dumps(found.to_json()))) == found
+
+
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize(
+    ("key", "mechanism"), [("12001-3-memory-0", "shaft"), ("12001-9-memory-0", "backlash")], ids=["shaft", "backlash"]
+)
+def test_what_the_far_side_does_is_named_and_its_shadow_in_steady_sliding_is_not(key: str, mechanism: str) -> None:
+    found = judge(_item(key))
+    assert found.truths == (mechanism,)
+    assert found.answer is not None
+    assert found.answer.first == found.names

@@ -17,7 +17,8 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.fit import fit_model
 from compensator.lab.recording import Recording
 from compensator.lab.validation import held_out
-from tests.lab.synthetic import FACTS, Bench, Joint, Law, at_temperature, plans, recordings
+from tests.lab.far_side import ARM_KG_M2, loose_teeth, twisting
+from tests.lab.synthetic import FACTS, Bench, Joint, Law, Plan, at_temperature, plans, recordings
 
 DEFAULT = default_effects(FACTS)
 ARM_N_M = Joint().arm_moment
@@ -70,16 +71,6 @@ def bristles(x) -> np.ndarray:
     return 0.08 * (np.array(states) - np.sign(x.v))
 
 
-def loose_teeth(x) -> np.ndarray:
-    """A far side with friction of 0.05 N m that the motor pushes with 20 mrad of play, less friction without play."""
-    far, moved = x.q[0], []
-    for here in x.q:
-        before = far
-        far = float(np.clip(far, here - 0.01, here + 0.01))
-        moved.append(far != before)
-    return -0.05 * np.sign(x.v) * ~np.array(moved)
-
-
 def late(x) -> np.ndarray:
     """A falling friction curve that follows the speed 40 ms late, less the same curve in time."""
     speed = np.abs(x.v)
@@ -87,12 +78,12 @@ def late(x) -> np.ndarray:
     return 0.1 * np.sign(x.v) * (np.exp(-shifted / 0.2) - np.exp(-speed / 0.2))
 
 
-def twisting(x) -> np.ndarray:
-    """Load torque that a shaft with its anti-resonance at 40 rad/s hands on late."""
-    step_s = x.time_s[1] - x.time_s[0]
-    return -np.gradient(np.gradient(load_n_m(x), step_s), step_s) / 40.0**2
-
-
+SHAKEN = [  # fast enough for a shaft to twist
+    Plan(
+        f"shaken {load_kg} kg", ((0.5, 0.3, 0.0), (0.06, 2.1, 1.0), (0.04, 3.3, 2.0), (0.03, 4.7, 0.0)), load_kg=load_kg
+    )
+    for load_kg in (0.0, 0.1, 0.25)
+]
 WITH_MEMORY: dict[str, Law] = {
     "pre_sliding": bristles,
     "backlash": loose_teeth,
@@ -103,7 +94,10 @@ WITH_MEMORY: dict[str, Law] = {
 
 @pytest.mark.parametrize("name", WITH_MEMORY)
 def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
-    found = diagnosis_of(recordings(Joint(extra=WITH_MEMORY[name]), seed=4))
+    fast = SHAKEN if name == "elasticity" else []
+    made = recordings(Joint(extra=WITH_MEMORY[name]), trials=[*plans(), *fast], seed=4)
+    drawn = replace(FACTS, arm_inertia_kg_m2=1.1 * ARM_KG_M2)
+    found = diagnose(fit_model(make_dataset(made, drawn, Processing()), DEFAULT))
     assert (found.verdict, found.candidates[0].effect.name) == ("missing", name), found.sentence
     assert found.candidates[0].gain.low > 0.0
 

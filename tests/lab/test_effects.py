@@ -31,6 +31,8 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
         jerk=-9 * v,
         direction=np.tanh(v / 0.01),
         load_effort=1.3 * np.sin(q) - 0.2,
+        inertia_beyond=0.1,
+        parting=13.0 * np.sin(q) - 2.0,
         predicted=0.7 * np.cos(q) - 0.3,
         effort_rate=4.0 * v,
         temperature_c=20.0 + 5.0 * time_s,
@@ -68,17 +70,27 @@ def dahl(position: np.ndarray, distance: float) -> np.ndarray:
 
 
 def crossing(m: Motion) -> list[np.ndarray]:
-    """The far side of a gap of 0.3, pushed from either flank."""
-    free, sign, before = [], [], m.position[0]
-    edge = m.position[0]  # motor side of the far body's forward flank
-    for here in m.position:
-        going = 1.0 if not sign else np.sign(here - before) or sign[-1]
-        inside = edge - 0.3 < here < edge if sign else False
-        edge = max(edge, here) if going > 0 else min(edge, here + 0.3)
-        free.append(inside)
-        sign.append(going)
-        before = here
-    return [-np.array(sign) * free, -m.acceleration * free]
+    """Half of a gap of 0.3 either side; the way between the flanks in steps of speed, caught where it meets one."""
+    step_s, way, speed, gained = 0.05, 0.15 * np.sign(m.parting[0]), 0.0, []
+    for parting in m.parting:
+        wanted = way + step_s * (speed + step_s * parting)
+        ahead = min(max(wanted, -0.15), 0.15)
+        gained.append(((ahead - way) / step_s - speed) / step_s)
+        way, speed = ahead, (ahead - way) / step_s
+    return [-0.1 * np.array(gained)]
+
+
+def twisted(m: Motion) -> list[np.ndarray]:
+    """A far side on a spring of 2 Hz, 0.05 of critical damping, by the trapezoidal rule with the frequency warped."""
+    w, way, speed, before, found = np.tan(np.pi * 2.0 * 0.05) / 0.025, 0.0, 0.0, 0.0, []
+    for parting in m.parting - m.parting[0]:
+        known = parting - 0.1 * w * (speed + 0.025 * before) - w**2 * (way + 0.05 * speed + 0.05**2 / 4.0 * before)
+        now = known / (1.0 + 0.1 * w * 0.025 + w**2 * 0.05**2 / 4.0)
+        way += 0.05 * speed + 0.05**2 / 4.0 * (before + now)
+        speed += 0.025 * (before + now)
+        before = now
+        found.append(now)
+    return [-0.1 * np.array(found)]
 
 
 # one row per parameter, from the equation in the effect's file; shape values in its order
@@ -116,7 +128,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "backlash": ((0.3,), crossing),
     "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
     "rate_dependent_breakaway": ((), lambda m: [np.zeros(41)]),
-    "elasticity": ((), lambda m: [-slope(slope(1.3 * np.sin(m.position) - 0.2))]),
+    "elasticity": ((2.0,), twisted),
     "encoder_eccentricity": (
         (2.0,),
         lambda m: [slope(slope(np.cos(2 * m.position))), slope(slope(np.sin(2 * m.position)))],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.effects.dwell_strengthening import columns
-from compensator.lab.reversals import REST_S, deflection, in_free_play, since_rest, strokes_of
+from compensator.lab.reversals import REST_S, deflection, since_rest, strokes_of
 from tests.lab.test_effects import motion
 
 THERE_AND_BACK = np.array([0.0, 1.0, 2.0, 2.0, 1.5, 0.5, 1.0])
@@ -31,15 +31,6 @@ def test_deflection_comes_up_over_its_distance_and_turns_over_twice_as_much():
     # from +1 it passes zero after distance x ln 2
     assert turned[51] == pytest.approx(-1.0 + 2.0 * np.exp(-1.0))
     assert turned[-1] == pytest.approx(-1.0)
-
-
-def test_a_gap_is_free_until_it_is_crossed_and_what_was_crossed_is_kept():
-    position = np.array([0.0, 1.0, 0.9, 0.8, 0.6, 0.75, 0.85, 0.95, 1.05])
-    free = in_free_play(strokes_of(position), 0.25)
-    # back from 1.0: free to 0.75; forward from 0.6: free to 0.85
-    assert free.tolist() == [False, False, True, True, False, True, False, False, False]
-    shorter = in_free_play(strokes_of(np.array([0.0, 1.0, 0.9, 1.0, 1.1])), 0.25)
-    assert shorter.tolist() == [False, False, True, False, False]
 
 
 def test_a_rest_is_measured_and_forgotten_over_the_travel_since():

@@ -8,7 +8,6 @@ import { leasePanel } from "./lease.js";
 import { livePlot } from "./liveplot.js";
 import { attempt } from "./problem.js";
 import { queuePanel } from "./queue.js";
-import { together } from "./together.js";
 
 const UNITS = { degC: "°C" };
 
@@ -21,7 +20,7 @@ export function benchView(place, { live }) {
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
     panel("Queue", queue), panel("Drive and limits", drive)));
   const waiting = queuePanel(queue);
-  const form = startForm(start, live, () => waiting.refresh());
+  startForm(start, live, () => waiting.refresh());
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
   let shown = live.status?.run?.experiment_id;
   const changed = () => {
@@ -30,7 +29,7 @@ export function benchView(place, { live }) {
     refresh();
   };
   live.addEventListener("status", changed);
-  together(place, [form, refresh()]);
+  refresh();
   const leave = livePlot(plot, live);
   const leaveLease = leasePanel(lease, live);
   return () => {

@@ -3,8 +3,8 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.far_side import PLAUSIBLE_SHARE, parting_in_free_play
 from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import in_free_play
 
 
 def shapes(motion: Motion) -> list[Shape]:
@@ -13,32 +13,32 @@ def shapes(motion: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """Friction and inertia that the motor does not feel in the gap, for shape (gap,)."""
-    strokes = motion.strokes
-    free = in_free_play(strokes, shape[0])
-    return np.array([-strokes.sign[strokes.index] * free, -motion.acceleration * free])
+    """What the gear carries less while the far side flies through the gap, and the blow that ends it; shape (gap,)."""
+    return -motion.inertia_beyond * parting_in_free_play(motion.parting, shape[0], motion.step_s)[None]
 
 
 EFFECT = Effect(
     name="backlash",
     title="Backlash",
     physics=(
-        "After a reversal the motor crosses the free play of the gear alone: friction and inertia beyond the "
-        "teeth are missing until the gap is closed."
+        "Where the load would run ahead of the motor, the teeth let go of it: it flies through the free play, and the "
+        "motor carries nothing of it until the other flank catches it with a blow. How the far side flies follows from "
+        "the motion of the motor and from the load that the model predicts."
     ),
-    equation=r"-(F_a\,\mathrm{sgn}\,\dot q + J_a\,\ddot q)\;[\text{in the gap}]",
+    equation=(
+        r"-s\,\hat J_a\,\ddot d,\quad \ddot d = \hat\tau_{load}/\hat J_a \text{ between the flanks, "
+        r"} |d| \le b/2"
+    ),
     columns=columns,
-    parameters=(
-        Parameter("friction beyond the gap", "{effort}", 0.0),
-        Parameter("inertia beyond the gap", "{effort} s2/{position}", 0.0),
-    ),
+    parameters=(Parameter("load beyond the gap over the load that is known", "1", *PLAUSIBLE_SHARE),),
     driver="since_reversal",
-    excited_by="many reversals without a load that holds the teeth to one flank",
+    excited_by="many changes of sign of the torque that the gear carries: fast reversals, sweeps about the bottom",
     source="Nordin, Gutman 2002",
     shapes=shapes,
     smooth_shape=True,
     shape_names=("free play",),
     confused_with=("pre_sliding", "elasticity"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
+    builds_on="load",
     rows="moving",
 )

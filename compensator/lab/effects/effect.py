@@ -28,6 +28,8 @@ class Motion:
         position, velocity, acceleration, jerk: rad or m, and per s, s^2, s^3; zero-phase filtered.
         direction: smooth sign of the velocity, -1 .. 1.
         load_effort: predicted effort without friction, in the effort's unit (never the measured one).
+        inertia_beyond: effort per acceleration of what hangs beyond the gear; 0 before anything is predicted.
+        parting: acceleration at which the motor side would leave what hangs beyond the gear behind, were it not driven.
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         temperature_c, supply_v: NaN where not measured.
         position_span: range of position over all trials of the study.
@@ -45,6 +47,8 @@ class Motion:
     jerk: FloatArray
     direction: FloatArray
     load_effort: FloatArray
+    inertia_beyond: float
+    parting: FloatArray
     predicted: FloatArray
     effort_rate: FloatArray
     temperature_c: FloatArray
@@ -68,6 +72,11 @@ class Motion:
     def last_rest(self) -> tuple[FloatArray, FloatArray]:
         """Length of the last rest [s] and distance travelled since it, shape (n,) each."""
         return since_rest(self.position, self.velocity, self.time_s, self.slow)
+
+    @property
+    def step_s(self) -> float:
+        """Time from sample to sample [s]."""
+        return float(self.time_s[1] - self.time_s[0])
 
     @property
     def session_s(self) -> FloatArray:

@@ -1,28 +1,44 @@
 """Joint elasticity."""
 
-from compensator.lab.differentiation import rate_of_change
+import numpy as np
+
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.far_side import PLAUSIBLE_SHARE, parting_on_a_spring
 from compensator.lab.recording import FloatArray
 
 
-def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Second rate of change of the transmitted load, against it; the first order in the compliance."""
-    rate = 1.0 / (motion.time_s[1] - motion.time_s[0])
-    return -rate_of_change(rate_of_change(motion.load_effort, rate), rate)[None]
+def shapes(motion: Motion) -> list[Shape]:
+    """Anti-resonances [Hz] of the arm without load, up to 0.4 of the sample rate."""
+    return [(float(hz),) for hz in np.geomspace(3.0, 0.4 / motion.step_s, 24)]
+
+
+def columns(motion: Motion, shape: Shape) -> FloatArray:
+    """What the gear carries less while it winds up, for shape (anti-resonance,)."""
+    arm_kg_m2 = motion.facts.arm_inertia_kg_m2 or 0.0
+    heavier = 1.0 + motion.load_inertia_kg_m2 / arm_kg_m2 if arm_kg_m2 > 0.0 else 1.0
+    resonance_rad_s = 2.0 * np.pi * shape[0] / np.sqrt(heavier)
+    return -motion.inertia_beyond * parting_on_a_spring(motion.parting, resonance_rad_s, motion.step_s)[None]
 
 
 EFFECT = Effect(
     name="elasticity",
     title="Joint elasticity",
     physics=(
-        "Gear and shaft twist under the load they carry: the arm lags behind the motor, and below the first "
-        "resonance the motor's effort falls short in proportion to the second rate of change of the load."
+        "Gear and shaft twist under the load they carry: the far side is a mass on a spring that the motor moves. "
+        "Below its resonance, which is the anti-resonance of the joint, the motor carries more than the load of a "
+        "rigid joint needs, above it less. A heavier load swings more slowly."
     ),
-    equation=r"-\frac{J_a}{k}\,\ddot{\hat\tau}_{load}",
+    equation=(
+        r"-s\,\hat J_a\,\ddot d,\quad "
+        r"\ddot d + 2 D\omega_a\dot d + \omega_a^2 d = \hat\tau_{load}/\hat J_a"
+    ),
     columns=columns,
-    parameters=(Parameter("inverse square of the anti-resonance", "s2", 0.0),),
+    parameters=(Parameter("load beyond the spring over the load that is known", "1", *PLAUSIBLE_SHARE),),
     driver="acceleration",
-    excited_by="fast motion with a load: frequencies up to a third of the anti-resonance",
+    excited_by="fast motion with a load: frequencies from a third of the anti-resonance up",
+    shapes=shapes,
+    smooth_shape=True,
+    shape_names=("anti-resonance of the arm without load",),
     source="Spong 1987; Janot, Gautier, Brunot 2019",
     confused_with=("measurement_delay", "inertia"),
     builds_on="load",
