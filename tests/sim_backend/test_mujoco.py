@@ -10,7 +10,7 @@ from sim_backend.motor import OPEN
 from tests.sim_backend.mujoco_hinge import hinge, swing
 from tests.sim_backend.plants import ARM, RATIO, ROTOR, plant
 
-mujoco = pytest.importorskip("mujoco", reason="not installed; pip install --constraint constraints.txt '.[bench]'")
+mujoco = pytest.importorskip("mujoco", reason="not installed; pip install --constraint constraints.txt '.[test]'")
 
 MASS, LENGTH, START_RAD, STEP_S, TIME_S = 0.2, 0.3, 1.2, 1e-4, 2.0
 EVERY_S = 2e-3
