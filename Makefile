@@ -5,7 +5,7 @@ VM_KERNEL ?= out/vm/kernel
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo paper serve report test test-vm benchmark kills check format clean help
+.PHONY: demo paper serve report screenshots test test-vm benchmark kills schema check format clean help
 
 help:            ## this list
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'

@@ -1,5 +1,7 @@
 """What is exported is read by other programs without options: header, types and numbers."""
 
+import csv
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -7,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.cycle import RECORDED
+from bench.pair.cycle import PAIR_RECORDED
 from bench.recording_set import (
     RecordingSetError,
     csv_chunks,
@@ -15,6 +19,7 @@ from bench.recording_set import (
     stream_of_trial,
 )
 from bench.store import Store, Trial
+from compensator.lab.channels import CHANNELS as CHANNELS_OF_THE_LAB
 
 duckdb = pytest.importorskip("duckdb", reason="needs duckdb: pip install 'friction-bench[test]'")
 pandas = pytest.importorskip("pandas", reason="needs pandas: pip install 'friction-bench[test]'")
@@ -80,6 +85,21 @@ def test_duckdb_reads_the_csv(csv_file: Path, store: Store, trial: Trial) -> Non
     assert query.columns == [*CHANNELS, "event"]
     assert query.types[:2] == ["DOUBLE", "DOUBLE"]
     assert_exact(query.df().astype({"temperature_c": "float64"}), store, trial)
+
+
+def test_matlab_and_excel_take_the_header_and_the_cells_as_they_are(csv_file: Path) -> None:
+    """MATLAB renames a column that is no identifier; both want plain text, commas, and a number or nothing."""
+    head, *lines = csv_file.read_bytes().decode("ascii").removesuffix("\n").split("\n")
+    assert all(re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,62}", name) for name in head.split(","))
+    for line in lines:
+        cells = next(csv.reader([line]))
+        assert len(cells) == 1 + head.count(",")
+        assert all(re.fullmatch(r"(-?\d+(\.\d+)?(e[-+]?\d+)?)?", cell) for cell in cells[: len(CHANNELS)])
+
+
+def test_every_channel_that_is_recorded_has_such_a_name() -> None:
+    names = {*RECORDED, *PAIR_RECORDED, *CHANNELS_OF_THE_LAB}
+    assert all(re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,62}", name) for name in names)
 
 
 def test_no_cell_of_the_csv_is_run_as_a_formula(csv_file: Path) -> None:
