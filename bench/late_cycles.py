@@ -1,5 +1,6 @@
 """Cycles that a late host loses: what they do to a run that goes on, and to one that is being ended."""
 
+from collections import deque
 from collections.abc import Iterator
 from math import ceil
 
@@ -7,6 +8,8 @@ from bench.clock import Clock
 
 BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
 TOLD_S = 0.5  # how long after a loss a limit that trips is put down to it, too
+LEAST_S = 0.03  # lost within that time: less moves no joint far
+MOST_KEPT = 100
 
 
 class LateCycles:
@@ -24,22 +27,21 @@ class LateCycles:
         self._clock = clock
         self._period_s = period_s
         self._seen = clock.overruns
-        self._lost = 0
-        self._at_cycle = 0
+        self._lost: deque[tuple[int, int]] = deque(maxlen=MOST_KEPT)  # at which cycle, how many
 
     def look(self, cycle: int) -> None:
         """When a cycle begins."""
         overruns = self._clock.overruns
         if overruns != self._seen:
-            self._lost, self._at_cycle = overruns - self._seen, cycle
+            self._lost.append((cycle, overruns - self._seen))
             self._seen = overruns
 
     def explain(self, cycle: int) -> str:
-        """What the drive did meanwhile, where cycles were lost a moment ago; else ""."""
-        ago_s = (cycle - self._at_cycle) * self._period_s
-        if not self._lost or ago_s > TOLD_S:
+        """What the drive did meanwhile, where a good few cycles were lost a moment ago; else ""."""
+        lost = sum(lost for at, lost in self._lost if (cycle - at) * self._period_s <= TOLD_S)
+        if lost * self._period_s < LEAST_S:
             return ""
-        late = f"the host was late by {self._lost * self._period_s:.3g} s ({self._lost} cycles) {ago_s:.3g} s before"
+        late = f"the host was late by {lost * self._period_s:.3g} s ({lost} cycles) just before"
         return f"; {late}, and the drive went on with the last command meanwhile: see what kept the host busy"
 
 

@@ -93,6 +93,17 @@ def test_what_was_lost_long_before_is_not_blamed():
     assert late.explain(cycle=100) == ""
 
 
+def test_a_cycle_or_two_are_not_blamed_but_many_of_them_are():
+    late = LateCycles(clock := LateClock(0.01, range(1, 9), late_s=0.01), 0.01)
+    told = []
+    for cycle in range(1, 5):
+        clock.wait()
+        late.look(cycle)
+        told.append(late.explain(cycle))
+    assert told[:2] == ["", ""]
+    assert "0.04 s (4 cycles)" in told[3]
+
+
 def test_a_joint_brakes_for_its_time_and_not_for_a_number_of_late_cycles():
     def push():
         while True:
