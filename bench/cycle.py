@@ -16,6 +16,7 @@ RECORDED: tuple[str, ...] = (
     "current_estimate_a",
     "current_command_a",
     "current_load_a",
+    "current_load_half_width_a",
     "supply_v",
     "temperature_c",
     "enabled",
@@ -51,12 +52,14 @@ class Action(NamedTuple):
         target_rad: position set point [rad], recorded and compared with the tracking limit.
         current_load_a: friction-compensated current [A], recorded.
         event: (name, detail), recorded.
+        current_load_half_width_a: half of the 95 % interval of that current [A], recorded; NaN where it is not known.
     """
 
     command: Command
     target_rad: float = nan
     current_load_a: float = nan
     event: tuple[str, str] | None = None
+    current_load_half_width_a: float = nan
 
 
 Procedure = Generator[Action, Reading, dict[str, Any]]
@@ -66,7 +69,7 @@ Procedure = Generator[Action, Reading, dict[str, Any]]
 def row_of(action: Action, reading: Reading, estimate_a: float) -> tuple[float, ...]:
     """The row of a cycle, in the order of `RECORDED`."""
     # unpacked: a tenth of the time that it takes to ask for each by its name
-    (mode, value, _), target_rad, current_load_a, _ = action
+    (mode, value, _), target_rad, current_load_a, _, half_width_a = action
     time_s, sample, velocity_rad_s, _ = reading
     _, age_s, position_rad, _, duty, current_a, supply_v, temperature_c, status, _, _ = sample
     return (
@@ -79,6 +82,7 @@ def row_of(action: Action, reading: Reading, estimate_a: float) -> tuple[float, 
         estimate_a,
         value if mode is _CURRENT else nan,
         current_load_a,
+        half_width_a,
         supply_v,
         temperature_c,
         1.0 if status is _ENABLED else 0.0,

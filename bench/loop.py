@@ -184,7 +184,7 @@ class ControlLoop:
             look(self.cycles)
             self.last_reading = reading
             record(row_of(action, reading, estimate_a))
-            _, target_rad, _, event = action
+            _, target_rad, _, event, _ = action
             time_s, _, velocity_rad_s, current_a = reading
             if event is not None:
                 recorder.event(time_s, *event)

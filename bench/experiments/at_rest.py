@@ -63,7 +63,8 @@ def measure_at_rest(
         if one.failure:
             yield from joint.move(0.0)
             return results | _no_estimate(one.failure)
-        yield from joint.reflect(angle_rad, finding(found, configuration).load_current_a)
+        told = finding(found, configuration)
+        yield from joint.reflect(angle_rad, told.load_current_a, told.half_width_a)
     yield from joint.move(0.0)
     return results | _estimate(found, steady.position_rad, configuration)
 

@@ -55,7 +55,8 @@ class FollowedJoint:
         """Track one set point per cycle, estimate the load, and record it."""
         followed = []
         for point in set_points:
-            reading = yield from self._joint.step(*point, self._follower.estimate.load_current_a)
+            given = self._follower.estimate
+            reading = yield from self._joint.step(*point, given.load_current_a, given.half_width_a)
             followed.append(Followed(reading, self._follower.observe(reading, point.position_rad)))
         return followed
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Generator, Iterable
 from dataclasses import dataclass, replace
-from math import ceil, nan
+from math import ceil, inf, nan
 from typing import TypeVar
 
 from bench.configuration import BenchConfiguration
@@ -79,9 +79,12 @@ class Joint:
             event = None
         return readings
 
-    def step(self, target_rad: float, velocity_rad_s: float, load_current_a: float) -> Part[Reading]:
-        """One cycle towards a set point; the load current is recorded."""
-        reading = self._reading = yield self._towards(target_rad, velocity_rad_s, load_current_a)
+    def step(
+        self, target_rad: float, velocity_rad_s: float, load_current_a: float, half_width_a: float
+    ) -> Part[Reading]:
+        """One cycle towards a set point; the load current is recorded, with half of its 95 % interval."""
+        action = self._towards(target_rad, velocity_rad_s, load_current_a, half_width_a=half_width_a)
+        reading = self._reading = yield action
         return reading
 
     def move(
@@ -157,10 +160,10 @@ class Joint:
             travel_rad += abs(reading.sample.position_rad - last_rad)
         return replace(search.found(), seconds=reading.time_s - start_s, travel_rad=travel_rad)
 
-    def reflect(self, target_rad: float, load_current_a: float, cycles: int = 20) -> Part[None]:
-        """Hold an angle, and record the compensated current that the master would be given."""
+    def reflect(self, target_rad: float, load_current_a: float, half_width_a: float, cycles: int = 20) -> Part[None]:
+        """Hold an angle, and record the compensated current that the master would be given, with its interval."""
         for _ in range(cycles):
-            self._reading = yield self._towards(target_rad, load_current_a=load_current_a)
+            self._reading = yield self._towards(target_rad, load_current_a=load_current_a, half_width_a=half_width_a)
 
     def _towards(
         self,
@@ -168,6 +171,7 @@ class Joint:
         velocity_rad_s: float = 0.0,
         load_current_a: float = nan,
         event: tuple[str, str] | None = None,
+        half_width_a: float = nan,
     ) -> Action:
         """The position servo's action for a set point, by the last reading."""
         reading = self._last()
@@ -179,7 +183,8 @@ class Joint:
                 target_rad, reading.sample.position_rad, reading.velocity_rad_s, velocity_rad_s
             )
             command = Command(_CURRENT, self._command_a)
-        return Action(command, target_rad, load_current_a, event)
+        # nothing known is no number on record
+        return Action(command, target_rad, load_current_a, event, half_width_a if half_width_a < inf else nan)
 
     def _last(self) -> Reading:
         if self._reading is None:

@@ -57,9 +57,7 @@ class LoadFollower:
 
     def take(self, reading: Reading, target_rad: float, found: RestFinding) -> LoadEstimate:
         """What a zero-speed search found, in the cycle in which it ended."""
-        low_a, high_a = found.load_interval_a or (found.load_current_a, found.load_current_a)
-        half_a = max(high_a - found.load_current_a, found.load_current_a - low_a)
-        rest = RestResult(found.load_current_a, half_a, found.friction_current_a)
+        rest = RestResult(found.load_current_a, found.half_width_a, found.friction_current_a)
         return self._advance(Observation(reading.sample.position_rad, reading.current_a, target_rad, rest=rest))
 
     def _advance(self, observation: Observation) -> LoadEstimate:

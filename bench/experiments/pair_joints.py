@@ -130,7 +130,8 @@ class PairJoints:
         current_a = min(max(motor_n_m / self._master_n_m_a, -self._master_limit_a), self._master_limit_a)
         followed = self._coupled().set_point(self._set_point_rad, master.sample.position_rad, master.velocity_rad_s)
         self._set_point_rad = followed.position_rad
-        step = self._joint.step(*followed, self._follower.estimate.load_current_a)
+        given = self._follower.estimate
+        step = self._joint.step(*followed, given.load_current_a, given.half_width_a)
         reading = yield from self._beside(step, Action(Command(Mode.CURRENT, current_a)), reach, self._reflected_n_m)
         self._follower.observe(reading, followed.position_rad)
         return Conveyed(self._last(), self._reflected_n_m)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isnan
+from math import inf, isnan
 
 from bench.configuration import BenchConfiguration
 from bench.experiments.search import Found
@@ -28,6 +28,14 @@ class RestFinding:
     load_interval_a: list[float] | None
     friction_interval_a: list[float] | None
     position_rad: float
+
+    @property
+    def half_width_a(self) -> float:
+        """Half of the interval of the load, by its longer side [A]; inf where the searches do not tell."""
+        if self.load_interval_a is None:
+            return inf
+        low_a, high_a = self.load_interval_a
+        return max(high_a - self.load_current_a, self.load_current_a - low_a)
 
 
 def finding(found: Sequence[Found], configuration: BenchConfiguration) -> RestFinding:

@@ -7,7 +7,7 @@ from typing import Self
 from bench.store.blocks import SAMPLE_BYTES
 from bench.store.errors import StoreFullError
 
-CHANNELS = 13  # of a recorded row, see bench.cycle.RECORDED
+CHANNELS = 14  # of a recorded row, see bench.cycle.RECORDED
 OVERHEAD = 1.3  # overview, pages, indexes and the write-ahead log, beside the samples
 
 

@@ -30,6 +30,7 @@ CHANNELS: dict[str, Channel] = {
         Channel("current_estimate_a", "A", "motor current from duty and speed, eq. (3)"),
         Channel("current_command_a", "A", "motor current asked for"),
         Channel("current_load_a", "A", "friction-compensated current, what the master is given"),
+        Channel("current_load_half_width_a", "A", "half of the 95 % interval of the friction-compensated current"),
         Channel("voltage_v", "V", "voltage at the motor terminals"),
         Channel("supply_v", "V", "supply voltage"),
         Channel("temperature_c", "degC", "temperature that the drive reports"),

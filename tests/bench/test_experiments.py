@@ -61,7 +61,17 @@ def test_the_steady_current_lies_within_the_band_that_the_search_finds(steps):
 
 def test_the_compensated_current_is_on_record(steps):
     load_a = steps.channel(0, "current_load_a")
-    assert np.nanmin(load_a) == np.nanmax(load_a) == steps.outcomes[0].results["load_current_a"]
+    results = steps.outcomes[0].results
+    assert np.nanmin(load_a) == np.nanmax(load_a) == results["load_current_a"]
+    half_a = steps.channel(0, "current_load_half_width_a")
+    widest_a = max(abs(end_a - results["load_current_a"]) for end_a in results["load_interval_a"])
+    assert np.nanmin(half_a) == np.nanmax(half_a) == pytest.approx(widest_a)
+
+
+def test_a_flow_chart_that_tells_no_interval_records_none():
+    ran = Ran(_method("paper"), "steps", repeats=1)
+    assert np.any(np.isfinite(ran.channel(0, "current_load_a")))
+    assert not np.any(np.isfinite(ran.channel(0, "current_load_half_width_a")))
 
 
 def test_the_phases_of_the_search_are_events(steps):

@@ -8,6 +8,7 @@ from bench.errors import ConfigurationError, LimitError, ParameterError
 from bench.experiments.load_follower import joint_model
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.experiments.steady_speeds import run_up, run_up_s
+from bench.reflected_load import load_current_a
 from tests.bench.bench_run import Ran
 from tests.bench.calibrated import calibrated_configuration
 
@@ -33,6 +34,17 @@ def test_the_estimate_is_recorded_cycle_by_cycle_and_does_not_jump(swung):
     assert len(known) > 400
     # 1.5 mA is what friction's own scatter makes from cycle to cycle
     assert np.max(np.abs(np.diff(known))) < 0.02
+
+
+def test_the_band_is_recorded_beside_the_estimate_and_never_without_it(swung):
+    load_a, half_a = swung.channel(0, "current_load_a"), swung.channel(0, "current_load_half_width_a")
+    banded = np.isfinite(half_a)
+    assert np.count_nonzero(banded) > 400
+    assert np.all(np.isfinite(load_a[banded]))
+    assert np.all(half_a[banded] > 0.0)
+    truth_a = load_current_a(0.05, 1.0, calibrated_configuration().rig) / np.sin(1.0)
+    off_a = np.abs(load_a - truth_a * np.sin(swung.channel(0, "position_rad")))
+    assert np.mean(off_a[banded] <= half_a[banded]) > 0.8
 
 
 def test_at_steady_speeds_the_load_is_carried_there_and_back(carried):
