@@ -4,7 +4,7 @@ import asyncio
 import json
 import time
 from collections import OrderedDict
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from dataclasses import replace
 from math import inf
 from typing import Any, NamedTuple
@@ -27,6 +27,7 @@ PERIOD_S = 0.025  # shorter than a block of the recorder: each is told by itself
 STATUS_LOOKED_AT = 2  # periods: whether it is new
 STATUS_EVERY_S = 0.5  # in between, only what is new is sent
 ALL_ROWS = 10**6  # more than the live buffer keeps
+FEW_ROWS = 200  # that the event loop writes itself, in a millisecond or two
 MOST_WRITTEN = 16  # events of rows that are kept for listeners who are about to hear them
 
 
@@ -77,7 +78,7 @@ class LiveEvents:
             found = self.runner.live(after_row, limit)
             if len(found.rows) or (found.restarted and found.last_row != after_row):
                 after_row = found.last_row
-                yield self._rows_event(found)
+                yield await self._rows_event(found)
             if period % STATUS_LOOKED_AT == 0:
                 status = self._status_now()
                 if status.key != shown or time.monotonic() - told_s >= STATUS_EVERY_S:
@@ -95,8 +96,8 @@ class LiveEvents:
         if mark.life == self.state.life and mark.row >= 0:
             kept = self.runner.live(mark.row, ALL_ROWS)
             if not kept.restarted:
-                for event in self._from_buffer(kept, now.last_row):
-                    yield event
+                for part in _parts(kept, now.last_row):
+                    yield await self._written(part)
                 return
         try:
             pieces = await anyio.to_thread.run_sync(missed, self.store, mark, now)
@@ -108,17 +109,6 @@ class LiveEvents:
             return
         if skipped:
             yield _gap(skipped)
-
-    def _from_buffer(self, kept: LiveRows, last_row: int) -> list[str]:
-        wanted = kept.rows[: len(kept.rows) - (kept.last_row - last_row)]
-        first_row = last_row + 1 - len(wanted)
-        events = []
-        for start in range(0, len(wanted), CHUNK_ROWS):
-            rows = wanted[start : start + CHUNK_ROWS]
-            end = first_row + start + len(rows) - 1
-            part = replace(kept, rows=rows, last_row=end, trial_rows=kept.trial_rows - (kept.last_row - end))
-            events.append(_event("rows", rows_of(part).model_dump_json(), Mark.of(self.state.life, part)))
-        return events
 
     def _from_store(self, piece: Piece) -> str:
         found = self.store.part(piece.trial, piece.first_row, piece.rows)
@@ -132,13 +122,21 @@ class LiveEvents:
         mark = Mark(self.state.life, -1, piece.trial.id, piece.first_row + piece.rows)
         return _event("rows", rows.model_dump_json(), mark)
 
-    def _rows_event(self, found: LiveRows) -> str:
+    async def _rows_event(self, found: LiveRows) -> str:
         key = (found.trial_id, found.last_row, len(found.rows), found.restarted)
         if key not in self._rows:
-            self._rows[key] = _event("rows", rows_of(found).model_dump_json(), Mark.of(self.state.life, found))
+            self._rows[key] = await self._written(found)
             while len(self._rows) > MOST_WRITTEN:
                 self._rows.popitem(last=False)
-        return self._rows[key]
+        return self._rows.get(key) or await self._written(found)
+
+    async def _written(self, found: LiveRows) -> str:
+        """Rows as an event. Many of them are written in a thread: STOP is heard on the event loop."""
+
+        def write() -> str:
+            return _event("rows", rows_of(found).model_dump_json(), Mark.of(self.state.life, found))
+
+        return write() if len(found.rows) <= FEW_ROWS else await anyio.to_thread.run_sync(write)
 
     def _status_now(self) -> _Told:
         now_s = time.monotonic()
@@ -147,6 +145,16 @@ class LiveEvents:
             status = status_of(self.runner.status(), simulated, lease_now(self.lease.current()))
             self._status = _Told(now_s, _without_progress(status), _event("status", json.dumps(status)))
         return self._status
+
+
+def _parts(kept: LiveRows, last_row: int) -> Iterator[LiveRows]:
+    """The rows up to one of a number, in as many as an event carries."""
+    wanted = kept.rows[: len(kept.rows) - (kept.last_row - last_row)]
+    first_row = last_row + 1 - len(wanted)
+    for start in range(0, len(wanted), CHUNK_ROWS):
+        rows = wanted[start : start + CHUNK_ROWS]
+        end = first_row + start + len(rows) - 1
+        yield replace(kept, rows=rows, last_row=end, trial_rows=kept.trial_rows - (kept.last_row - end))
 
 
 def _without_progress(status: dict[str, Any]) -> str:

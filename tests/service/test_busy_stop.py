@@ -1,5 +1,6 @@
 """STOP waits for nothing that others ask for."""
 
+import asyncio
 import socket
 import threading
 import time
@@ -12,11 +13,23 @@ import pytest
 from fastapi import FastAPI
 
 from bench.bench_control import BenchControl
+from bench.live import LiveRows
+from bench.service import live_events
+from bench.service.live_rows import Rows, rows_of
 from tests.service import running_service as service_of_tests
 from tests.service.running_service import TOKEN, RunningService, running_service
 
 CLIENTS = 40
 ANSWERED_WITHIN_S = 0.25  # a few turns of the interpreter; forty threads of 5 ms each make it over a second
+
+
+def is_on_a_loop() -> bool:
+    """Whether this is the thread of an event loop."""
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True
 
 
 class Busy:
@@ -95,3 +108,21 @@ def test_stop_does_not_wait_for_an_answer_to_a_prompt_that_the_bench_is_slow_to_
             busy.begun.acquire()
             assert stopped_after_s(service) < 10.0  # the bench takes 30 s
             busy.over.set()
+
+
+def test_many_rows_for_a_listener_are_not_written_on_the_event_loop(idle, monkeypatch):
+    """Listeners that come back all at once, each with twenty thousand rows to hear, would hold up STOP for seconds."""
+    idle.start("steps", repeats=3)
+    assert idle.runner.wait(60.0)
+    written: dict[bool, int] = {True: 0, False: 0}
+
+    def noted(found: LiveRows) -> Rows:
+        on_loop = is_on_a_loop()
+        written[on_loop] = max(written[on_loop], len(found.rows))
+        return rows_of(found)
+
+    monkeypatch.setattr(live_events, "rows_of", noted)
+    with idle.stranger.stream("GET", "/live", params={"limit": 20_000}) as stream:
+        next(line for line in stream.iter_lines() if line.startswith("event: rows"))
+    assert written[False] > live_events.FEW_ROWS
+    assert written[True] <= live_events.FEW_ROWS
