@@ -12,10 +12,11 @@ from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service import conditional
 from bench.service.access import allow_read
 from bench.service.attachment import attachment
-from bench.service.json_numbers import column, plain
+from bench.service.json_numbers import plain
 from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import problems
 from bench.service.services import StoreOf
+from bench.service.written_samples import samples_json
 from bench.store.records import Trial as StoredTrial
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
@@ -110,12 +111,12 @@ def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialI
 @router.get(
     "/{trial_id}/samples",
     summary="Samples, down-sampled on request",
+    response_model=Samples,
     responses=problems(404, 422) | conditional.ANSWER,
 )
 def samples(
     store: StoreOf,
     request: Request,
-    response: Response,
     trial_id: TrialId,
     channels: Annotated[
         str,
@@ -126,17 +127,16 @@ def samples(
     ] = 4000,
     from_s: Annotated[float | None, Query(description="begin of a stretch; without: of the trial [s]")] = None,
     to_s: Annotated[float | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
-) -> Samples:
+) -> Response:
     """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
     found = store.trial(trial_id)
-    response.headers.update(_known(request, found))
+    headers = _known(request, found)
     names = [name for name in channels.split(",") if name] or list(found.channels)
     # the store keeps rows for each channel; together they are to stay near `points`
     share = max(LEAST_PER_CHANNEL, points // len(names))
     stretch = None if from_s is None and to_s is None else (_or(from_s, -math.inf), _or(to_s, math.inf))
     reduced = store.samples_reduced(trial_id, names, share, stretch)
-    listed = {name: column(values) for name, values in reduced.items()}
-    return Samples(trial_id=trial_id, rows_recorded=found.rows, rows_returned=len(listed["time_s"]), channels=listed)
+    return Response(samples_json(trial_id, found.rows, reduced), media_type="application/json", headers=headers)
 
 
 def _or(value: float | None, otherwise: float) -> float:

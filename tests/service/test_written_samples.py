@@ -1,0 +1,23 @@
+"""Samples are written channel by channel, and read as their description says."""
+
+import numpy as np
+
+from bench.service import written_samples
+from bench.service.json_numbers import column
+from bench.service.trials import Samples
+from bench.service.written_samples import samples_json
+
+
+def test_the_text_is_that_of_the_description(monkeypatch):
+    monkeypatch.setattr(written_samples, "AT_ONCE", 7)
+    generator = np.random.default_rng(3)
+    channels = {"time_s": np.arange(50.0) / 3.0, 'a "name"': generator.normal(size=50)}
+    channels['a "name"'][[3, 7, 9]] = np.nan, np.inf, 1e-300
+    listed = {name: column(values) for name, values in channels.items()}
+    wanted = Samples(trial_id=7, rows_recorded=900, rows_returned=50, channels=listed)
+    assert samples_json(7, 900, channels).decode() == wanted.model_dump_json()
+
+
+def test_nothing_recorded_is_an_answer_too():
+    found = Samples.model_validate_json(samples_json(7, 0, {"time_s": np.empty(0)}))
+    assert found == Samples(trial_id=7, rows_recorded=0, rows_returned=0, channels={"time_s": []})
