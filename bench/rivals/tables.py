@@ -10,6 +10,8 @@ from bench.rivals.scoring import REGIMES, Score
 from compensator.rivals import RIVALS
 
 DYNAMIC = ("dahl", "reset-integrator", "lugre-observer")
+FAR_LESS = 0.5
+WHEN = {"at rest": "at rest", "reversal": "at reversals"}
 _MEANS = ("seconds", "travel_rad", "energy_j")
 
 
@@ -43,8 +45,24 @@ def _free_play(comparisons: Sequence[Comparison]) -> list[str]:
             found.append(f"{rival.title} {', '.join(errors)}")
     return [
         "The paper sets dynamic models aside because free play parts the surfaces. Their mean error at rest here: "
-        f"{'; '.join(found)}."
+        f"{'; '.join(found)}. {_verdict(comparisons[0], comparisons[-1])}"
     ]
+
+
+def _verdict(one: Comparison, other: Comparison) -> str:
+    """Whether the dynamic models fail by free play: whether they err far less without it."""
+    names = [rival.name for rival in RIVALS if rival.name in DYNAMIC]
+    better = {
+        words: sum(_far_less(other.scores[name].mean_g(regime), one.scores[name].mean_g(regime)) for name in names)
+        for regime, words in WHEN.items()
+    }
+    told = " and ".join(f"{count} of {len(names)} {words}" for words, count in better.items())
+    borne_out = "borne out" if any(better.values()) else "not borne out"
+    return f"Half of that error or less {other.rig} have {told}: on this joint the reason is {borne_out}."
+
+
+def _far_less(error_g: float | None, than_g: float | None) -> bool:
+    return error_g is not None and than_g is not None and error_g < FAR_LESS * than_g
 
 
 def numbers_of(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:

@@ -8,8 +8,11 @@ import pytest
 from bench.configuration import default_configuration
 from bench.friction import FrictionCurve, FrictionSettings
 from bench.rivals import compare, comparison, numbers_of, scoring, section_of
+from bench.rivals.comparison import Comparison
 from bench.rivals.record import record
 from bench.rivals.replay import search_of, truth_of
+from bench.rivals.scoring import REGIMES, Score
+from compensator.rivals import RIVALS
 
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 SMALL = {
@@ -76,9 +79,23 @@ def test_the_table_names_every_rival(compared):
     (table,) = section_of(compared, 1).tables
     twice = section_of([*compared, *compared], 1)
     assert twice.sentences[-1].startswith("The paper sets dynamic models aside")
-    assert twice.sentences[-1].count("with free play") == 6
+    assert twice.sentences[-1].count("with free play") == 7
     assert len(table.rows) == 8
     assert all(len(row) == len(table.columns) for row in table.rows)
+
+
+def test_the_reason_against_dynamic_models_is_judged_by_their_errors_without_free_play():
+    def measured(rig, error_g):
+        score = Score()
+        for regime in REGIMES:
+            score.add(regime, np.array([error_g]))
+        return Comparison(rig, {rival.name: score for rival in RIVALS})
+
+    def last(error_g):
+        return section_of([measured("with free play", 10.0), measured("without free play", error_g)], 1).sentences[-1]
+
+    assert "have 0 of 3 at rest and 0 of 3 at reversals: on this joint the reason is not borne out" in last(9.0)
+    assert "have 3 of 3 at rest and 3 of 3 at reversals: on this joint the reason is borne out" in last(4.0)
 
 
 def test_the_truth_at_a_wall_is_what_the_wall_takes(configuration):
