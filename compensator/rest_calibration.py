@@ -156,12 +156,16 @@ class RestCalibration:
         mean_a = found.load_current_a.value
         free_a = mean_a - self.asymmetry * found.friction_current_a.value
         unseen_a, ends_a = self._width_a(0.0, friction_a, noise_a), [load_a]
-        if load_a == 0.0 or abs(free_a) <= RULED_OUT / BAND * unseen_a:
-            half_a = max(SPREAD * hypot(self._held_a, BAND * self.offset_sd_a), unseen_a / self._per_load(0.0))
-            ends_a += [-half_a, half_a]
         touching_a = self._load_a(mean_a, self._half_a(found, 1.0, abs(free_a)))
         width_a = self._width_a(touching_a, friction_a, noise_a) / self._per_load(copysign(1.0, touching_a))
-        if abs(touching_a) + width_a >= self._held_a:
+        free = load_a == 0.0 or abs(free_a) <= RULED_OUT / BAND * unseen_a
+        touch = abs(touching_a) + width_a >= self._held_a
+        # too much for free teeth, and too little for teeth in touch: either may be what the noise hides
+        unclear = not free and not touch
+        if free or unclear:
+            half_a = max(SPREAD * hypot(self._held_a, BAND * self.offset_sd_a), unseen_a / self._per_load(0.0))
+            ends_a += [-half_a, half_a]
+        if touch or unclear:
             ends_a += [touching_a - width_a, touching_a + width_a]
         return Interval(load_a, min(ends_a), max(ends_a))
 

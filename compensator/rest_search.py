@@ -18,7 +18,7 @@ command, or None while the position servo has the joint.
 
 from dataclasses import dataclass
 from enum import Enum
-from math import isnan, nan
+from math import isfinite, nan
 from typing import Any, NamedTuple
 
 from compensator.breakaway_fit import Breakaway
@@ -159,13 +159,13 @@ def advance(settings: RestSearchSettings, state: RestSearchState, reading: Searc
     phase = progress.phase
     if phase in _ENDED:
         return state, None
-    if isnan(position_rad) or isnan(reading.current_a):
+    if not (isfinite(position_rad) and isfinite(reading.current_a) and isfinite(reading.command_a)):
         return _fail(state, Reason.LOST_SAMPLE)
+    if abs(position_rad - progress.set_point_rad) > settings.excursion_rad:
+        return _fail(state, Reason.EXCURSION)
     state = _track(settings, state, position_rad)
     if phase in _SETTLING:
         return _settle(settings, state, reading)
-    if abs(position_rad - progress.set_point_rad) > settings.excursion_rad:
-        return _fail(state, Reason.EXCURSION)
     if phase is _RAMP:
         return _ramp(settings, state, reading)
     return _stop(settings, state, reading) if phase is Phase.STOP else _stand(settings, state, reading)

@@ -18,7 +18,7 @@ slower than it goes on, and by the time `onset_rad` is reached the ramp has gone
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from math import isnan, nan
+from math import isfinite, isnan, nan
 from typing import NamedTuple
 
 from compensator.breakaway import BreakawayEstimate, estimate
@@ -169,8 +169,10 @@ def advance(settings: SearchSettings, state: SearchState, reading: SearchReading
     """
     if state.finished:
         return state, None
-    if isnan(reading.position_rad) or isnan(reading.current_a):
+    if not (isfinite(reading.position_rad) and isfinite(reading.current_a) and isfinite(reading.command_a)):
         return _fail(state, Reason.LOST_SAMPLE)
+    if abs(reading.position_rad - state.set_point_rad) > settings.excursion_rad:
+        return _fail(state, Reason.EXCURSION)
     if state.phase in _RAMP_SIGN:
         return _ramp(settings, _track_stillness(settings, state, reading), reading)
     return _settle(settings, _track_stillness(settings, state, reading), reading)
@@ -219,8 +221,6 @@ def _begin_ramp(state: SearchState, phase: Phase, reading: SearchReading) -> Ste
 
 
 def _ramp(settings: SearchSettings, state: SearchState, reading: SearchReading) -> Step:
-    if abs(reading.position_rad - state.set_point_rad) > settings.excursion_rad:
-        return _fail(state, Reason.EXCURSION)
     follow: Callable[[SearchSettings, SearchState, SearchReading], Step]
     follow = _hold_step if isnan(state.departure_a) else _watch_departure
     return follow(settings, state, reading)

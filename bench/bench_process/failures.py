@@ -24,7 +24,7 @@ def error_of(failure: Failure) -> BaseException:
     error: BaseException = failure.kind.__new__(failure.kind, failure.text)
     error.args = (failure.text,)
     vars(error).update(failure.attributes)
-    error.add_note(f"raised in the bench process:\n{failure.trace}")
+    error.add_note(f"raised in the other process:\n{failure.trace}")
     return error
 
 

@@ -35,6 +35,7 @@ from bench.service import (
 from bench.service.access import Access
 from bench.service.audit_trail import AuditTrail, AuditWriter
 from bench.service.guard import Guard
+from bench.service.lab import Lab, LabHere
 from bench.service.live_events import LiveEvents
 from bench.service.token_register import REFRESH_S
 from bench.store import Store
@@ -99,13 +100,14 @@ _ROOMS = (
 )
 
 
-def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
+def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | None = None) -> FastAPI:
     """The service.
 
     Args:
         store: where trials and studies are kept; stays the caller's to close.
         runner: runs the experiments; closed (joint stopped, power off) when the application ends.
         access: tokens, hosts, and whether reading is open.
+        lab: computes fits and diagnoses; closed when the application ends. In this process where left out.
     """
     trail = AuditWriter(store.access.audit.add)
     lease = Lease(lambda: _running(runner))
@@ -121,6 +123,7 @@ def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
         looking.cancel()
         conductor.end()
         runner.close()
+        app.state.lab.close()
         conductor.close()
         trail.close()
 
@@ -137,6 +140,7 @@ def create_app(store: Store, runner: BenchControl, access: Access) -> FastAPI:
     )
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
     app.state.lease = lease
+    app.state.lab = lab or LabHere(store)
     app.state.conductor = conductor
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     app.state.live_events = LiveEvents(app.state, store, runner, lease)

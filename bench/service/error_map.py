@@ -1,15 +1,13 @@
 """/studies/{id}/error-map and /moments: where a model is wrong, and when the joint was there."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 from pydantic import BaseModel, Field
 
 from bench.service.access import allow_read
-from bench.service.compute import in_worker
-from bench.service.json_numbers import plain
+from bench.service.compute import in_lab
 from bench.service.problems import problems
-from bench.service.services import StoreOf
 from bench.service.study_models import EffortName, Numbers
 
 router = APIRouter(prefix="/studies/{study_id}", tags=["studies"], dependencies=[Depends(allow_read)])
@@ -62,21 +60,14 @@ class Moments(BaseModel):
 
 
 @router.get("/error-map", summary="Error over speed and load", responses=problems(404, 422))
-async def error_map(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> ErrorMap:
+async def error_map(request: Request, study_id: StudyId, model_id: ModelId = None) -> ErrorMap:
     """Where the model is wrong. Ask /moments with the edges of a cell to see when that was."""
-
-    def call() -> Any:
-        from bench.study import error_map as computed  # the lab is imported when it is first needed
-
-        return plain(computed(store, study_id, model_id=model_id))
-
-    return ErrorMap.model_validate(await in_worker(request, call))
+    return ErrorMap.model_validate(await in_lab(request, "error_map", study_id, model_id=model_id))
 
 
 @router.get("/moments", summary="When the joint was somewhere", responses=problems(404, 422))
 async def moments(
     request: Request,
-    store: StoreOf,
     study_id: StudyId,
     where: Annotated[
         list[str],
@@ -85,10 +76,4 @@ async def moments(
     model_id: ModelId = None,
 ) -> Moments:
     """Stretches of trials, with the residual's size during each; at most a dozen."""
-
-    def call() -> Any:
-        from bench.study import moments as computed
-
-        return plain(computed(store, study_id, where, model_id=model_id))
-
-    return Moments.model_validate(await in_worker(request, call))
+    return Moments.model_validate(await in_lab(request, "moments", study_id, where, model_id=model_id))

@@ -19,6 +19,7 @@ from bench.errors import ConfigurationError
 from bench.service.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
 from bench.service.app import create_app
 from bench.service.first_token import first_token, has_valid_token
+from bench.service.lab import LabProcesses
 from bench.service.tls import Certificate
 from bench.service.token_register import TokenRegister
 from bench.service.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
@@ -110,7 +111,8 @@ def serve_bench(
                 register.refresh()
                 names = LOOPBACK_NAMES | {address.host, *address.names}
                 with closing(RemoteRunner(configuration, store)) as runner:
-                    app = create_app(store, runner, Access(register, is_loopback(address.host), names))
+                    access = Access(register, is_loopback(address.host), names)
+                    app = create_app(store, runner, access, LabProcesses(url))
                     for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
                         say(line)
                     facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}

@@ -1,7 +1,6 @@
 """/studies: compare measured with predicted, name the missing effect, add it, watch the error fall."""
 
-from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -10,8 +9,7 @@ from bench.service import conditional
 from bench.service.access import allow_read, require_token
 from bench.service.attachment import attachment
 from bench.service.audit_trail import note
-from bench.service.compute import in_worker
-from bench.service.json_numbers import plain
+from bench.service.compute import in_lab
 from bench.service.pages import Limit, Offset, cut
 from bench.service.problems import problems
 from bench.service.services import RunnerOf, StoreOf
@@ -110,16 +108,6 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
     response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
 
 
-async def _lab(request: Request, function_name: str, store: Store, /, *args: Any, **kwargs: Any) -> Any:
-    def call() -> Any:
-        from bench import study  # the lab is imported when it is first needed: `serve` starts at once
-
-        function: Callable[..., Any] = getattr(study, function_name)
-        return plain(function(store, *args, **kwargs))
-
-    return await in_worker(request, call)
-
-
 @router.post(
     "",
     status_code=201,
@@ -127,9 +115,9 @@ async def _lab(request: Request, function_name: str, store: Store, /, *args: Any
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def create(request: Request, response: Response, store: StoreOf, body: NewStudy) -> Study:
+async def create(request: Request, response: Response, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
-    found = await _lab(request, "create_study", store, **body.model_dump())
+    found = await in_lab(request, "create_study", **body.model_dump())
     response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
     note(request, f"made study {found['study_id']} ({body.name})")
     return Study.model_validate(found)
@@ -150,9 +138,9 @@ def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
     dependencies=[Depends(kept)],
     responses=problems(404) | conditional.ANSWER,
 )
-async def study(request: Request, store: StoreOf, study_id: StudyId) -> Study:
+async def study(request: Request, study_id: StudyId) -> Study:
     """Its trials, their roles, and the newest model."""
-    return Study.model_validate(await _lab(request, "describe", store, study_id))
+    return Study.model_validate(await in_lab(request, "describe", study_id))
 
 
 @router.get(
@@ -161,9 +149,9 @@ async def study(request: Request, store: StoreOf, study_id: StudyId) -> Study:
     dependencies=[Depends(kept)],
     responses=problems(404, 422) | conditional.ANSWER,
 )
-async def compare(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Comparison:
+async def compare(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
     """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
-    return Comparison.model_validate(await _lab(request, "compare", store, study_id, model_id=model_id))
+    return Comparison.model_validate(await in_lab(request, "compare", study_id, model_id=model_id))
 
 
 @router.get(
@@ -172,9 +160,9 @@ async def compare(request: Request, store: StoreOf, study_id: StudyId, model_id:
     dependencies=[Depends(kept)],
     responses=problems(404, 422) | conditional.ANSWER,
 )
-async def diagnose(request: Request, store: StoreOf, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
+async def diagnose(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return Diagnosis.model_validate(await _lab(request, "diagnose", store, study_id, model_id=model_id))
+    return Diagnosis.model_validate(await in_lab(request, "diagnose", study_id, model_id=model_id))
 
 
 @router.get(
@@ -183,9 +171,9 @@ async def diagnose(request: Request, store: StoreOf, study_id: StudyId, model_id
     dependencies=[Depends(kept)],
     responses=problems(404, 422) | conditional.ANSWER,
 )
-async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
+async def ladder(request: Request, study_id: StudyId) -> Ladder:
     """Training and held-out error of every model of the study."""
-    return Ladder.model_validate(await _lab(request, "ladder", store, study_id))
+    return Ladder.model_validate(await in_lab(request, "ladder", study_id))
 
 
 @router.get(
@@ -201,9 +189,9 @@ async def ladder(request: Request, store: StoreOf, study_id: StudyId) -> Ladder:
         **problems(404, 422),
     },
 )
-async def report(request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId) -> Response:
+async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
     """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
-    page: str = await _lab(request, "report_html", store, study_id, runner.configuration)
+    page: str = await in_lab(request, "report_html", study_id, runner.configuration)
     headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
     return Response(page, media_type="text/html", headers=headers)
 
@@ -215,10 +203,10 @@ async def report(request: Request, store: StoreOf, runner: RunnerOf, study_id: S
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def change(request: Request, store: StoreOf, study_id: StudyId, body: Change) -> Changed:
+async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
     name = "add_effect" if body.action == "add" else "drop_effect"
-    found = await _lab(request, name, store, study_id, body.effect, model_id=body.model_id)
+    found = await in_lab(request, name, study_id, body.effect, model_id=body.model_id)
     note(request, f"made model {found['model_id']}: {body.action} {body.effect}")
     return Changed.model_validate(found)
 
@@ -230,9 +218,9 @@ async def change(request: Request, store: StoreOf, study_id: StudyId, body: Chan
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def search(request: Request, store: StoreOf, study_id: StudyId, body: SearchFrom) -> Searched:
+async def search(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    found = await _lab(request, "search", store, study_id, **body.model_dump())
+    found = await in_lab(request, "search", study_id, **body.model_dump())
     note(request, f"made {len(found['steps'])} models, the last of them {found['model_id']}")
     return Searched.model_validate(found)
 
@@ -243,11 +231,9 @@ async def search(request: Request, store: StoreOf, study_id: StudyId, body: Sear
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def suggest(
-    request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId, body: SuggestFrom
-) -> Suggested:
+async def suggest(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
     """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
-    found = await _lab(request, "suggest", store, study_id, runner.configuration, **body.model_dump())
+    found = await in_lab(request, "suggest", study_id, runner.configuration, **body.model_dump())
     return Suggested.model_validate(found)
 
 
@@ -258,9 +244,9 @@ async def suggest(
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def extend(request: Request, store: StoreOf, study_id: StudyId, body: MoreTrials) -> Extended:
+async def extend(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
-    return Extended.model_validate(await _lab(request, "extend_study", store, study_id, body.experiment_ids))
+    return Extended.model_validate(await in_lab(request, "extend_study", study_id, body.experiment_ids))
 
 
 @router.post(
@@ -270,9 +256,9 @@ async def extend(request: Request, store: StoreOf, study_id: StudyId, body: More
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def use(request: Request, store: StoreOf, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
+async def use(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
     """Kept as a calibration, which the bench uses from the next experiment on."""
-    return Used.model_validate(await _lab(request, "use", store, study_id, runner.configuration, body.model_id))
+    return Used.model_validate(await in_lab(request, "use", study_id, runner.configuration, body.model_id))
 
 
 @router.delete(

@@ -43,10 +43,13 @@ def test_no_view_breaks_a_rule(axe, open_page, study, width, scheme):
             page.get_by_role("button", name="Plan", exact=True).click()
             page.locator("[aria-label='Plan of the campaign']").wait_for()
         if view == "#trials":
+            page.get_by_role("button", name="Edit note and tags").first.click()
             page.get_by_role("button", name="Plot trial").first.click()
             page.get_by_role("group", name="Channels of trial").locator(".legend-entry").first.wait_for()
         if view == study:
             page.locator("table.heat button.cell").first.wait_for()
+            page.get_by_role("button", name="Diagnose").click()
+            page.locator("article .plot .trace").first.wait_for()
         broken += [f"{view} {one}" for one in violations(axe, page)]
     assert broken == []
 

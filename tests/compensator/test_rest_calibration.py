@@ -86,6 +86,26 @@ def test_what_the_arms_own_friction_holds_is_within_the_interval():
         assert told.high - told.low < 3.0 * OFFSET_A  # and hardly more than that
 
 
+def test_no_search_is_told_without_a_width():
+    """Between what free teeth may show and the least that teeth in touch do lies a gap that scatter may fall into."""
+    calibration = calibrate(points(np.random.default_rng(6), repeats=3))
+    for load_a in np.linspace(-2.0 * OFFSET_A, 2.0 * OFFSET_A, 81):
+        mean_a = load_a + ASYMMETRY * 0.185
+        found = [Breakaway(sign, mean_a + sign * 0.19, rate) for rate in (0.6, 0.15) for sign in (1.0, -1.0)]
+        told = calibration.estimate(fit(found)).load_current_a
+        assert told.high - told.low > 1e-3
+        assert told.low <= told.value <= told.high
+
+
+def test_a_search_that_scatters_by_far_more_than_the_joint_did_is_told_by_its_own_scatter():
+    calibration = calibrate(points(np.random.default_rng(6), repeats=3))
+    calm = searched(0.245, 0.05, np.random.default_rng(7))
+    # one breakaway too early by far: something has pushed the arm
+    pushed = calm._replace(scatter_a=20.0 * calm.scatter_a)
+    usual, wide = (calibration.estimate(one).load_current_a for one in (calm, pushed))
+    assert wide.high - wide.low > 5.0 * (usual.high - usual.low)
+
+
 def test_the_interval_is_honest_from_free_teeth_to_full_load():
     generator = np.random.default_rng(5)
     held = {"free": [], "light": [], "full": []}

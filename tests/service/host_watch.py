@@ -23,8 +23,8 @@ import numpy as np
 from bench.scheduling import PRIORITY
 
 ROOT = Path(__file__).parents[2]
-PERIOD_S = 0.001
-LATE_S = 0.0003  # an ordinary waking-up takes less
+PERIOD_S = 0.0005
+LATE_S = 0.00025  # an ordinary waking-up takes less
 LONGEST_S = 30.0  # of a gap
 SHORTEST_S = 0.0001  # lateness that is looked at
 Gaps = list[tuple[float, float]]

@@ -7,6 +7,8 @@ import httpx
 import jsonschema_rs
 import pytest
 
+from bench.figures import trials as figures
+from bench.paper.measurements import Plan
 from compensator.lab.catalogue import catalogue
 
 
@@ -98,3 +100,22 @@ def test_examples_name_effects_that_exist(document):
     named += re.findall(r'"effect": "(\w+)"', document["info"]["description"])
     assert len(named) == 3
     assert set(named) <= set(catalogue())
+
+
+PAPER = {**Plan().measurements(), **figures.TRIALS, "drawn": figures.drawn_loads(1), "short": figures.SHORT}
+PAPER |= {f"calibration {place}": one for place, one in enumerate(figures.CALIBRATION)}
+
+
+@pytest.mark.parametrize("name", PAPER)
+def test_what_the_page_of_the_paper_and_the_figures_are_made_of_can_be_started_over_rest(service, document, name):
+    (path,) = (path for path in document["paths"] if path.endswith("/experiments"))
+    body = document["paths"][path]["post"]["requestBody"]["content"]["application/json"]["schema"]
+    schema = document["components"]["schemas"][body["$ref"].rsplit("/", 1)[-1]]
+    assert {"kind", "parameters"} <= set(schema["properties"])
+    kinds = {kind["name"]: kind for kind in service.stranger.get("/experiment-kinds").json()["items"]}
+    wanted = PAPER[name]
+    parameters = json.loads(json.dumps(wanted.whole_parameters()))
+    assert set(parameters) <= set(kinds[wanted.kind]["parameters"]["properties"])
+    jsonschema_rs.validator_for(kinds[wanted.kind]["parameters"]).validate(parameters)
+    with pytest.raises(jsonschema_rs.ValidationError):
+        jsonschema_rs.validator_for(kinds[wanted.kind]["parameters"]).validate({**parameters, "loads": "some"})

@@ -21,6 +21,7 @@ STOP_S = PERIOD_S + BRAKING_S + HOST_S  # the cycle that sees the wish, and the 
 REST_S = 0.5  # for a request to a busy service
 LAST_ANSWER_S = 2.0 * ANSWER_TIMEOUT_S  # the driver asks twice
 BLOCK_S = Recorder.BLOCK_S
+FEW_PAGES = 16384  # bytes of a database's log: less than a block of rows
 LOCKED_S = Recorder.STALL_S + 2.0 * BLOCK_S  # at one block, till the next one asks after it
 
 
@@ -113,8 +114,11 @@ def _stop_when_busy(scene: Scene) -> float:
 
 
 def _fill_the_disk(scene: Scene) -> float:
-    """The log of the database may not grow any more: what a full disk is to it."""
-    size = scene.bench.database.with_name("bench.sqlite-wal").stat().st_size
+    """No file may grow beyond what the program has said at the terminal: what a full disk is to the database.
+
+    Its log begins anew now and then, within the length that it has had: more than that has to be forbidden.
+    """
+    size = (scene.bench.folder / "output").stat().st_size + FEW_PAGES
     now_s = time.monotonic()
     resource.prlimit(scene.loop_process(), resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
     return now_s

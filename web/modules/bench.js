@@ -8,6 +8,7 @@ import { leasePanel } from "./lease.js";
 import { livePlot } from "./liveplot.js";
 import { attempt } from "./problem.js";
 import { queuePanel } from "./queue.js";
+import { together } from "./together.js";
 
 const UNITS = { degC: "°C" };
 
@@ -20,7 +21,7 @@ export function benchView(place, { live }) {
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
     panel("Queue", queue), panel("Drive and limits", drive)));
   const waiting = queuePanel(queue);
-  startForm(start, live, () => waiting.refresh());
+  const form = startForm(start, live, () => waiting.refresh());
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
   let shown = live.status?.run?.experiment_id;
   const changed = () => {
@@ -29,7 +30,7 @@ export function benchView(place, { live }) {
     refresh();
   };
   live.addEventListener("status", changed);
-  refresh();
+  together(place, [form, refresh()]);
   const leave = livePlot(plot, live);
   const leaveLease = leasePanel(lease, live);
   return () => {

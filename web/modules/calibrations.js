@@ -6,6 +6,7 @@ import { number, when } from "./format.js";
 import { SERIES, colour, draw } from "./plot.js";
 import { attempt } from "./problem.js";
 
+// resolves when the list is there
 export function calibrations(place) {
   const [list, picture] = [h("div"), h("div")];
   const from = h("input", { id: "calibrate-from", placeholder: "such as 1, 2" });
@@ -27,7 +28,7 @@ export function calibrations(place) {
   };
   replace(place, panel("Friction curves", list, h("form", { class: "row", onsubmit: submit },
     h("label", { for: "calibrate-from" }, "From experiments (speed sweeps, load sweeps)", from), button), answer, picture));
-  refresh();
+  return refresh();
 }
 
 function calibrationTable(items, show, use) {

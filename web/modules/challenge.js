@@ -7,6 +7,7 @@ import { attempt } from "./problem.js";
 
 const LEVELS = { easy: "easy: at most one, large", medium: "medium: up to two", hard: "hard: up to two, small, noisy recordings" };
 
+// resolves when the list is there
 export function challengePanel(place) {
   const [list, answer, revealed] = [h("div"), h("div"), h("div")];
   const level = h("select", { id: "difficulty" }, Object.entries(LEVELS).map(([value, text]) => h("option", { value }, text)));
@@ -20,7 +21,7 @@ export function challengePanel(place) {
   });
   replace(place, h("p", { class: "soft" }, "A joint is drawn at random; nothing, one or two mechanisms are hidden in it, and it is recorded. Find them from the recordings alone."),
     h("div", { class: "row" }, h("label", { for: "difficulty" }, "Difficulty", level), button), answer, list, revealed);
-  refresh();
+  return refresh();
 }
 
 function challengeTable(items, revealed) {

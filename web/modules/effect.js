@@ -6,13 +6,14 @@ import { equation } from "./equation.js";
 import { examplePlot } from "./example.js";
 import { nameOf, number } from "./format.js";
 import { attempt } from "./problem.js";
+import { together } from "./together.js";
 
 export function effectView(place, name) {
-  const [text, picture] = [h("div"), h("div")];
+  const [text, picture] = [h("div"), h("div", { class: "example" })];
   let plot = null;
   let left = false;
   replace(place, h("p", {}, h("a", { href: "#learn" }, "All effects")), text, panel("A simulated example", picture));
-  attempt(text, async () => {
+  const described = attempt(text, async () => {
     const { items } = await get("/effects");
     const effect = items.find((one) => one.name === name);
     if (!effect) throw new Error(`There is no effect ${name}.`);
@@ -22,6 +23,7 @@ export function effectView(place, name) {
     const example = await get(`/effects/${encodeURIComponent(name)}/example`);
     if (!left) plot = examplePlot(picture, example);
   }, { busy: "Computing …" });
+  together(place, [described]);
   return () => {
     left = true;
     plot?.close();

@@ -6,6 +6,7 @@ import { effectView } from "./effect.js";
 import { equation } from "./equation.js";
 import { h, panel, replace } from "./dom.js";
 import { attempt } from "./problem.js";
+import { together } from "./together.js";
 
 export function learnView(place, { rest }) {
   if (rest[0]) return effectView(place, decodeURIComponent(rest[0]));
@@ -13,13 +14,14 @@ export function learnView(place, { rest }) {
   const search = h("input", { type: "search", id: "effect-search", autocomplete: "off" });
   replace(place, panel("Practise: what is hidden in this joint?", challenge),
     panel("Effects that a model can be made of", h("label", { for: "effect-search" }, "Search", search), h("div", { class: "gap" }), list));
-  challengePanel(challenge);
-  attempt(list, async () => {
+  const practice = challengePanel(challenge);
+  const listed = attempt(list, async () => {
     const { items } = await get("/effects");
     const show = () => replace(list, items.filter((one) => matches(one, search.value)).map(card));
     search.addEventListener("input", show);
     show();
   }, { busy: "Loading …" });
+  together(place, [practice, listed]);
   return () => {};
 }
 

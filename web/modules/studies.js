@@ -6,6 +6,7 @@ import { when } from "./format.js";
 import { newStudy } from "./newstudy.js";
 import { attempt } from "./problem.js";
 import { studyView } from "./study.js";
+import { together } from "./together.js";
 
 export function studiesView(place, { rest }) {
   const wanted = rest[0] === "new" ? Number(rest[1]) : null; // an experiment to make a study of
@@ -15,8 +16,8 @@ export function studiesView(place, { rest }) {
   replace(place, panel("Studies", h("p", { class: "soft" },
     "A study compares measured trials with a model, names the physical effect that is missing, and shows the error fall when it is added."), list),
   panel("New study", create));
-  attempt(list, async () => replace(list, studyTable((await get("/studies")).items)));
-  newStudy(create, wanted);
+  const listed = attempt(list, async () => replace(list, studyTable((await get("/studies")).items)));
+  together(place, [listed, newStudy(create, wanted)]);
   return () => {};
 }
 

@@ -10,13 +10,14 @@ import { ladderPlot } from "./ladder.js";
 import { attempt } from "./problem.js";
 import { searchButton } from "./searching.js";
 import { suggestions } from "./suggestions.js";
+import { together } from "./together.js";
 
 export function studyView(place, id) {
   const parts = Object.fromEntries(["head", "model", "change", "ladder", "compared", "diagnosed"].map((name) => [name, h("div")]));
   replace(place, parts.head, panel("Model", parts.model, parts.change), panel("Ladder: the error from model to model", parts.ladder),
     panel("What is missing?", parts.diagnosed), parts.compared);
   const study = new Study(id, parts);
-  study.open();
+  together(place, [study.open()]);
   return () => study.close();
 }
 

@@ -2,12 +2,12 @@
 
 import { get } from "./api.js";
 import { calibrations } from "./calibrations.js";
-import { h, panel, replace, table } from "./dom.js";
+import { h, panel, replace } from "./dom.js";
+import { experimentList } from "./experimentlist.js";
 import { figureOf } from "./figures.js";
-import { outcome, withFiles } from "./files.js";
-import { when } from "./format.js";
 import { attempt } from "./problem.js";
 import { importForm } from "./recordingsets.js";
+import { together } from "./together.js";
 import { trialPlot } from "./trialplot.js";
 import { trialTable } from "./trialtable.js";
 
@@ -17,7 +17,7 @@ const OUTCOMES = ["", "completed", "stopped", "tripped", "failed", "interrupted"
 export function trialsView(place) {
   const [experiments, list, detail, figure, curves] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
   const filter = { experiment_id: "", outcome: "" };
-  let trials = [];
+  let [trials, more] = [[], false];
   let plotted = null;
   const words = h("input", { type: "search", id: "trial-search", placeholder: "name, kind, condition …", oninput: () => shown() });
   const change = (name) => ({ target }) => {
@@ -31,9 +31,10 @@ export function trialsView(place) {
     plotted?.close();
     plotted = await trialPlot(detail, ids);
   };
-  const shown = () => trialTable(list, trials, words.value, plot);
+  const shown = () => trialTable(list, { trials, more }, words.value, plot);
   const show = () => attempt(list, async () => {
-    trials = (await get("/trials", { ...filter, limit: MOST })).items;
+    const page = await get("/trials", { ...filter, limit: MOST });
+    [trials, more] = [page.items, page.next_offset !== null];
     shown();
     await figureOf(figure, filter.experiment_id ? kindOf(trials) : null, trials);
   });
@@ -42,15 +43,13 @@ export function trialsView(place) {
     number.value = filter.experiment_id;
     return show();
   };
-  const refresh = () => attempt(experiments, async () => {
-    const { items } = await get("/experiments", { limit: 100 });
-    replace(experiments, experimentTable(items, choose));
-    const latest = items.find((one) => one.outcome !== "refused");
+  const { refresh: listAgain } = experimentList(experiments, choose);
+  const refresh = async () => {
+    const latest = (await listAgain())?.find((one) => one.outcome !== "refused");
     await (latest ? choose(latest.experiment_id) : show());
-  });
+  };
   replace(place, panel("Experiments", experiments, importForm(refresh)), panel("Trials", bar, h("div", { class: "gap" }), list), detail, figure, curves);
-  refresh();
-  calibrations(curves);
+  together(place, [refresh(), calibrations(curves)]);
   return () => plotted?.close();
 }
 
@@ -58,20 +57,4 @@ export function trialsView(place) {
 function kindOf(trials) {
   const kinds = new Set(trials.map((trial) => trial.kind));
   return kinds.size === 1 ? [...kinds][0] : null;
-}
-
-function experimentTable(items, choose) {
-  if (!items.length) return h("p", { class: "soft" }, "Nothing has been run yet. Start an experiment on the Bench, or import a recording set.");
-  return table("Experiments", [
-    { title: "Experiment", number: true, cell: (one) => one.experiment_id },
-    { title: "Kind", cell: (one) => one.kind },
-    { title: "Source", cell: (one) => h("span", { class: `badge ${one.source}` }, one.source) },
-    { title: "Started", cell: (one) => when(one.started_utc) },
-    { title: "Outcome", cell: (one) => outcome(one) },
-    { title: "Note", cell: (one) => [one.note || one.parameters.name || "", one.tags?.length > 0 && h("div", { class: "hint" }, one.tags.join(", "))].filter(Boolean) },
-    { title: "", cell: (one) => withFiles(
-      [h("button", { class: "small", type: "button", "aria-label": `Trials of experiment ${one.experiment_id}`, onclick: () => choose(one.experiment_id) }, "Trials")],
-      [["Export", `Recording set of experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/recording-set`, `experiment-${one.experiment_id}.zip`],
-        ["Parquet", `Parquet of experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/parquet`, `experiment-${one.experiment_id}.parquet`]]) },
-  ], items);
 }

@@ -10,8 +10,8 @@ export function found(trial, words) {
   return words.toLowerCase().split(/\s+/).every((word) => text.includes(word));
 }
 
-// plot(ids): one trial, or those that were chosen
-export function trialTable(place, trials, words, plot) {
+// more: there are older ones, not among them; plot(ids): one trial, or those that were chosen
+export function trialTable(place, { trials, more }, words, plot) {
   const shown = trials.filter((trial) => found(trial, words));
   if (!shown.length) {
     replace(place, h("p", { class: "soft" }, trials.length ? "No trial has all of these words." : "No trials match."));
@@ -36,5 +36,5 @@ export function trialTable(place, trials, words, plot) {
       [h("button", { class: "small", type: "button", "aria-label": `Plot trial ${trial.trial_id}`, onclick: () => plot([trial.trial_id]) }, "Plot")],
       [["CSV", `CSV of trial ${trial.trial_id}`, `/trials/${trial.trial_id}/csv`, `trial-${trial.trial_id}.csv`],
         ["Parquet", `Parquet of trial ${trial.trial_id}`, `/trials/${trial.trial_id}/parquet`, `trial-${trial.trial_id}.parquet`]]) },
-  ], shown), h("div", { class: "row centre" }, together, h("span", { class: "soft" }, `${shown.length} of ${trials.length} trials`)));
+  ], shown), h("div", { class: "row centre" }, together, h("span", { class: "soft" }, `${shown.length} of ${more ? "the newest " : ""}${trials.length} trials${more ? ": choose an experiment to see older ones" : ""}`)));
 }

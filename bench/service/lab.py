@@ -1,0 +1,159 @@
+"""The model lab of a service: functions of `bench.study` by their names, in this process or in processes of their own.
+
+A fit takes a processor for as long as it lasts, and within one process the interpreter, too. In a process of its own,
+behind all other programs, it takes what they leave: the control loop, STOP and the readers come first.
+"""
+
+import os
+import signal
+import threading
+from contextlib import suppress
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any, Protocol
+
+from bench.bench_process.failures import error_of, failure_of
+from bench.bench_process.messages import Failure
+from bench.errors import BenchError
+from bench.service.json_numbers import plain
+from bench.store import Store
+
+NICENESS = 10  # -20 .. 19: more is less of the processor
+
+
+class LabEndedError(BenchError, ConnectionError):
+    """Raised when the process that computed was killed, or ran out of memory."""
+
+
+class Lab(Protocol):
+    """Calls functions of `bench.study`; each waits for its result."""
+
+    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
+        """The function's result, ready for JSON. `args` and `kwargs` are those after the store."""
+
+    def close(self) -> None:
+        """End whatever is under way."""
+
+
+class LabHere:
+    """In the thread that calls.
+
+    Args:
+        store: what the functions are given.
+    """
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
+        """See `Lab`."""
+        from bench import study  # the lab is imported when it is first needed: `serve` starts at once
+
+        return plain(getattr(study, name)(self._store, *args, **kwargs))
+
+    def close(self) -> None:
+        """Nothing to do."""
+
+
+class LabProcesses:
+    """In processes of their own, as many as are called at once; one that has started is used again.
+
+    Args:
+        url: of the store, which each of them opens.
+    """
+
+    def __init__(self, url: str) -> None:
+        self._url = url
+        self._idle: list[_Worker] = []
+        self._all: set[_Worker] = set()
+        self._lock = threading.Lock()
+        self._closed = False
+
+    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
+        """See `Lab`.
+
+        Raises:
+            LabEndedError: its process ended meanwhile; the next call starts another one.
+        """
+        worker = self._take()
+        try:
+            result = worker.call(name, args, kwargs)
+        except LabEndedError:
+            self._drop(worker)
+            raise
+        except BaseException:
+            self._give_back(worker)
+            raise
+        self._give_back(worker)
+        return result
+
+    def close(self) -> None:
+        """End whatever is under way. Safe to call twice."""
+        with self._lock:
+            self._closed, left = True, list(self._all)
+            self._all.clear()
+            self._idle.clear()
+        for worker in left:
+            worker.end()
+
+    def _take(self) -> "_Worker":
+        with self._lock:
+            if self._closed:
+                raise LabEndedError("the service is ending; nothing is computed any more")
+            if self._idle:
+                return self._idle.pop()
+            worker = _Worker(self._url)
+            self._all.add(worker)
+            return worker
+
+    def _give_back(self, worker: "_Worker") -> None:
+        with self._lock:
+            if worker in self._all:
+                self._idle.append(worker)
+
+    def _drop(self, worker: "_Worker") -> None:
+        with self._lock:
+            self._all.discard(worker)
+        worker.end()
+
+
+class _Worker:
+    """One process, and the way to it. Used by one thread at a time."""
+
+    def __init__(self, url: str) -> None:
+        context = get_context("spawn")  # a fork would take the threads' locks with it
+        self._connection, theirs = context.Pipe()
+        with theirs:
+            self._process = context.Process(target=work, args=(theirs, url), name="lab", daemon=True)
+            self._process.start()
+
+    def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+        try:
+            self._connection.send((name, args, kwargs))
+            found = self._connection.recv()
+        except (EOFError, OSError) as error:
+            raise LabEndedError("the process that computed has ended (killed, or out of memory); ask again") from error
+        if isinstance(found, Failure):
+            raise error_of(found)
+        return found
+
+    def end(self) -> None:
+        with suppress(OSError):
+            self._process.kill()  # a fit that is under way keeps nothing; the database undoes what was being written
+        self._process.join()
+
+
+def work(connection: Connection, url: str) -> None:
+    """What such a process does: calls, one after the other, until the service is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # at the terminal: the service ends this
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    with suppress(EOFError, OSError), Store.open(url) as store:
+        here = LabHere(store)
+        while True:
+            name, args, kwargs = connection.recv()
+            try:
+                answer = here.call(name, *args, **kwargs)
+            except Exception as error:
+                answer = failure_of(0, error)
+            connection.send(answer)
