@@ -180,13 +180,18 @@ def _fit(
 
 
 def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> Fit:
-    """Refit until the load that the model predicts is the load that its own terms are built from."""
+    """Refit until the load that the model predicts is the load that its own terms are built from.
+
+    Teeth that meet a little sooner or later leave a rest that does not shrink any more: there, too, it ends.
+    """
+    last = np.inf
     for _ in range(MOST_PASSES):
         before = fit.predicted
         fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes, fit.weight)
-        change = fit.predicted - before
-        if change @ change <= SETTLED_SHARE**2 * (before @ before):
+        change = float(np.linalg.norm(fit.predicted - before))
+        if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or change >= last:
             break
+        last = change
     return fit
 
 

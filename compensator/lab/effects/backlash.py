@@ -9,7 +9,7 @@ from compensator.lab.recording import FloatArray
 
 def shapes(motion: Motion) -> list[Shape]:
     """Gaps from a five-hundredth to a fifth of the travel."""
-    return [(float(share * motion.position_span),) for share in np.geomspace(2e-3, 0.2, 19)]
+    return [(float(share * motion.position_span),) for share in np.geomspace(2e-3, 0.2, 15)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:

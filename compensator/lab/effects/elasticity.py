@@ -9,7 +9,7 @@ from compensator.lab.recording import FloatArray
 
 def shapes(motion: Motion) -> list[Shape]:
     """Anti-resonances [Hz] of the arm without load, up to 0.4 of the sample rate."""
-    return [(float(hz),) for hz in np.geomspace(3.0, 0.4 / motion.step_s, 24)]
+    return [(float(hz),) for hz in np.geomspace(3.0, 0.4 / motion.step_s, 16)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
