@@ -29,15 +29,25 @@ def comparison(found: Found) -> None:
         ["on", f"rms [{unit}]#", "relative#"],
         [(name, one["rms"], percent(one["relative"])) for name, one in errors],
     )
-    rows = [
-        (one["effect"], one["name"], one["value"], one["low"], one["high"], one["unit"], one["note"])
-        for one in found["parameters"]
-    ]
-    table("Parameters", ["effect", "name", "value#", "low#", "high#", "unit", "note"], rows)
+    _parameters("Parameters", found["parameters"])
+    _breakaway(found["breakaway"])
     _errors("Trials", f"rms [{unit}]#", [({"name": one["name"], **one}, one["role"]) for one in found["trials"]])
     _errors("Regimes", f"rms [{unit}]#", [(one, f"{one['rows']} rows") for one in found["regimes"]])
     for note in found["notes"]:
         say(note)
+
+
+def _parameters(title: str, found: list[Found]) -> None:
+    names = ("effect", "name", "value", "low", "high", "unit", "note")
+    rows = [tuple(one[name] for name in names) for one in found]
+    table(title, ["effect", "name", "value#", "low#", "high#", "unit", "note"], rows)
+
+
+def _breakaway(found: Found | None) -> None:
+    if found is None:
+        return
+    errors = f"{percent(found['training']['relative'])}, held out {percent(found['held_out']['relative'])}"
+    _parameters(f"Breakaway, {found['starts']} starts from rest: error {errors}", found["parameters"])
 
 
 def diagnosis(found: Found) -> None:
@@ -142,11 +152,12 @@ def ladder(found: Found) -> None:
             _change(one),
             percent(one["training"]),
             share_interval(one["held_out"], one["held_out_low"], one["held_out_high"]),
+            percent(one["breakaway"]["held_out"]) if one["breakaway"] else "",
             one["reflected_error_g"],
         )
         for one in found["rungs"]
     ]
-    columns = ["model#", "change", "training error#", "held-out error#", "reflected load, error [g]#"]
+    columns = ["model#", "change", "training error#", "held-out error#", "breakaway#", "reflected load, error [g]#"]
     table(f"Ladder of study {found['study_id']}", columns, rows)
     floor = found["floor"]
     if floor is not None:

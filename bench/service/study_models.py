@@ -128,6 +128,15 @@ class ResidualAgainst(BaseModel):
     groups: list[DriverGroup]
 
 
+class BreakawayError(BaseModel):
+    """The same model, held against the effort of breaking away from rest."""
+
+    starts: int = Field(description="starts from rest whose effort is known")
+    training: Error
+    held_out: Error
+    parameters: list[FittedParameter] = Field(description="of the breakaway effort: not those of sliding")
+
+
 class Comparison(BaseModel):
     """Measured against predicted, and where they differ."""
 
@@ -139,6 +148,7 @@ class Comparison(BaseModel):
     error: Errors
     trials: list[TrialError]
     regimes: list[RegimeError]
+    breakaway: BreakawayError | None = Field(description="null: too few starts from rest in these trials")
     series: list[Series]
     residual_against: list[ResidualAgainst]
     notes: list[str]
@@ -209,6 +219,16 @@ class BeforeAfter(BaseModel):
     held_out: float | None
 
 
+class BreakawayChange(BaseModel):
+    """What a change did to the error of the breakaway effort, held out; relative (0..1)."""
+
+    held_out_before: float | None
+    held_out_after: float | None
+    gain: float | None
+    gain_low: float | None
+    gain_high: float | None
+
+
 class Changed(BaseModel):
     """The child model and what the change did to the error."""
 
@@ -220,6 +240,7 @@ class Changed(BaseModel):
     gain: float | None
     gain_low: float | None
     gain_high: float | None
+    breakaway: BreakawayChange | None = Field(description="null: no effect of breakaway, or too few starts from rest")
     sentence: str
 
 
@@ -246,6 +267,16 @@ class Searched(BaseModel):
     sentence: str
 
 
+class BreakawayRung(BaseModel):
+    """Error of one model on the effort of breaking away, relative (0..1)."""
+
+    starts: int
+    training: float | None
+    held_out: float | None
+    held_out_low: float | None
+    held_out_high: float | None
+
+
 class Rung(BaseModel):
     """One model of the ladder; errors are relative (0..1)."""
 
@@ -262,6 +293,7 @@ class Rung(BaseModel):
     reflected_error_g: float | None = Field(
         description="error of the reflected load in motion with the model at work on the bench, rms; null: not tried"
     )
+    breakaway: BreakawayRung | None = Field(description="null: too few starts from rest, or a model of older versions")
     trials: int | None = Field(description="of the study when the model was fitted; null: in models of older versions")
 
 

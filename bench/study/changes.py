@@ -7,10 +7,11 @@ from bench.store.records import ModelRow
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load, model_of
 from bench.study.models import result_of
+from compensator.lab.breakaway_comparison import held_out_both
 from compensator.lab.catalogue import effect_named
 from compensator.lab.fit import widened
 from compensator.lab.gain import Gain, held_out_gain
-from compensator.lab.validation import held_out
+from compensator.lab.validation import HeldOut, held_out
 
 
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
@@ -47,9 +48,17 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
-    before = held_out(widened(material.fit_of(parent), material.dataset.choice_for([*fit.effects, *changed])), rows)
-    after = held_out(fit, rows)
+    whole = widened(material.fit_of(parent), material.dataset.choice_for([*fit.effects, *changed]))
+    before, after = held_out(whole, rows), held_out(fit, rows)
     gain = held_out_gain(before, after)
+    starts = held_out_both(whole, fit) if any(effect.breakaway for effect in changed) else None
+    only_there = all(effect.rows == "breakaway" for effect in changed)
+    sentence = "" if only_there else _sentence(what, "held-out error", before.relative, after.relative, gain)
+    if starts is not None:
+        error = "held-out error of the breakaway effort"
+        sentence += " " + _sentence(what, error, starts[0].relative, starts[1].relative, held_out_gain(*starts))
+    elif only_there:
+        sentence = f"{what} changes nothing but the effort of breaking away, and too few starts from rest show that."
     result = result_of(fit, held_out(fit))
     model_id = store.add_model(material.study_id, parent.id, effects, result)
     return {
@@ -61,11 +70,18 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
         "gain": gain.value,
         "gain_low": gain.low,
         "gain_high": gain.high,
-        "sentence": _sentence(what, before.relative, after.relative, gain),
+        "breakaway": None if starts is None else _changed(*starts),
+        "sentence": sentence.strip(),
     }
 
 
-def _sentence(what: str, before: float, after: float, gain: Gain) -> str:
+def _changed(before: HeldOut, after: HeldOut) -> dict[str, float]:
+    gain = held_out_gain(before, after)
+    errors = {"held_out_before": before.relative, "held_out_after": after.relative}
+    return {**errors, "gain": gain.value, "gain_low": gain.low, "gain_high": gain.high}
+
+
+def _sentence(what: str, error: str, before: float, after: float, gain: Gain) -> str:
     if gain.low > 0.0:
         advice = "It helps: keep it."
     elif gain.high < 0.0:
@@ -73,6 +89,6 @@ def _sentence(what: str, before: float, after: float, gain: Gain) -> str:
     else:
         advice = "The interval includes no change: these trials do not show that it is needed."
     return (
-        f"{what} changes the held-out error from {before:.2%} to {after:.2%} "
+        f"{what} changes the {error} from {before:.2%} to {after:.2%} "
         f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%}). {advice}"
     )

@@ -7,9 +7,10 @@ import numpy as np
 from bench.store import Store
 from bench.study.material import Material, load_model
 from compensator.lab import comparison
+from compensator.lab.breakaway_comparison import breakaway_estimates
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.fit import Fit
-from compensator.lab.intervals import estimates
+from compensator.lab.intervals import ParameterEstimate, estimates
 from compensator.lab.recording import FloatArray
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
@@ -33,7 +34,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
         "study_id": study_id,
         "model_id": model.id,
         "effects": model.effects,
-        "parameters": _parameters(fit),
+        "parameters": _parameters(estimates(fit)),
         "effort": material.effort,
         "error": {
             "training": _error(found.training),
@@ -46,6 +47,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
         },
         "trials": _trials(material, found),
         "regimes": [{"name": regime.name, "rows": regime.rows, **_error(regime)} for regime in found.regimes],
+        "breakaway": _breakaway(found),
         "series": _series(material, fit),
         "residual_against": _against(material, found),
         "notes": _notes(material, found),
@@ -56,7 +58,19 @@ def _error(error: comparison.ErrorOf) -> dict[str, float]:
     return {"rms": error.rms, "relative": error.relative}
 
 
-def _parameters(fit: Fit) -> list[dict[str, Any]]:
+def _breakaway(found: comparison.Comparison) -> dict[str, Any] | None:
+    if found.breakaway is None:
+        return None
+    one = found.breakaway
+    return {
+        "starts": one.starts,
+        "training": {"rms": one.rms, "relative": one.relative},
+        "held_out": {"rms": one.held_out.rms, "relative": one.held_out.relative, "kind": one.held_out.kind},
+        "parameters": _parameters(breakaway_estimates(one.fit)),
+    }
+
+
+def _parameters(found: list[ParameterEstimate]) -> list[dict[str, Any]]:
     return [
         {
             "effect": one.effect,
@@ -67,7 +81,7 @@ def _parameters(fit: Fit) -> list[dict[str, Any]]:
             "high": one.high,
             "note": one.note,
         }
-        for one in estimates(fit)
+        for one in found
     ]
 
 

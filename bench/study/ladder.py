@@ -38,6 +38,7 @@ def _rung(model: ModelRow, parent: ModelRow | None) -> dict[str, Any]:
         "removed": next(iter(removed), None),
         **{key: model.result[key] for key in ("training", "held_out", "held_out_low", "held_out_high")},
         "held_out_kind": model.result["held_out_kind"],
+        "breakaway": model.result.get("breakaway"),
         "trials": model.result.get("trials"),
         "reflected_error_g": model.result.get("bench", {}).get("reflected_error_g"),
     }

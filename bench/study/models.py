@@ -4,6 +4,7 @@ from typing import Any
 
 from bench.store import Store
 from bench.study.material import Material
+from compensator.lab.breakaway_comparison import compare_breakaway
 from compensator.lab.comparison import repeatability_floor
 from compensator.lab.fit import Fit
 from compensator.lab.gain import error_interval
@@ -13,6 +14,21 @@ from compensator.lab.validation import HeldOut, held_out, relative_error
 def keep_model(store: Store, material: Material, parent_id: int | None, fit: Fit) -> int:
     """Add a fitted model to its study. Returns its id."""
     return store.add_model(material.study_id, parent_id, list(fit.names), result_of(fit, held_out(fit)))
+
+
+def breakaway_result(fit: Fit) -> dict[str, Any] | None:
+    """Relative errors (0..1) of the effort of breaking away; None where the trials hold too few starts from rest."""
+    found = compare_breakaway(fit)
+    if found is None:
+        return None
+    low, high = error_interval(found.held_out)
+    return {
+        "starts": found.starts,
+        "training": found.relative,
+        "held_out": found.held_out.relative,
+        "held_out_low": low,
+        "held_out_high": high,
+    }
 
 
 def result_of(fit: Fit, outside: HeldOut) -> dict[str, Any]:
@@ -29,6 +45,7 @@ def result_of(fit: Fit, outside: HeldOut) -> dict[str, Any]:
         "held_out_kind": outside.kind,
         "trials": len(fit.dataset.trials),
         "floor": None if floor is None else floor.relative,
+        "breakaway": breakaway_result(fit),
         "shapes": {name: list(shape) for name, shape in fit.shapes.items()},
         "coefficients": {term.effect.name: term.coefficients.tolist() for term in fit.terms},
     }

@@ -41,11 +41,12 @@ def ladder_section(found: Found) -> Section:
             _percent(rung["held_out"]),
             f"{_percent(rung['held_out_low'])} .. {_percent(rung['held_out_high'])}",
             rung["held_out_kind"],
+            _percent(rung["breakaway"]["held_out"]) if rung["breakaway"] else "",
             rung["reflected_error_g"],
         )
         for rung in rungs
     ]
-    columns = ["model#", "change", "training#", "held out#", "90 % interval", "how", "reflected load [g]#"]
+    columns = ["model#", "change", "training#", "held out#", "90 % interval", "how", "breakaway#", "reflected load [g]#"]
     floor = found["floor"]
     names = [f"{rung['model_id']}: {change_of(rung)}" for rung in rungs]
     held = [100.0 * rung["held_out"] for rung in rungs]
@@ -86,10 +87,7 @@ def change_of(rung: Found) -> str:
 def model_section(found: Found) -> Section:
     """The newest model: parameters, errors per regime and trial, measured against predicted."""
     unit = found["effort"]["unit"]
-    parameters = [
-        (one["effect"], one["name"], _number(one["value"]), _interval(one), one["unit"], one["note"])
-        for one in found["parameters"]
-    ]
+    breakaway = found["breakaway"]
     regimes = [(one["name"], one["rows"], one["rms"], _percent(one["relative"])) for one in found["regimes"]]
     trials = [
         (one["name"], one["role"].replace("_", " "), _number(one["rms"]), _percent(one["relative"]))
@@ -99,12 +97,20 @@ def model_section(found: Found) -> Section:
         f"Model {found['model_id']}",
         [f"Effects: {', '.join(found['effects'])}.", *found["notes"]],
         [
-            Table("Parameters", ["effect", "parameter", "value#", "95 % interval", "unit", "note"], parameters),
+            _parameters("Parameters", found["parameters"]),
+            *([_parameters("Parameters of the breakaway effort", breakaway["parameters"])] if breakaway else []),
             Table("Error by regime", ["regime", "rows#", f"rms [{unit}]#", "relative#"], regimes),
             Table("Error by trial", ["trial", "used as", f"rms [{unit}]#", "relative#"], trials),
         ],
         [_over_time(found, trial) for trial in _worst(found)],
     )
+
+
+def _parameters(title: str, found: list[Found]) -> Table:
+    rows = [
+        (one["effect"], one["name"], _number(one["value"]), _interval(one), one["unit"], one["note"]) for one in found
+    ]
+    return Table(title, ["effect", "parameter", "value#", "95 % interval", "unit", "note"], rows)
 
 
 def _worst(found: Found) -> list[Found]:

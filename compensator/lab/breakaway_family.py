@@ -1,9 +1,11 @@
 """What breakaway events have to say: which effect is missing in the effort of breaking away from rest."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.breakaway_fit import BreakawayFit, fit_breakaway, held_out_breakaway, lag_column
 from compensator.lab.breakaway_picture import picture_of_breakaway
 from compensator.lab.breakaway_rows import BreakawayRows, shares_of
@@ -27,8 +29,8 @@ from compensator.lab.fit import Fit
 from compensator.lab.gain import chance_not_worse, held_out_gain
 from compensator.lab.validation import HeldOut
 
-FEWEST_STARTS = 12  # fewer do not carry a regression
 SPREAD = 3.0  # longest over shortest rest, or quickest over slowest rate, that shows an effect of it
+SHOWS = 0.01  # p in steady sliding, of one effect, from which it is seen there
 RANGES = {"rest": "rests", "effort_rate": "rates of the effort"}
 
 
@@ -40,8 +42,18 @@ class _Judged:
     fit: BreakawayFit
 
 
-def breakaway_answer(fit: Fit, rows: BreakawayRows | None) -> tuple[Answer | None, dict[str, str]]:
-    """Judge the family on breakaway events; None where there are too few, and why effects cannot be judged."""
+def breakaway_answer(
+    fit: Fit, rows: BreakawayRows | None, sliding: Mapping[str, float] | None = None
+) -> tuple[Answer | None, dict[str, str]]:
+    """Judge the family on breakaway events; None where there are too few, and why effects cannot be judged.
+
+    Args:
+        fit: of the model.
+        rows: its starts from rest.
+        sliding: p-value in steady sliding of every effect that shows there. A joint whose friction depends on load or
+            warmth shows that a hundred times in sliding for once in a start: where sliding says no, starts are not
+            enough to name it.
+    """
     wanted = [effect for effect, _ in shares_of(candidates(fit.names, fit.dataset.facts))]
     count = 0 if rows is None else int(rows.training.sum())
     if rows is None or count < FEWEST_STARTS:
@@ -57,16 +69,23 @@ def breakaway_answer(fit: Fit, rows: BreakawayRows | None) -> tuple[Answer | Non
         return Answer("nothing", "", 1.0, [], None, []), left_out
     before = held_out_breakaway(base)
     ranked = sorted(
-        (_candidate(one, before, judged, bases, blocks) for one in judged), key=lambda one: not is_confirmed(one)
+        (_candidate(one, before, judged, bases, blocks) for one in judged),
+        key=lambda one: not (is_confirmed(one) and _shows_where_due(one, sliding)),
     )
     p_value = among_all(screening.p_value)
-    found = p_value <= SIGNIFICANT and is_confirmed(ranked[0])
+    found = p_value <= SIGNIFICANT and is_confirmed(ranked[0]) and _shows_where_due(ranked[0], sliding)
     stretches = len(np.unique(unit))
     sentence = _sentence(ranked[0], p_value, count, stretches) if found else ""
     notes = [] if found else _too_few(stretches)
     best = next(one.item for one in judged if one.effect is ranked[0].effect)
     verdict: Verdict = "missing" if found else "nothing"
     return Answer(verdict, sentence, p_value, ranked, None, notes, best.noncentrality), left_out
+
+
+def _shows_where_due(candidate: Candidate, sliding: Mapping[str, float] | None) -> bool:
+    """Whether steady sliding does not speak against an effect that shows there, too."""
+    due = sliding is not None and candidate.effect.rows == "sliding"
+    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SHOWS
 
 
 def _blocks(base: BreakawayFit, wanted: list[Effect]) -> tuple[list[Block], list[Base], dict[str, str]]:

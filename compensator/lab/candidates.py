@@ -13,6 +13,7 @@ from compensator.lab.errors import NotApplicableError
 from compensator.lab.evidence import Base, Block
 from compensator.lab.fit import Fit
 from compensator.lab.generic import DriverBlock, driver_blocks
+from compensator.lab.noise import Noise
 from compensator.lab.nuisance import nuisance_columns
 from compensator.lab.prediction import with_own_prediction
 from compensator.lab.recording import FloatArray
@@ -58,6 +59,7 @@ class Candidates:
         named: blocks of catalogue effects, all shapes.
         curves: of every driver, free.
         left_out: effect name -> why it cannot be judged on these trials.
+        noise: that a complete model would leave on these rows; None where it was not learnt (see `clearing`).
     """
 
     fit: Fit
@@ -68,6 +70,7 @@ class Candidates:
     named: list[Block]
     curves: "Curves"
     left_out: dict[str, str]
+    noise: Noise | None = None
 
     def with_block(self, block: Block) -> "Candidates":
         """The same candidates judged on top of one more block."""

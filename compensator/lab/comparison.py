@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
+from compensator.lab.breakaway_comparison import BreakawayComparison, compare_breakaway
 from compensator.lab.dataset import Dataset, IntArray
 from compensator.lab.drivers import available
 from compensator.lab.effects.effect import SESSION_START
@@ -51,8 +52,9 @@ class Comparison:
         held_out: on rows it was not fitted to.
         floor: error that no model can beat: scatter between repeated trials; None without repeats.
         trials: error of each trial, in the dataset's order, over its counted rows.
-        regimes: error of each regime over all rows.
+        regimes: error of each regime over all rows; last, of breaking away, over the starts that were fitted.
         against: residual against every driver, by direction.
+        breakaway: the model held against its starts from rest; None where there are too few.
     """
 
     fit: Fit
@@ -62,6 +64,7 @@ class Comparison:
     trials: list[ErrorOf]
     regimes: list[ErrorOf]
     against: list[ResidualAgainst]
+    breakaway: BreakawayComparison | None
 
 
 def compare(fit: Fit) -> Comparison:
@@ -72,6 +75,9 @@ def compare(fit: Fit) -> Comparison:
         for index, trial in enumerate(dataset.trials)
     ]
     regimes = [_error(fit, regime.name.lower(), dataset.regime == regime) for regime in Regime]
+    breakaway = compare_breakaway(fit)
+    if breakaway is not None:
+        regimes.append(ErrorOf("breakaway", breakaway.training, breakaway.rms, breakaway.relative))
     return Comparison(
         fit=fit,
         training=_error(fit, "training", fit.training & dataset.counted),
@@ -80,6 +86,7 @@ def compare(fit: Fit) -> Comparison:
         trials=trials,
         regimes=[error for error in regimes if error.rows],
         against=_residual_against(fit),
+        breakaway=breakaway,
     )
 
 

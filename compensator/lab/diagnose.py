@@ -11,11 +11,12 @@ from compensator.lab.breakaway_family import breakaway_answer
 from compensator.lab.breakaway_rows import breakaway_rows
 from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import candidates, catalogue, effect_named
+from compensator.lab.clearing import with_noise
 from compensator.lab.data_checks import data_problems
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.evidence import kept_evidence, screen
+from compensator.lab.evidence import Screening, kept_evidence, screen, screen_against_noise
 from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
 from compensator.lab.fit import Fit, widened
 from compensator.lab.regimes import Regime
@@ -35,7 +36,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
-    gathered = gather(fit)
+    gathered = with_noise(gather(fit))
     stretch = fit.dataset.block_index[gathered.rows]
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
     pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
@@ -43,11 +44,13 @@ def diagnose(fit: Fit) -> Diagnosis:
         raise UnusableDataError(
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
-    generic = screen(gathered.bases, gathered.curves.blocks, stretch)
-    steady = answer_of(fit, gathered, screen(gathered.bases, physical, stretch), generic)
-    chain = answer_of(fit, gathered, screen(gathered.bases, pipeline, stretch), None)
+    assert gathered.noise is not None
+    generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
+    sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
+    steady = answer_of(fit, gathered, sliding, generic)
+    chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
     memory, wide, not_judged = _memory(fit)
-    rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit))
+    rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
     families = [steady, *(answer for answer in (memory, rest) if answer is not None), chain]
     first = _first_of(families)
     if memory is not None and wide is not None and first is steady and _casts(wide, memory, steady):
@@ -109,9 +112,24 @@ def _first_of(families: list[Answer]) -> Answer:
     if steady.verdict == "nothing":
         return next((answer for answer in families if answer.verdict == "missing"), steady)
     if steady.verdict == "missing":
-        return steady
+        chain = families[-1]
+        return chain if chain.verdict == "missing" and _explains_more(chain, steady) else steady
     enough = FORMULA_SHARE * steady.strength
     return next((a for a in families[1:] if a.verdict == "missing" and a.strength >= enough), steady)
+
+
+def _least_p(screening: Screening) -> dict[str, float]:
+    """The least p-value of each effect's shapes, times how many there are."""
+    found: dict[str, float] = {}
+    for item in screening.evidence:
+        p_value = min(1.0, item.block.scanned * item.p_value)
+        found[item.block.name] = min(found.get(item.block.name, 1.0), p_value)
+    return found
+
+
+def _explains_more(one: Answer, other: Answer) -> bool:
+    """Whether one family's best effect has more evidence, and leaves less, than another's on the same rows."""
+    return one.strength > other.strength and one.candidates[0].after < other.candidates[0].after
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

@@ -6,12 +6,14 @@ autocorrelation for detection, and (elsewhere) the held-out gain. See docs/diagn
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.stats import chi2
 
 from compensator.lab.dataset import IntArray
 from compensator.lab.linear import orthonormal
+from compensator.lab.noise import Noise, strength
 from compensator.lab.recording import FloatArray
 
 SIGN_FLIPS = 999
@@ -85,8 +87,10 @@ class Screening:
     p_value: float
 
 
-def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0) -> Screening:
-    """Judge every block.
+def screen(
+    bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0, noise: Noise | None = None
+) -> Screening:
+    """Judge every block by flips of signs.
 
     The joint null is had by flipping the signs of whole stretches of the score (wild bootstrap): shape scanning and
     the number of candidates are inside the maximum, so that no further correction is due.
@@ -96,13 +100,14 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
         blocks: candidates.
         stretch: independent stretch of each row, shape (n,).
         seed: of the flips.
+        noise: of the rows, for scores to be held against those of `screen_against_noise`.
     """
     _, labels = np.unique(stretch, return_inverse=True)
     flips = _sign_flips(int(labels.max()) + 1, seed)
     evidence, lowest = [], np.ones(len(flips))
     inflation = max(inflation_of(base.residual) for base in bases)
     for block in blocks:
-        judged = _judge(bases[block.base], block, labels, flips, inflation)
+        judged = _judge(bases[block.base], block, labels, flips, inflation, noise)
         if judged is not None:
             evidence.append(judged[0])
             lowest = np.minimum(lowest, judged[1])
@@ -111,6 +116,39 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
     observed = min(item.p_value for item in evidence)
     p_value = (1.0 + float(np.sum(lowest <= observed * (1.0 + 1e-9)))) / (1.0 + len(flips))
     return Screening(sorted(evidence, key=lambda item: -item.score), p_value)
+
+
+def screen_against_noise(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise) -> Screening:
+    """Judge every block against noise that is known.
+
+    Where a few stretches hold all of an effect, as those at the highest speed do of drag, their flips can never say
+    how sure it is; the noise of all rows can. The null is Gaussian, with the noise's own autocovariance.
+
+    Args:
+        bases: what blocks are judged on top of.
+        blocks: candidates.
+        noise: that a complete model would leave.
+    """
+    found = [(block, bases[block.base], new_directions(bases[block.base], block)) for block in blocks]
+    found = [(block, base, directions) for block, base, directions in found if directions.shape[1]]
+    if not found:
+        return Screening([], 1.0)
+    ends = np.cumsum([0, *(directions.shape[1] for _, _, directions in found)])
+    places = [slice(int(a), int(b)) for a, b in pairwise(ends)]
+    covariance = noise.covariance(np.concatenate([directions for _, _, directions in found], axis=1))
+    inflation = max(inflation_of(base.residual) for base in bases)
+    evidence = []
+    for (block, base, directions), own in zip(found, places, strict=True):
+        share = directions.T @ base.residual
+        size = strength(share, covariance[own, own])
+        known = _compressed(size, len(base.residual) / inflation)
+        gain = _likelihood(base, share, inflation) if noise.outweighed else known
+        direction = directions @ share
+        norm = float(np.linalg.norm(direction)) or 1.0
+        score = gain - _price(block, directions, inflation)
+        evidence.append(Evidence(block, score, gain, noise.chance(size, len(share)), direction / norm))
+    least = min(item.p_value for item in evidence)
+    return Screening(sorted(evidence, key=lambda item: -item.score), noise.joint_chance(covariance, places, least))
 
 
 def screen_events(bases: Sequence[Base], blocks: Sequence[Block], unit: IntArray, seed: int = 0) -> Screening:
@@ -158,28 +196,59 @@ def least_p_value(stretches: int) -> float:
     return among_all(max(0.5 ** max(stretches - 1, 0), 1.0 / (1.0 + SIGN_FLIPS)))
 
 
-def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, float]:
+def kept_evidence(
+    bases: Sequence[Base], blocks: Sequence[Block], noise: Noise | None = None
+) -> dict[str, float]:
     """The greatest noncentrality of each name's blocks on top of the bases; 0 where nothing new is left."""
     inflation = max(inflation_of(base.residual) for base in bases)
     kept: dict[str, float] = {}
     for block in blocks:
         base = bases[block.base]
         directions = new_directions(base, block)
-        found = _likelihood(base, directions.T @ base.residual, inflation)
-        kept[block.name] = max(kept.get(block.name, 0.0), found)
+        kept[block.name] = max(kept.get(block.name, 0.0), _gain(base, directions, inflation, noise))
     return kept
 
 
+def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:
+    """The block with the best score by likelihood alone; None where no score is above zero."""
+    inflation = max(inflation_of(base.residual) for base in bases)
+    best, highest = None, 0.0
+    for block in blocks:
+        directions = new_directions(bases[block.base], block)
+        if directions.shape[1]:
+            score = _gain(bases[block.base], directions, inflation, None) - _price(block, directions, inflation)
+            best, highest = (block, score) if score > highest else (best, highest)
+    return best
+
+
+def _gain(base: Base, directions: FloatArray, inflation: float, noise: Noise | None) -> float:
+    """2 ln L gained by directions (n, rank): against known noise, or by the residual's lag-one correlation."""
+    share = directions.T @ base.residual
+    if noise is None or noise.outweighed or not len(share):
+        return _likelihood(base, share, inflation)
+    return _compressed(strength(share, noise.covariance(directions)), len(base.residual) / inflation)
+
+
+def _compressed(size: float, independent: float) -> float:
+    """2 ln L gained, where the noise is learnt, too: far beyond it, what else a block misses counts as noise."""
+    return float(independent * np.log1p(size / independent))
+
+
+def _price(block: Block, directions: FloatArray, inflation: float) -> float:
+    count, rank = directions.shape
+    return float(rank * np.log(count / inflation) + 2.0 * np.log(block.scanned))
+
+
 def _judge(
-    base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float
+    base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float, noise: Noise | None
 ) -> tuple[Evidence, FloatArray] | None:
     directions = new_directions(base, block)
-    count, rank = directions.shape
+    rank = directions.shape[1]
     if rank == 0:
         return None
     share = directions.T @ base.residual
-    price = rank * np.log(count / inflation) + 2.0 * np.log(block.scanned)
-    likelihood = _likelihood(base, share, inflation)
+    price = _price(block, directions, inflation)
+    likelihood = _gain(base, directions, inflation, noise)
     by_stretch = np.zeros((int(labels.max()) + 1, rank))
     np.add.at(by_stretch, labels, directions * base.residual[:, None])
     p_values = _robust_p(by_stretch, np.vstack([np.ones(len(by_stretch)), flips]))

@@ -42,13 +42,16 @@ def is_confirmed(candidate: Candidate) -> bool:
     """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
 
     Near reversals, what explains nothing unless it is larger, smaller, or of the other sign than it can be, is the
-    shadow of something else. The p-value cannot fall far where a few stretches hold most of the evidence; a very
-    strong score stands without it.
+    shadow of something else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials
+    hold most of the evidence, as those at the highest speed do of drag: there a very strong score stands without them,
+    if the error falls at all.
     """
-    no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
+    strong = candidate.score >= VERY_STRONG
+    no_luck = candidate.p_value <= SIGNIFICANT or strong
     falls = candidate.before - candidate.after >= LEAST_FALL
+    steady = candidate.rows == "sliding"
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = candidate.gain.low > 0.0 and candidate.gain.value >= least and falls
+    helps = candidate.gain.value >= least and falls and (candidate.gain.low > 0.0 or (steady and strong))
     return candidate.score > 0.0 and no_luck and helps and (candidate.physical or candidate.rows != "moving")
 
 
@@ -64,7 +67,7 @@ def _shape(item: Evidence) -> Shape:
 
 def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:
     """Evidence that every effect keeps once this one is in the model."""
-    return kept_evidence(gathered.with_block(item.block).bases, gathered.named)
+    return kept_evidence(gathered.with_block(item.block).bases, gathered.named, gathered.noise)
 
 
 def _spans(gathered: Candidates) -> list[tuple[str, FloatArray]]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.bursts import Bursts, bursts_of
 from compensator.lab.candidates import Candidates
 from compensator.lab.catalogue import catalogue
 from compensator.lab.diagnosis import Candidate, Verdict
@@ -12,16 +13,16 @@ from compensator.lab.evidence import Evidence, Screening, among_all, screen
 from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
 from compensator.lab.fit import Fit, with_columns
 from compensator.lab.gain import held_out_gain
-from compensator.lab.remainder import remainder_of
+from compensator.lab.remainder import LEAST_SHARE, remainder_of
 from compensator.lab.validation import held_out
-from compensator.lab.wording import answer_in_words, unexplained_in_words
+from compensator.lab.weights import row_weights
+from compensator.lab.wording import answer_in_words, bursts_in_words, unexplained_in_words
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
-UNDENIABLE = 30.0  # of a score: flips of k stretches that hold all the evidence never say less than 2^(1 - k)
-FORMULA_SHARE = 0.6  # of a free curve's evidence: a formula that reaches less is not the right one
+FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 
 
 @dataclass(frozen=True)
@@ -66,15 +67,20 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         sentence = answer_in_words("unknown-effect", p_value, examined, driver)
         return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
     p_value = among_all(named.p_value)
-    undeniable = gathered.show_in == "sliding" and examined[0].score >= UNDENIABLE
-    if (p_value <= SIGNIFICANT or undeniable) and is_confirmed(examined[0]):
+    # what explains much less than an effect that cannot be it is the shadow of something else
+    enough = best.noncentrality >= FORMULA_SHARE * max(item.noncentrality for item in best_of_each)
+    if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
         return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
     sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
     if generic is not None:
         left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
-        if left.is_more_than_noise:
+        bursts = _bursts(gathered)
+        if left.share > LEAST_SHARE and bursts.are_there:
+            names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
+            sentence, remains = bursts_in_words(bursts, names, left.share, p_value), True
+        elif left.is_more_than_noise:
             sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value), True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 
@@ -106,6 +112,12 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidenc
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
+
+
+def _bursts(gathered: Candidates) -> Bursts:
+    """Stretches that leave far more than others of like motion."""
+    dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
+    return bursts_of(dataset, residual[rows] * row_weights(dataset, residual, rows), rows)
 
 
 def _nearest_driver(generic: Screening) -> str | None:

@@ -1,12 +1,16 @@
 """What a diagnosis says in words."""
 
+from collections.abc import Sequence
 from math import isfinite
 
+from compensator.lab.bursts import Bursts
 from compensator.lab.dataset import BLOCK_S
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.evidence import least_p_value
 from compensator.lab.examination import SIGNIFICANT
 from compensator.lab.remainder import Remainder
+
+MOST_NAMES = 3
 
 
 def answer_in_words(
@@ -72,4 +76,15 @@ def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: floa
         f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {remainder.share:.1%} of the "
         f"effort, is more than noise; {how}. Repeat a trial: what comes again is the joint's, what does not has "
         "changed since."
+    )
+
+
+def bursts_in_words(bursts: Bursts, trials: Sequence[str], share: float, p_value: float) -> str:
+    """The answer where a few stretches leave far more than the others."""
+    where = ", ".join(trials[:MOST_NAMES]) + (f" and {len(trials) - MOST_NAMES} more" if len(trials) > MOST_NAMES else "")
+    return (
+        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {share:.1%} of the effort, comes "
+        f"in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to {bursts.largest:.1f} times "
+        f"as much as the others, in {where}. Something slips, skips or catches there: look at couplings, clutch and "
+        "cables, and repeat one of these trials with less load."
     )

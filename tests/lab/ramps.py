@@ -73,13 +73,13 @@ def swing(name: str, hz: float, random: np.random.Generator) -> Recording:
     return _recording(name, velocity, effort + 5e-4 * random.standard_normal(len(effort)))
 
 
-def ramp_fit(
+def ramp_recordings(
     static: Static = constant,
     dwells_s: Sequence[float] = (0.3, 1.5, 6.0),
     rates: Sequence[float] = (0.05, 0.15, 0.5),
     seed: int = 1,
-) -> Fit:
-    """A model of sliding, fitted to swings and ramps."""
+) -> list[Recording]:
+    """Swings, and ramps through rests and rates."""
     random = np.random.default_rng(seed)
     made = [swing(f"swing-{hz}", hz, random) for hz in (0.15, 0.3, 0.5, 0.7)]
     for repeat, dwell_s, rate in product(range(REPEATS), dwells_s, rates):
@@ -88,6 +88,17 @@ def ramp_fit(
             f"ramp-{dwell_s}-{rate}-{repeat}", dwell_s, rate, lambda t, r, s=scatter: s * static(t, r), random
         )
         made.append(one[0])
+    return made
+
+
+def ramp_fit(
+    static: Static = constant,
+    dwells_s: Sequence[float] = (0.3, 1.5, 6.0),
+    rates: Sequence[float] = (0.05, 0.15, 0.5),
+    seed: int = 1,
+) -> Fit:
+    """A model of sliding, fitted to swings and ramps."""
+    made = ramp_recordings(static, dwells_s, rates, seed)
     return fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL)
 
 

@@ -19,7 +19,7 @@ export async function comparison(place, compared, path) {
     panel("Measured against predicted", errors(compared), series),
     panel("Where the model is wrong", spots, moments),
     panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers),
-    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), parameterTable(compared))),
+    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), parameterTable(compared), ...breakawayTable(compared))),
     compared.notes.length ? panel("Notes", compared.notes.map((note) => h("p", {}, note))) : null);
   const plot = new SeriesPlot(series, compared);
   const ask = (where, words) => attempt(moments, async () => {
@@ -81,8 +81,14 @@ function regimeTable({ regimes, effort }) {
   ], regimes);
 }
 
-function parameterTable({ parameters }) {
-  return table("Parameters", [
+function breakawayTable({ breakaway }) {
+  if (!breakaway) return [];
+  const errors = `error ${percent(breakaway.training.relative)}, held out ${percent(breakaway.held_out.relative)}`;
+  return [parameterTable(breakaway, `Breakaway: ${breakaway.starts} starts from rest, ${errors}`)];
+}
+
+function parameterTable({ parameters }, title = "Parameters") {
+  return table(title, [
     { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
     { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
     { title: "Unit", cell: (one) => one.unit },

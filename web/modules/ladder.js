@@ -40,5 +40,6 @@ function rungTable(ladder, current) {
     { title: "Model", cell: rungName },
     { title: "Training error", number: true, cell: (rung) => percent(rung.training) },
     { title: "Held-out error", number: true, cell: (rung) => interval(rung.held_out, rung.held_out_low, rung.held_out_high) },
+    ...(rows.some((rung) => rung.breakaway) ? [{ title: "Breakaway, held out", number: true, cell: (rung) => percent(rung.breakaway?.held_out) }] : []),
   ], rows);
 }
