@@ -46,7 +46,16 @@ def ladder_section(found: Found) -> Section:
         )
         for rung in rungs
     ]
-    columns = ["model#", "change", "training#", "held out#", "90 % interval", "how", "breakaway#", "reflected load [g]#"]
+    columns = [
+        "model#",
+        "change",
+        "training#",
+        "held out#",
+        "90 % interval",
+        "how",
+        "breakaway#",
+        "reflected load [g]#",
+    ]
     floor = found["floor"]
     names = [f"{rung['model_id']}: {change_of(rung)}" for rung in rungs]
     held = [100.0 * rung["held_out"] for rung in rungs]

@@ -196,9 +196,7 @@ def least_p_value(stretches: int) -> float:
     return among_all(max(0.5 ** max(stretches - 1, 0), 1.0 / (1.0 + SIGN_FLIPS)))
 
 
-def kept_evidence(
-    bases: Sequence[Base], blocks: Sequence[Block], noise: Noise | None = None
-) -> dict[str, float]:
+def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise | None = None) -> dict[str, float]:
     """The greatest noncentrality of each name's blocks on top of the bases; 0 where nothing new is left."""
     inflation = max(inflation_of(base.residual) for base in bases)
     kept: dict[str, float] = {}

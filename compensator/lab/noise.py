@@ -92,7 +92,6 @@ class Noise:
         symmetric: FloatArray = 0.5 * (total + total.T)
         return symmetric
 
-
     def chance(self, strength_found: float, rank: int) -> float:
         """The chance that noise alone is as strong in one block of that rank (Snedecor's F: the noise is learnt)."""
         return float(fisher.sf(strength_found / rank, rank, self.known_from))

@@ -81,10 +81,10 @@ def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: floa
 
 def bursts_in_words(bursts: Bursts, trials: Sequence[str], share: float, p_value: float) -> str:
     """The answer where a few stretches leave far more than the others."""
-    where = ", ".join(trials[:MOST_NAMES]) + (f" and {len(trials) - MOST_NAMES} more" if len(trials) > MOST_NAMES else "")
+    more = f" and {len(trials) - MOST_NAMES} more" if len(trials) > MOST_NAMES else ""
     return (
-        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {share:.1%} of the effort, comes "
-        f"in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to {bursts.largest:.1f} times "
-        f"as much as the others, in {where}. Something slips, skips or catches there: look at couplings, clutch and "
-        "cables, and repeat one of these trials with less load."
+        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {share:.1%} of the effort, "
+        f"comes in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to "
+        f"{bursts.largest:.1f} times as much as the others, in {', '.join(trials[:MOST_NAMES])}{more}. Something slips, "
+        "skips or catches there: look at couplings, clutch and cables, and repeat one of these trials with less load."
     )

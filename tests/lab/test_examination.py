@@ -15,7 +15,9 @@ from compensator.lab.gain import Gain
         (-1.0, 0.001, 0.2, 0.1, False),  # does not pay for its parameters
         (5.0, 0.02, 0.2, 0.1, False),  # may be luck
         (50.0, 0.02, 0.2, 0.1, True),  # few stretches hold the evidence, but it is very strong
-        (50.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain
+        (5.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain
+        (50.0, 0.001, 0.2, -0.01, True),  # few trials hold the gain, but the evidence is very strong
+        (50.0, 0.001, -0.01, -0.2, False),  # held-out trials lose
         (50.0, 0.001, 0.0005, 0.0001, False),  # a gain of no use
     ],
 )
