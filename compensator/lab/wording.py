@@ -86,5 +86,6 @@ def bursts_in_words(bursts: Bursts, trials: Sequence[str], share: float, p_value
         f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {share:.1%} of the effort, "
         f"comes in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to "
         f"{bursts.largest:.1f} times as much as the others, in {', '.join(trials[:MOST_NAMES])}{more}. Something "
-        "slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these trials with less load."
+        "slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these trials with less "
+        "load."
     )
