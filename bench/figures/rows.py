@@ -141,6 +141,11 @@ def _error_ratio(seed: SeedResults, _configuration: BenchConfiguration) -> Numbe
     return [float(np.sqrt(np.mean(ours) / np.mean(theirs)))] if len(ours) and len(theirs) else []
 
 
+def _time_at_accuracy(seed: SeedResults, configuration: BenchConfiguration) -> Numbers:
+    times, errors = _time(seed, configuration), _error_ratio(seed, configuration)
+    return [time * error**2 for time, error in zip(times, errors, strict=False)]
+
+
 def _mean(numbers: Sequence[float]) -> float:
     return float(np.mean(numbers)) if len(numbers) else nan
 
@@ -211,6 +216,17 @@ BESIDE = (
         "what a master arm is given at any moment; it lags by half a window",
     ),
     Asked("error rms of that search / flow chart's", "", 0.0, 1.0, "1", _error_ratio, _mean),
+    Asked(
+        "that time at the same accuracy: time x error^2, ours / flow chart's",
+        "",
+        0.0,
+        0.5,
+        "1",
+        _time_at_accuracy,
+        _mean,
+        "the mean of n searches takes n times as long for an error smaller by the root of n; where its error "
+        "stays, such as with asymmetric friction, no n would do",
+    ),
     Asked(
         "bound of Table 1's mean error, by friction's scatter",
         "g",

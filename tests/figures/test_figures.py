@@ -76,6 +76,8 @@ def test_each_figure_is_taken_from_its_trials():
     assert row(rows, "that interval, in the sweep").measured == 100.0
     assert row(rows, "time of a search").measured == pytest.approx(0.25)
     assert row(rows, "error rms of that search").measured == pytest.approx(0.5)
+    # a quarter of the time for half of the error
+    assert row(rows, "that time at the same accuracy").measured == pytest.approx(0.25 * 0.5**2)
     assert row(rows, "steady speeds, each stroke").measured == pytest.approx(0.5)
     assert row(rows, "steady speeds, every control cycle").measured == pytest.approx(1.0)
 
