@@ -16,6 +16,7 @@ from bench.drive_factory import is_simulated
 from bench.limits import Limits
 from bench.service.access import Viewer, allow_read, require_viewer
 from bench.service.audit_trail import note
+from bench.service.compute import at_bench
 from bench.service.json_numbers import plain
 from bench.service.leases import LeaseOf, lease_now, require_lease
 from bench.service.problems import problems
@@ -159,9 +160,9 @@ async def _reason(request: Request) -> str:
     dependencies=[Depends(require_lease)],
     responses=problems(401, 403, 409, 422),
 )
-def go_on(runner: RunnerOf, request: Request, body: Continue) -> Accepted:
+async def go_on(runner: RunnerOf, request: Request, body: Continue) -> Accepted:
     """409 where that prompt is not the one that is open now: an answer that comes late moves nothing."""
-    runner.answer(body.prompt)
+    await at_bench(request, runner.answer, body.prompt)
     note(request, f"answered prompt {body.prompt} of experiment {runner.status().experiment_id}")
     return Accepted()
 

@@ -13,6 +13,7 @@ from bench.service.lab import Lab
 P = ParamSpec("P")
 T = TypeVar("T")
 MOST_AT_ONCE = 2
+MOST_AT_BENCH = 8  # they wait, and take no processor
 
 
 async def in_worker(request: Request, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
@@ -24,10 +25,21 @@ async def in_worker(request: Request, function: Callable[P, T], *args: P.args, *
         *args: passed on.
         **kwargs: passed on.
     """
-    state: Any = request.app.state
-    if not hasattr(state, "compute_limiter"):
-        state.compute_limiter = anyio.CapacityLimiter(MOST_AT_ONCE)
-    return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=state.compute_limiter)
+    limiter = _limiter(request, "compute_limiter", MOST_AT_ONCE)
+    return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=limiter)
+
+
+async def at_bench(request: Request, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Run what waits for the bench, as a start waits for its drive; those who only read do not stand behind it.
+
+    Args:
+        request: the request that asked for it; its application holds the limiter.
+        function: what to run; it must not touch the event loop.
+        *args: passed on.
+        **kwargs: passed on.
+    """
+    limiter = _limiter(request, "bench_limiter", MOST_AT_BENCH)
+    return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=limiter)
 
 
 async def in_lab(request: Request, name: str, /, *args: Any, **kwargs: Any) -> Any:
@@ -41,3 +53,11 @@ async def in_lab(request: Request, name: str, /, *args: Any, **kwargs: Any) -> A
     """
     lab: Lab = request.app.state.lab
     return await in_worker(request, lab.call, name, *args, **kwargs)
+
+
+def _limiter(request: Request, name: str, most: int) -> anyio.CapacityLimiter:
+    state: Any = request.app.state
+    if not hasattr(state, name):
+        setattr(state, name, anyio.CapacityLimiter(most))
+    found: anyio.CapacityLimiter = getattr(state, name)
+    return found

@@ -11,21 +11,26 @@ from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.background import BackgroundTask
 
+from bench.bench_control import BenchControl
 from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
+from bench.lease import Lease
 from bench.recording_set import export_experiment, export_parquet
 from bench.service import conditional
 from bench.service.access import Operator, allow_read, require_operator
 from bench.service.attachment import attachment
 from bench.service.audit_trail import note
+from bench.service.compute import at_bench
 from bench.service.json_numbers import plain
 from bench.service.leases import LeaseOf
 from bench.service.pages import Limit, Offset, Page, cut
 from bench.service.problems import FieldProblem, InvalidFieldsError, field_problems, problems
 from bench.service.queue_models import Note, Tags
 from bench.service.repeated_start import Key, once
+from bench.service.roles import Caller
 from bench.service.services import RunnerOf, StoreOf
 from bench.service.trials import PARQUET, PARQUET_ANSWER
+from bench.store import Store
 from bench.store.errors import StoreError
 from bench.store.records import Experiment as StoredExperiment
 from bench.store.tags import LONGEST_TAG
@@ -131,7 +136,7 @@ def kinds(limit: Limit = 100, offset: Offset = 0) -> Kinds:
     summary="Start an experiment: the joint moves",
     responses=problems(401, 403, 404, 409, 422, 502),
 )
-def start(
+async def start(
     runner: RunnerOf,
     store: StoreOf,
     lease: LeaseOf,
@@ -145,6 +150,22 @@ def start(
 
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
+
+    experiment_id = await at_bench(request, _begun, runner, store, lease, caller, request, body, key)
+    response.headers["Location"] = f"{request.url.path}/{experiment_id}"
+    return Started(experiment_id=experiment_id, kind=body.kind)
+
+
+def _begun(
+    runner: BenchControl,
+    store: Store,
+    lease: Lease,
+    caller: Caller,
+    request: Request,
+    body: NewExperiment,
+    key: str | None,
+) -> int:
+    """The experiment that has begun, now or with the same key before."""
 
     def begin() -> dict[str, Any]:
         with lease.starting(caller.name):
@@ -160,8 +181,7 @@ def start(
     if body.tags:
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
             store.annotate(experiment_id, tags=body.tags)
-    response.headers["Location"] = f"{request.url.path}/{experiment_id}"
-    return Started(experiment_id=experiment_id, kind=body.kind)
+    return experiment_id
 
 
 def _fields_of(body: NewExperiment) -> list[FieldProblem]:

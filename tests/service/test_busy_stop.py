@@ -14,7 +14,7 @@ from fastapi import FastAPI
 
 from bench.bench_control import BenchControl
 from bench.live import LiveRows
-from bench.service import live_events
+from bench.service import live_events, turns
 from bench.service.live_rows import Rows, rows_of
 from tests.service import running_service as service_of_tests
 from tests.service.running_service import TOKEN, RunningService, running_service
@@ -107,6 +107,21 @@ def test_stop_does_not_wait_for_an_answer_to_a_prompt_that_the_bench_is_slow_to_
         with asked(service, head + kind, 1):
             busy.begun.acquire()
             assert stopped_after_s(service) < 10.0  # the bench takes 30 s
+            busy.over.set()
+
+
+def test_nobody_stands_behind_starts_that_wait_for_their_drive(tmp_path, busy, monkeypatch) -> None:
+    with running_service(tmp_path) as service:
+        monkeypatch.setattr(service.runner, "start", lambda *_words: busy.wait() or 1)
+        body = '{"kind": "steps"}'
+        head = f"POST /api/v1/experiments HTTP/1.1\nHost: localhost\nAuthorization: Bearer {TOKEN}\n"
+        kind = f"Content-Type: application/json\nContent-Length: {len(body)}\n\n{body}"
+        with asked(service, head + kind, turns.MOST_HANDLERS + 1):
+            for _ in range(turns.MOST_HANDLERS):
+                busy.begun.acquire()
+            begun_s = time.monotonic()
+            assert service.stranger.get("/trials").status_code == 200
+            assert time.monotonic() - begun_s < 10.0  # the drives take 30 s
             busy.over.set()
 
 
