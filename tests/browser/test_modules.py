@@ -91,6 +91,27 @@ def test_a_spike_of_one_sample_is_drawn_however_many_there_are(call):
     assert painted == [True, False, True, False]
 
 
+def test_a_band_is_drawn_between_its_edges_and_not_where_it_is_unknown(call):
+    painted = call(
+        "paint",
+        "import('/static/modules/loadcurrent.js').then((load) => {"
+        " const canvas = document.createElement('canvas'); canvas.width = 300; canvas.height = 200;"
+        " const context = canvas.getContext('2d', {willReadFrequently: true});"
+        " const x = Float64Array.from({length: 20000}, (_, i) => i / 20000);"
+        " const half = x.map((at) => (at < 0.5 ? 0.5 : NaN));"
+        " const band = load.around(0, x, x.map(() => 0), half, '#ff0000');"
+        " const line = {row: 0, name: '', x, y: x.map((at) => 2 * Math.sign(at - 0.5)), colour: '#000'};"
+        " const content = {rows: [{title: ''}], lines: [line], bands: [band], xTitle: ''};"
+        " const theme = {text: '#000', soft: '#000', line: '#fff', font: '12px sans-serif'};"
+        " m.paint(context, {width: 300, height: 200, view: [0, 1], content, theme, pointer: null});"
+        " const box = m.frame(0, 1, 300, 200), red = (at, share) => { const [r, g] = context.getImageData("
+        " Math.round(m.xOf(at, [0, 1], box)), Math.round(box.bottom - share * (box.bottom - box.top)), 1, 1).data;"
+        " return r > 200 && g < 50; };"
+        " return [red(0.25, 0.55), red(0.25, 0.45), red(0.25, 0.75), red(0.75, 0.55)]; })",
+    )
+    assert painted == [True, True, False, False]
+
+
 def test_ticks_are_round_and_inside(call):
     assert call("ticks", "m.ticks(-0.31, 1.02, 5)") == [0.0, 0.5, 1.0]
     assert call("ticks", "m.ticks(0, 0.007, 5)") == [0, 0.002, 0.004, 0.006]

@@ -102,6 +102,15 @@ def test_a_frozen_picture_stays_while_the_joint_goes_on(service, open_page):
     assert time_at(page, 1.0) > then_s
 
 
+def test_the_load_is_followed_with_its_band(service, open_page):
+    page = open_page()
+    page.get_by_role("button", name="Start", exact=True).wait_for()
+    service.start("steps", pace="real-time", repeats=3)
+    live = page.get_by_label("Live", exact=True)
+    live.locator(".legend-entry").get_by_text("load current (band: 95 %)").wait_for()
+    live.locator(".readings").get_by_text(re.compile(r"^−?\d\.\d{3} ± 0\.\d{3} A$")).wait_for()
+
+
 @pytest.mark.parametrize("width", [1280, 400])
 @pytest.mark.parametrize("view", ["#bench", "#queue", "#trials", "#study", "#learn", "#learn/backlash"])
 def test_nothing_jumps_while_a_view_fills(service, open_page, width, view):

@@ -5,6 +5,7 @@ import { h } from "./dom.js";
 const SPACE = "http://www.w3.org/1998/Math/MathML";
 const LETTERS = { alpha: "α", kappa: "κ", lambda: "λ", rho: "ρ", eta: "η", zeta: "ζ", pi: "π", beta: "β", gamma: "γ", delta: "δ", mu: "μ", omega: "ω", phi: "φ", sigma: "σ", tau: "τ", theta: "θ", Delta: "Δ" };
 const ACCENTS = { tilde: "~", dot: ".", ddot: "..", hat: "^", bar: "¯" };
+const SIGNS = { cdot: "·", le: "≤", ge: "≥" };
 const FUNCTIONS = new Set(["log", "max", "min", "sin", "cos", "tan", "exp", "tanh", "ln", "sgn"]);
 const TOKEN = /\\(?:text|mathrm)\{[^}]*\}|\\[A-Za-z]+|\\.|[A-Za-z]|\d+(?:\.\d+)?|\S/g;
 
@@ -82,7 +83,7 @@ function command(name, tokens) {
   if (name in ACCENTS) return accented(ACCENTS[name], item(tokens));
   if (name.endsWith("}")) return upright(name.slice(name.indexOf("{") + 1, -1));
   if (name === "frac") return element("mfrac", item(tokens), item(tokens));
-  if (name === "cdot") return element("mo", "·");
+  if (name in SIGNS) return element("mo", SIGNS[name]);
   throw new Error(`unknown \\${name}`);
 }
 

@@ -5,6 +5,7 @@ import { h, replace } from "./dom.js";
 import { number } from "./format.js";
 import { LatestTrials } from "./latesttrials.js";
 import { loadBands } from "./loadbands.js";
+import { around, HALF, LOAD, newest } from "./loadcurrent.js";
 import { markLegend, marksOf } from "./marks.js";
 
 const STALE_EVERY_MS = 500;
@@ -15,7 +16,7 @@ const CHANNELS = [
   { name: "velocity_rad_s", text: "speed", unit: "rad/s", colour: "green" },
   { name: "current_a", text: "current", unit: "A", colour: "red" },
   { name: "current_estimate_a", text: "current from duty", unit: "A", colour: "purple" },
-  { name: "current_load_a", text: "load current", unit: "A", colour: "sky", width: 3 },
+  { name: "current_load_a", text: "load current (band: 95 %)", unit: "A", colour: "sky", width: 3 },
   { name: "duty", text: "duty", unit: "duty", colour: "blue" },
   { name: "supply_v", text: "supply", unit: "V", colour: "orange", off: true },
   { name: "temperature_c", text: "temperature", unit: "°C", colour: "red", off: true },
@@ -51,7 +52,7 @@ export function livePlot(place, live) {
     const run = live.status?.run;
     progress.value = run?.progress ?? 0;
     outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment.";
-    replace(readings, readingsOf(live.status?.reading));
+    replace(readings, readingsOf(live.status?.reading, newest(live.rows)));
   };
   const timer = setInterval(() => place.classList.toggle("stale", live.stale), STALE_EVERY_MS);
   // the chart draws once a frame, however often it is told
@@ -86,8 +87,10 @@ function contentOf(rows, chosen, marks, seconds) {
   const units = [...new Set(measured.map((one) => one.unit))];
   const last = all.at(-1) ?? 0;
   const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: rows.column(one.name), colour: one.colour, dash: one.dash, width: one.width }));
+  const load = measured.find((one) => one.name === LOAD);
+  const bands = load && rows.column(HALF) ? [around(units.indexOf(load.unit), all, rows.column(LOAD), rows.column(HALF), load.colour)] : [];
   return {
-    rows: units.length ? units.map((title) => ({ title })) : [{ title: "" }], lines,
+    rows: units.length ? units.map((title) => ({ title })) : [{ title: "" }], lines, bands,
     marks: marks.filter((one) => one.letter && one.x <= last), xTitle: "time in the trial [s]",
     limits: seconds && all.length ? [Math.max(all[0], last - seconds), last] : undefined,
   };
@@ -98,9 +101,10 @@ function sentence(run) {
   return `Experiment ${run.experiment_id} (${run.kind}): ${run.outcome}${run.reason ? `: ${run.reason}` : ""}`;
 }
 
-function readingsOf(values) {
+function readingsOf(values, load) {
   const shown = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
     ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
   const known = shown.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
-  return known.map(([text, name, unit]) => h("div", {}, h("dt", {}, text), h("dd", {}, `${values[name].toFixed(3).replace("-", "−")} ${unit}`)));
+  const read = known.map(([text, name, unit]) => [text, `${values[name].toFixed(3).replace("-", "−")} ${unit}`]);
+  return [...read, ...(load ? [["load current", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
 }

@@ -3,6 +3,7 @@
 import { Chart } from "./chart.js";
 import { h, replace } from "./dom.js";
 import { unitOf, nameOf, withUnit } from "./format.js";
+import { around, HALF, LOAD } from "./loadcurrent.js";
 import { marksOf } from "./marks.js";
 import { SERIES, colour, draw, forget } from "./plot.js";
 import { attempt } from "./problem.js";
@@ -72,7 +73,8 @@ export class Overlay {
   }
 
   #channelsOf(trial) {
-    return [...new Set(["time_s", this.against, ...this.channels])].filter((name) => trial.channels.includes(name));
+    const band = this.channels.includes(LOAD) ? [HALF] : [];
+    return [...new Set(["time_s", this.against, ...this.channels, ...band])].filter((name) => trial.channels.includes(name));
   }
 
   async #lookCloser() {
@@ -106,13 +108,15 @@ export class Overlay {
       const source = sources[index];
       return this.channels.filter((name) => source[name]?.some(Number.isFinite)).map((name) => {
         const at = this.channels.indexOf(name);
-        return { row: units.indexOf(unitOf(name)), name: several ? `${trial.trial_id} ${nameOf(name)}` : nameOf(name), x: source.time_s, y: source[name],
+        return { row: units.indexOf(unitOf(name)), name: several ? `${trial.trial_id} ${nameOf(name)}` : nameOf(name), x: source.time_s, y: source[name], half: name === LOAD ? source[HALF] : null,
           colour: SERIES[(several ? index : at) % SERIES.length], dash: several ? DASHES[at % DASHES.length] : undefined };
       });
     });
     const load = several || !units.includes("A") ? null : loadFound(this.trials[0], limits[1], units.indexOf("A"));
     if (load) lines.push(load.line);
-    this.chart.show({ rows: units.map((title) => ({ title })), lines, limits, bands: load ? [load.band] : [], xTitle: "time in the trial [s]",
+    const bands = load ? [load.band] : [];
+    for (const line of lines.filter((one) => one.half)) bands.push(around(line.row, line.x, line.y, line.half, line.colour));
+    this.chart.show({ rows: units.map((title) => ({ title })), lines, limits, bands, xTitle: "time in the trial [s]",
       marks: several ? [] : marksOf(this.trials[0].events).filter((mark) => mark.letter) });
   }
 

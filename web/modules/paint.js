@@ -2,7 +2,7 @@
 
 import { extremes, thinned } from "./thin.js";
 import { label, ticks, widened } from "./ticks.js";
-import { drawTrace, points } from "./trace.js";
+import { columns, drawTrace, points } from "./trace.js";
 
 const LEFT = 58;
 const RIGHT = 10;
@@ -38,7 +38,7 @@ export function paint(context, { width, height, view, content, theme, pointer, p
     title(context, row.title, box, theme);
     clipped(context, box, () => {
       for (const shade of content.shades ?? []) shaded(context, shade, view, box, theme);
-      for (const band of bands) banded(context, band, view, range, box);
+      for (const band of bands) banded(context, band, view, range, box, pixel);
       for (const mark of content.marks ?? []) marked(context, mark, view, box, theme);
       for (const line of lines) drawn(context, line, view, range, box, pixel);
       if (pointer !== null) vertical(context, xOf(pointer, view, box), box, theme.soft, []);
@@ -118,11 +118,19 @@ function drawn(context, line, view, range, box, pixel) {
   drawTrace(context, points(wanted, line, (value) => xOf(value, view, box), (value) => yOf(value, range, box)), line, box, pixel);
 }
 
-function banded(context, band, view, range, box) {
+// a bar for each column of pixels: from the lowest of the lower edge to the highest of the upper one
+function banded(context, band, view, range, box, pixel) {
+  const edge = (y) => {
+    const wanted = thinned(band.x, y, view, (box.right - box.left) / pixel);
+    return columns(points(wanted, { x: band.x, y }, (value) => xOf(value, view, box), (value) => yOf(value, range, box)), box, pixel);
+  };
+  const [lower, upper] = [edge(band.low), edge(band.high)];
   context.fillStyle = band.colour;
   context.beginPath();
-  band.x.forEach((value, index) => context.lineTo(xOf(value, view, box), yOf(band.high[index], range, box)));
-  for (let index = band.x.length - 1; index >= 0; index -= 1) context.lineTo(xOf(band.x[index], view, box), yOf(band.low[index], range, box));
+  for (let column = 0; column < upper.low.length; column += 1) {
+    const [top, bottom] = [upper.low[column], lower.high[column]];
+    if (top <= bottom) context.rect(box.left + column * pixel, top, pixel, bottom - top);
+  }
   context.fill();
 }
 
