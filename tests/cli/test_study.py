@@ -53,7 +53,11 @@ def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):
     from bench.study.next_trial.options import choices
 
     suggest = importlib.import_module("bench.study.suggest")
-    monkeypatch.setattr(suggest, "choices", lambda *args: choices(*args)[:3])
+
+    def few(*args):
+        return [one for one in choices(*args) if one.parameters.get("waveforms") == ["slow-sine"]]
+
+    monkeypatch.setattr(suggest, "choices", few)
     motions = ["--waveforms", "slow-sine,multisine", "--loads-kg", "0.05", "--duration-s", 4]
     assert command("run", "excitation", *motions, "--json").exit_code == 0
     assert command("study", "new", "arm", "--experiment", 1, "--json").exit_code == 0
