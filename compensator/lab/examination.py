@@ -120,13 +120,13 @@ def _candidate(
         before=before.relative,
         after=after.relative,
         gain=held_out_gain(before, after),
-        physical=_physical(gathered, item),
+        physical=is_physical(gathered, item),
         picture=picture_of(gathered, item),
         rows=gathered.show_in,
     )
 
 
-def _physical(gathered: Candidates, item: Evidence) -> bool:
+def is_physical(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients lie within the effect's bounds."""
     base = gathered.bases[item.block.base]
     columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)

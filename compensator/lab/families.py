@@ -10,7 +10,7 @@ from compensator.lab.catalogue import catalogue
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.evidence import Evidence, Screening, among_all, screen
-from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed
+from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed, is_physical
 from compensator.lab.fit import Fit, with_columns
 from compensator.lab.gain import held_out_gain
 from compensator.lab.remainder import LEAST_SHARE, remainder_of
@@ -54,7 +54,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         named: evidence for the family's effects.
         generic: evidence for free curves; None where a formula need not be held against one.
     """
-    best_of_each = _best_shapes(named)
+    best_of_each = _best_shapes(gathered, named)
     if not best_of_each:
         return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
     shown = [item for item in best_of_each if item.score > 0.0][:EXAMINED]
@@ -85,16 +85,24 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 
 
-def _best_shapes(screening: Screening) -> list[Evidence]:
+def _best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
     """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
-    found: dict[str, Evidence] = {}
+    of_each: dict[str, list[Evidence]] = {}
     for evidence in screening.evidence:
-        found.setdefault(evidence.block.name, evidence)
-    ranked = list(found.values())
+        of_each.setdefault(evidence.block.name, []).append(evidence)
+    found = [_best_shape(gathered, shapes) for shapes in of_each.values()]
+    ranked = sorted(found, key=lambda item: -item.score)
     order = list(catalogue())
     tied = [item for item in ranked if _ties(item, ranked[0])]
     plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
     return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
+
+
+def _best_shape(gathered: Candidates, shapes: list[Evidence]) -> Evidence:
+    """The best one; near reversals, of those whose size can be: what swings too little, or too much, makes up by it."""
+    if gathered.show_in != "moving":
+        return shapes[0]
+    return next((item for item in shapes if item.score > 0.0 and is_physical(gathered, item)), shapes[0])
 
 
 def _ties(item: Evidence, best: Evidence) -> bool:

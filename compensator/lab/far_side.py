@@ -10,11 +10,8 @@ from scipy.signal import lfilter
 
 from compensator.lab.recording import FloatArray
 
-PLAUSIBLE_SHARE = (
-    0.3,
-    3.0,
-)  # of the load that drawings and weights tell: far from 1, it is the shadow of something else
-DAMPING = 0.05  # of the far side on its spring, of critical: material, teeth and bearings
+# of the load that drawings and weights tell: far from 1, it is the shadow of something else
+PLAUSIBLE_SHARE = (0.3, 3.0)
 
 
 def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> FloatArray:
@@ -40,7 +37,7 @@ def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> Floa
     return second[: len(parting)]
 
 
-def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, step_s: float) -> FloatArray:
+def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, damping: float, step_s: float) -> FloatArray:
     """Acceleration d'' of a far side on a spring to the motor side, shape (n,): d'' + 2 D w d' + w^2 d = parting.
 
     Bilinear, the resonance where it belongs; at rest on its spring to begin with.
@@ -48,13 +45,14 @@ def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, step_s: flo
     Args:
         parting: acceleration of the way d, if nothing held it, shape (n,).
         resonance_rad_s: of the far side, the motor side held: the anti-resonance of the joint.
+        damping: of that resonance, of critical.
         step_s: between samples.
     """
     warped = 2.0 / step_s * np.tan(0.5 * min(resonance_rad_s * step_s, 0.98 * np.pi))
     doubled = 2.0 / step_s
-    square, damping = doubled**2, 2.0 * DAMPING * warped * doubled
+    square, lost = doubled**2, 2.0 * damping * warped * doubled
     numerator = np.array([square, -2.0 * square, square])
-    denominator = np.array([square + damping + warped**2, 2.0 * (warped**2 - square), square - damping + warped**2])
+    denominator = np.array([square + lost + warped**2, 2.0 * (warped**2 - square), square - lost + warped**2])
     # at rest on its spring under the first parting: as if it had been so for ever
     found: FloatArray = lfilter(numerator, denominator, parting - parting[:1]) if len(parting) else parting
     return found

@@ -128,7 +128,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "backlash": ((0.3,), crossing),
     "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
     "rate_dependent_breakaway": ((), lambda m: [np.zeros(41)]),
-    "elasticity": ((2.0,), twisted),
+    "elasticity": ((2.0, 0.05), twisted),
     "encoder_eccentricity": (
         (2.0,),
         lambda m: [slope(slope(np.cos(2 * m.position))), slope(slope(np.sin(2 * m.position)))],

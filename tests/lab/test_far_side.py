@@ -38,15 +38,24 @@ def test_a_wider_gap_takes_longer_to_cross():
 
 def test_a_stiff_spring_lags_by_the_second_rate_of_change():
     w, resonance = 2.0, 60.0
-    found = parting_on_a_spring(np.sin(w * TIME_S), resonance, STEP_S)
+    found = parting_on_a_spring(np.sin(w * TIME_S), resonance, 0.05, STEP_S)
     settled = TIME_S > 2.0
     assert found[settled] == pytest.approx(-((w / resonance) ** 2) * np.sin(w * TIME_S[settled]), abs=1e-4)
 
 
 def test_a_far_side_rings_at_its_resonance_and_a_free_one_is_left_behind():
     kicked = np.where(TIME_S < 0.1, 0.0, 1.0)
-    found = parting_on_a_spring(kicked, 2.0 * np.pi * 5.0, STEP_S)
+    found = parting_on_a_spring(kicked, 2.0 * np.pi * 5.0, 0.05, STEP_S)
     crossings = np.flatnonzero(np.diff(np.sign(found[TIME_S > 0.11])) != 0.0)
     assert np.diff(crossings)[:6].mean() * STEP_S == pytest.approx(0.1, rel=0.02)
-    free = parting_on_a_spring(np.sin(20.0 * TIME_S), 0.1, STEP_S)
+    free = parting_on_a_spring(np.sin(20.0 * TIME_S), 0.1, 0.05, STEP_S)
     assert free[1000:] == pytest.approx(np.sin(20.0 * TIME_S[1000:]), abs=0.02)
+
+
+@pytest.mark.parametrize("damping", [0.06, 0.25])
+def test_a_far_side_dies_away_as_it_is_damped(damping):
+    kicked = np.where(TIME_S < 0.1, 0.0, 1.0)
+    found = np.abs(parting_on_a_spring(kicked, 2.0 * np.pi * 5.0, damping, STEP_S))
+    peaks = np.flatnonzero((found[1:-1] > found[:-2]) & (found[1:-1] >= found[2:]) & (TIME_S[1:-1] > 0.12)) + 1
+    decay = np.log(found[peaks[0]] / found[peaks[1]])  # half a period apart
+    assert decay == pytest.approx(np.pi * damping / np.sqrt(1.0 - damping**2), rel=0.05)
