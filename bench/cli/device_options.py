@@ -26,6 +26,16 @@ class DeviceOptions:
     side_port: Annotated[
         int, typer.Option(min=0, max=65535, help="TCP port of the side channel; 0 is any free one.")
     ] = 0
+    patience: Annotated[
+        float | None,
+        typer.Option(
+            min=0.001,
+            max=1.0,
+            metavar="SECONDS",
+            help="For a machine that is busy with other work, whose host is late at times: while the motor is powered "
+            "or the joint moves, the drive's time goes no further than this without a word of the host.",
+        ),
+    ] = None
     json: Annotated[bool, typer.Option("--json", help="Print the addresses as one line of JSON, for programs.")] = False
 
     def joint(self) -> "Joint":
@@ -36,7 +46,7 @@ class DeviceOptions:
 
     def place(self) -> dict[str, Any]:
         """Where it is to be found, as the settings of every device take it."""
-        return {"link": self.link, "side_port": self.side_port}
+        return {"link": self.link, "side_port": self.side_port, "patience_s": self.patience}
 
 
 def with_device_options(command: Callable[..., None]) -> Callable[..., None]:

@@ -9,7 +9,7 @@ from sim_backend.devices.device import Device
 from sim_backend.devices.hand import Hand
 from sim_backend.devices.link.faults import LinkFaults
 from sim_backend.devices.side_channel import SideChannel
-from sim_backend.devices.wall_time import Ticker, WallTime
+from sim_backend.devices.wall_time import PatientTime, Ticker, WallTime
 
 
 class Port(Protocol):
@@ -45,10 +45,18 @@ class RunningDevice:
         device: not yet advanced.
         make_port: its port; the faults it is given are those of the side channel.
         side_port: TCP port of the side channel; 0 is any free one.
+        patience_s: of `PatientTime` [s]; None: time waits for nobody.
     """
 
-    def __init__(self, device: Device, make_port: Callable[[Workplace], Port], side_port: int = 0) -> None:
-        workplace = Workplace(WallTime(), LinkFaults())
+    def __init__(
+        self,
+        device: Device,
+        make_port: Callable[[Workplace], Port],
+        side_port: int = 0,
+        patience_s: float | None = None,
+    ) -> None:
+        clock = WallTime() if patience_s is None else PatientTime(device.axis, patience_s)
+        workplace = Workplace(clock, LinkFaults())
         self.device = device
         self._ticker = Ticker(device, workplace.clock)
         self._port = make_port(workplace)

@@ -3,8 +3,12 @@
 import threading
 import time
 
-from sim_backend.devices.axis import TICK_S
+from sim_backend.devices.axis import TICK_S, Axis
 from sim_backend.devices.device import Device
+
+# silence of a host that is gone, not late: time goes on, and the watchdog trips
+HOST_IS_GONE_S = 3.0
+HOST_LISTENS_S = 0.3  # the same without power: a host that waits for a heartbeat is silent, too
 
 
 class WallTime:
@@ -20,6 +24,58 @@ class WallTime:
     def now_s(self) -> float:
         """Return the time [s]."""
         return time.monotonic() - self.origin_s
+
+    def hear(self) -> None:
+        """The host has sent something."""
+
+
+class PatientTime(WallTime):
+    """Time that waits for a late host: while motor or joint is at work, it goes only so far without a word of it.
+
+    For trials on a machine that is busy with other work. A drive's own processor goes on with the last command while a
+    host waits for its turn; so does this one, but no longer than a host on a machine of its own would be late.
+
+    Attributes:
+        origin_s: as of `WallTime`, put off by what was waited.
+
+    Args:
+        axis: whose motor is powered, whose joint moves, or neither.
+        patience_s: how far time goes without a word of the host [s].
+    """
+
+    def __init__(self, axis: Axis, patience_s: float) -> None:
+        super().__init__()
+        self._axis = axis
+        self._patience_s = patience_s
+        self._lock = threading.Lock()
+        self._now_s = 0.0
+        self._looked_s = self._heard_s = self.origin_s  # of `time.monotonic()`
+        self._heard_at_s = 0.0  # of the axis
+
+    def now_s(self) -> float:
+        """Return the time [s]."""
+        with self._lock:
+            return self._advance()
+
+    def hear(self) -> None:
+        """The host has sent something."""
+        with self._lock:
+            self._heard_at_s = self._advance()
+            self._heard_s = self._looked_s
+
+    def _advance(self) -> float:
+        looked_s = time.monotonic()
+        step_s, self._looked_s = looked_s - self._looked_s, looked_s
+        if looked_s - self._heard_s < self._longest_wait_s():
+            step_s = min(step_s, max(self._heard_at_s + self._patience_s - self._now_s, 0.0))
+        self._now_s += step_s
+        self.origin_s = looked_s - self._now_s
+        return self._now_s
+
+    def _longest_wait_s(self) -> float:
+        if self._axis.power.on:
+            return HOST_IS_GONE_S
+        return HOST_LISTENS_S if self._axis.seen.velocity_rad_s != 0.0 else 0.0
 
 
 class Ticker(threading.Thread):

@@ -1,55 +1,25 @@
 """The live stream goes on where it was left."""
 
-import json
-from collections.abc import Iterator
-
-import httpx
 import numpy as np
 import pytest
 
 from bench.live import LiveBuffer
 from bench.service.replay import MOST_REPLAYED, GapError, Mark, missed
 from bench.store import Store
+from tests.service.listening import hear, left_at, listen, of_run, recorded, rows_of, times, until
 
 LIFE = "0123abcd"
 
 
-def listen(url: str, last_event_id: str | None = None) -> Iterator[tuple[str, str, dict]]:
-    """(event, id, data), as they come."""
-    headers = {} if last_event_id is None else {"Last-Event-ID": last_event_id}
-    with httpx.stream("GET", f"{url}/api/v1/live", headers=headers, timeout=20) as stream:
-        name = number = ""
-        for line in stream.iter_lines():
-            key, _, value = line.partition(": ")
-            name, number = (value if key == "event" else name), (value if key == "id" else number)
-            if key == "data":
-                yield name, number, json.loads(value)
-
-
-def times(events) -> list[float]:
-    return [row[0] for name, _, data in events if name == "rows" for row in data["rows"]]
-
-
-def until(events, enough) -> list:
-    found = []
-    for event in events:
-        found.append(event)
-        if enough(found):
-            return found
-    return found
-
-
 def test_what_was_missed_comes_out_of_memory(idle):
-    experiment_id = idle.start("steps", pace="real-time", repeats=1)
-    first = until(listen(idle.url), lambda found: len(times(found)) > 100)
-    left_at = [number for name, number, _ in first if name == "rows"][-1]
-    until(listen(idle.url), lambda found: len(times(found)) > len(times(first)) + 200)  # time passes
-    rest = until(listen(idle.url, left_at), lambda found: len(times(found)) > 300)
+    running = idle.start("steps", pace="real-time", repeats=1)
+    first = hear(idle, running, 100)
+    hear(idle, running, len(of_run(idle, running, first)) + 200)  # time passes
+    rest = hear(idle, running, 300, left_at(first))
     idle.client.post("/stop")
     assert idle.runner.wait(10.0)
-    recorded = idle.store.samples(idle.store.trials(experiment_id)[0].id)["time_s"]
-    heard = times(first) + times(rest)
-    assert heard == recorded[: len(heard)].tolist()
+    heard = of_run(idle, running, first) + rows_of(rest)
+    assert heard == recorded(idle, running)[: len(heard)]
     assert "gap" not in {name for name, _, _ in rest}
 
 

@@ -32,6 +32,7 @@ class CanOpenSettings:
         link: symbolic link to put on the pseudo-terminal; None: none.
         preset, plant, seed: the joint.
         side_port: TCP port of the side channel; 0 is any free one.
+        patience_s: how far time goes without a word of the host while the joint is at work [s]; None: for ever.
     """
 
     family: str = "generic"
@@ -43,6 +44,7 @@ class CanOpenSettings:
     plant: Mapping[str, Any] | None = None
     seed: int = 1
     side_port: int = 0
+    patience_s: float | None = None
 
 
 def serve_canopen(settings: CanOpenSettings) -> RunningDevice:
@@ -54,7 +56,7 @@ def serve_canopen(settings: CanOpenSettings) -> RunningDevice:
     """
     parameters = behind_a_drive(settings.preset, None, settings.plant)
     drive = ServoDrive(parameters, _family(settings.family), settings.node_id, settings.seed)
-    return RunningDevice(drive, _port(drive, settings), settings.side_port)
+    return RunningDevice(drive, _port(drive, settings), settings.side_port, settings.patience_s)
 
 
 def data_sheet(family: str) -> str:

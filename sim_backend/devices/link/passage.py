@@ -83,6 +83,8 @@ class Passage:
         while not self._over.is_set():
             try:
                 data = source.read(LOOK_UP_S)
+                if data and direction is Direction.TO_DEVICE:
+                    self._clock.hear()
                 for delivery in self._line.carry(direction, data, self._clock.now_s()) if data else ():
                     pause_until(self._clock, delivery.at_s)
                     target.write(delivery.data)

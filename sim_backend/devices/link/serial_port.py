@@ -32,6 +32,7 @@ class SerialPort(PortThread):
         terminal = self._plugged()
         data = terminal.read(LOOK_UP_S)
         if data:
+            self._clock.hear()
             self._carry(terminal, data)
 
     def _carry(self, terminal: PseudoTerminal, data: bytes) -> None:

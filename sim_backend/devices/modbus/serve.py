@@ -33,6 +33,7 @@ class ModbusSettings:
         port: TCP port; 0 is any free one.
         preset, plant, seed: the joint.
         side_port: TCP port of the side channel; 0 is any free one.
+        patience_s: how far time goes without a word of the host while the joint is at work [s]; None: for ever.
     """
 
     map: str = "friction-bench"
@@ -46,6 +47,7 @@ class ModbusSettings:
     plant: Mapping[str, Any] | None = None
     seed: int = 1
     side_port: int = 0
+    patience_s: float | None = None
 
 
 def serve_modbus(settings: ModbusSettings) -> RunningDevice:
@@ -65,7 +67,9 @@ def serve_modbus(settings: ModbusSettings) -> RunningDevice:
         device = Roboteq(parameters, seed=settings.seed)
     else:
         device = OwnDrive(parameters, settings.low_word_first, settings.seed)
-    return RunningDevice(device, lambda place: _ServedPort(device, settings, place), settings.side_port)
+    return RunningDevice(
+        device, lambda place: _ServedPort(device, settings, place), settings.side_port, settings.patience_s
+    )
 
 
 class _ServedPort:

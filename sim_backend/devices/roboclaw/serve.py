@@ -23,6 +23,7 @@ class RoboClawSettings:
         link: symbolic link to put on the port; None: none.
         preset, plant, seed: the joint.
         side_port: TCP port of the side channel; 0 is any free one.
+        patience_s: how far time goes without a word of the host while the joint is at work [s]; None: for ever.
     """
 
     address: int = 0x80
@@ -33,6 +34,7 @@ class RoboClawSettings:
     plant: Mapping[str, Any] | None = None
     seed: int = 1
     side_port: int = 0
+    patience_s: float | None = None
 
 
 def serve_roboclaw(settings: RoboClawSettings) -> RunningDevice:
@@ -48,4 +50,5 @@ def serve_roboclaw(settings: RoboClawSettings) -> RunningDevice:
         device,
         lambda place: SerialPort(device, place.clock, Line(settings.baud, place.faults, settings.seed), settings.link),
         settings.side_port,
+        settings.patience_s,
     )

@@ -1,13 +1,12 @@
 """The queue and a campaign over the wire: every kind of experiment that has no conformance test of its own, once and
-short, over REST, with a person who hangs what is asked for. The device is a process of its own. Over CANopen all but
-the coast-down, whose free joint leaves the limits where a busy machine is late for its braking.
+short, over REST, with a person who hangs what is asked for. The device is a process of its own.
 """
 
 from collections.abc import Iterator
 
 import pytest
 
-from tests.drivers.conformance.benches import BENCHES
+from tests.drivers.conformance.benches import BENCHES, PATIENT
 from tests.drivers.conformance.campaign import Person
 from tests.queue.waiting import wait_for
 from tests.service.running_service import RunningService, running_service
@@ -32,13 +31,10 @@ CAMPAIGN = {
 pytestmark = pytest.mark.timeout(400)
 
 
-KINDS_OVER = {"modbus-tcp": list(SHORT), "canopen": [kind for kind in SHORT if kind != "coast-down"]}
-
-
 @pytest.fixture
 def service(name, tmp_path) -> Iterator[RunningService]:
     with (
-        BENCHES[name]() as bench,
+        BENCHES[name](*PATIENT) as bench,
         running_service(tmp_path, configuration=bench.configuration, in_process_of_its_own=True) as running,
     ):
         person = Person(bench, running.runner)
@@ -50,16 +46,16 @@ def in_queue(service: RunningService) -> dict:
     return service.stranger.get("/queue", params={"ended": 100}).json()
 
 
-@pytest.mark.parametrize("name", KINDS_OVER)
+@pytest.mark.parametrize("name", ["modbus-tcp", "canopen"])
 def test_every_kind_runs_from_the_queue_and_a_campaign_after_it(service, name):
-    items = [{"kind": kind, "parameters": SHORT[kind]} for kind in KINDS_OVER[name]]
+    items = [{"kind": kind, "parameters": SHORT[kind]} for kind in SHORT]
     assert service.client.post("/queue", json={"items": items}).status_code == 201
     assert service.client.post("/campaigns", json=CAMPAIGN).status_code == 201
     wait_for(lambda: in_queue(service)["state"] in ("idle", "held"), 300.0)
     found = in_queue(service)
     assert found["state"] == "idle", found["reason"]
     ended = list(reversed(found["ended"]))
-    assert [one["kind"] for one in ended] == [*KINDS_OVER[name], "reversals", "reversals"]
+    assert [one["kind"] for one in ended] == [*SHORT, "reversals", "reversals"]
     assert {one["state"] for one in ended} == {"completed"}
     for one in ended[1:]:
         [trial, *_] = service.store.trials(one["experiment_id"])

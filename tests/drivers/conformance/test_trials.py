@@ -9,7 +9,7 @@ one within 25 mA (5 g at the tip), and two drivers differ by no more.
 
 import pytest
 
-from tests.drivers.conformance.benches import BENCHES
+from tests.drivers.conformance.benches import BENCHES, PATIENT
 from tests.drivers.conformance.campaign import A_PER_KG, LOADS_KG, STEP_LOAD_KG, Campaign
 
 TOLERANCE_A = 0.025
@@ -22,7 +22,7 @@ def campaigns(tmp_path_factory):
 
     def of(name):
         if name not in ran:
-            with BENCHES[name]() as bench:
+            with BENCHES[name](*PATIENT) as bench:
                 ran[name] = Campaign(bench, tmp_path_factory.mktemp(name))
         return ran[name]
 

@@ -56,6 +56,7 @@ class BusPort(threading.Thread):
 
     def _receive(self, message: can.Message) -> None:
         frame = Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
+        self._clock.hear()
         with self._device.lock:
             now_s = self._clock.now_s()
             self._device.advance_to(now_s)

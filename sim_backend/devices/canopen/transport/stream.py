@@ -45,6 +45,7 @@ class Stream:
 
     def arrive(self, data: bytes) -> None:
         """Take bytes of the host."""
+        self._clock.hear()
         for delivery in self._line.carry(Direction.TO_DEVICE, data, self._clock.now_s()):
             pause_until(self._clock, delivery.at_s)
             answer, frames = self._adapter.feed(delivery.data)

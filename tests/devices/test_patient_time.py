@@ -1,0 +1,59 @@
+"""Time that waits for a late host."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from sim_backend.devices import wall_time
+from sim_backend.devices.wall_time import HOST_IS_GONE_S, HOST_LISTENS_S, PatientTime
+
+
+@pytest.fixture
+def wall(monkeypatch):
+    now = SimpleNamespace(s=1000.0)
+    monkeypatch.setattr(wall_time.time, "monotonic", lambda: now.s)
+    return now
+
+
+def axis(on=True, velocity_rad_s=0.0):
+    return SimpleNamespace(power=SimpleNamespace(on=on), seen=SimpleNamespace(velocity_rad_s=velocity_rad_s))
+
+
+def pass_time(clock, wall, seconds, looks=50):
+    """As the ticker does: look many times."""
+    for _ in range(looks):
+        wall.s += seconds / looks
+        clock.now_s()
+    return clock.now_s()
+
+
+def test_time_goes_as_far_as_the_host_was_late_and_no_further_than_patience(wall):
+    clock = PatientTime(axis(), 0.02)
+    assert pass_time(clock, wall, 0.5) == pytest.approx(0.02)
+    clock.hear()
+    assert pass_time(clock, wall, 0.01) == pytest.approx(0.03)
+    assert pass_time(clock, wall, 0.4) == pytest.approx(0.04)
+
+
+def test_a_process_that_was_itself_late_goes_no_further_either(wall):
+    clock = PatientTime(axis(), 0.02)
+    wall.s += 0.5
+    clock.hear()  # before anybody looked
+    assert clock.now_s() == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(("joint", "after_s"), [(axis(False), 0.2), (axis(False, 0.1), 0.02), (axis(), 0.02)])
+def test_it_waits_while_something_is_at_work(wall, joint, after_s):
+    assert pass_time(PatientTime(joint, 0.02), wall, 0.2) == pytest.approx(after_s)
+
+
+@pytest.mark.parametrize(("joint", "longest_s"), [(axis(), HOST_IS_GONE_S), (axis(False, 0.1), HOST_LISTENS_S)])
+def test_a_host_that_is_gone_is_not_waited_for(wall, joint, longest_s):
+    clock = PatientTime(joint, 0.02)
+    assert pass_time(clock, wall, longest_s + 1.0, looks=400) == pytest.approx(1.02, abs=0.02)
+
+
+def test_the_moment_of_the_axis_is_told_by_the_wall(wall):
+    clock = PatientTime(axis(), 0.02)
+    pass_time(clock, wall, 0.5)
+    assert clock.origin_s + clock.now_s() == pytest.approx(wall.s)
