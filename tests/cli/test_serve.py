@@ -87,7 +87,7 @@ def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
     with httpx.stream("GET", f"{url}/api/v1/live", timeout=PATIENCE_S) as watching:  # must not hold the service open
         next(watching.iter_lines())
         process.send_signal(number)
-        assert process.wait(4.0) == 0
+        assert process.wait(PATIENCE_S) == 0
     with Store.open(f"sqlite:///{tmp_path / 'friction-bench.sqlite'}") as store:
         [experiment] = store.experiments()
     assert experiment.outcome == "stopped"

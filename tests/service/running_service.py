@@ -41,7 +41,7 @@ class RunningService:
         """A client with a new token; its caller closes it."""
         token = make_token()
         self.store.access.tokens.add(name, role, digest_of(token), **expires)
-        return httpx.Client(base_url=f"{self.url}/api/v1", headers={"Authorization": f"Bearer {token}"}, timeout=30)
+        return httpx.Client(base_url=f"{self.url}/api/v1", headers={"Authorization": f"Bearer {token}"}, timeout=60)
 
     def start(self, kind: str, pace: str = "fast", **parameters: Any) -> int:
         body = {"kind": kind, "parameters": parameters, "pace": pace}
@@ -83,7 +83,7 @@ def running_service(
             _wait_until_started(server)
             base = f"{url}/api/v1"
             with (
-                httpx.Client(base_url=base, headers=headers, timeout=30, verify=trust) as client,
+                httpx.Client(base_url=base, headers=headers, timeout=60, verify=trust) as client,
                 httpx.Client(base_url=base, verify=trust) as stranger,
             ):
                 yield RunningService(url, store, runner, client, stranger, access)

@@ -20,7 +20,7 @@ from tests.devices.device_process import DeviceProcess, device_process
 PERIOD_S = 0.01
 WATCHDOG_S = 1.0  # a busy machine keeps a host waiting for longer than a lab's would
 ANSWER_TIMEOUT_S = 0.3
-PATIENT = ("--patience", "0.02")  # for trials whose results count: a host that is late finds the joint where it was
+PATIENT = ("--patience", "0.012")  # for trials whose results count: a host that is late finds the joint where it was
 
 # softer than on the quick in-process bench: cycles come late on a busy machine
 SERVO = {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_rad": 0.3}

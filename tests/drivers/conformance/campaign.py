@@ -8,6 +8,7 @@ from math import pi
 from bench.errors import NotCommissionedError
 from bench.runner import Runner
 from bench.store import Store
+from tests.drivers.conformance.paced import paced_drives
 
 LOADS_KG = (0.0, 0.05, 0.1)
 STEP_LOAD_KG = 0.05
@@ -40,7 +41,7 @@ class Campaign:
     """Everything that was run on one bench."""
 
     def __init__(self, bench, folder):
-        with Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store:
+        with paced_drives(), Store.open(f"sqlite:///{folder / 'bench.sqlite'}") as store:
             runner = Runner(bench.configuration, store)
             person = Person(bench, runner)
             try:

@@ -13,10 +13,11 @@ import pytest
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveError, WatchdogError
 from tests.devices.device_process import device_process
-from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, Bench, configured
+from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PATIENT, PERIOD_S, Bench, configured
 from tests.drivers.conformance.campaign import A_PER_KG, STEP_LOAD_KG, Campaign
 from tests.drivers.conformance.test_trials import TOLERANCE_A
 
+DEVICE = ("modbus", "--map", "roboteq", "--transport", "tcp")
 CURRENT_STEP_A = 0.1
 OFF = Command(Mode.OFF)
 
@@ -29,7 +30,7 @@ def roboteq(device, **settings):
 
 @pytest.fixture(scope="module")
 def device():
-    with device_process("modbus", "--map", "roboteq", "--transport", "tcp") as running:
+    with device_process(*DEVICE) as running:
         yield running
 
 
@@ -40,8 +41,9 @@ def bench(device):
         made.repair()
 
 
-def test_trials(bench, tmp_path):
-    found = Campaign(bench, tmp_path)
+def test_trials(tmp_path):
+    with device_process(*DEVICE, *PATIENT) as device, roboteq(device) as bench:
+        found = Campaign(bench, tmp_path)
     assert "sign" in found.commissioning.results["passed"]
     assert found.steps.provenance["drive"]["vendor"] == "Roboteq"
     tolerance_a = TOLERANCE_A + 0.5 * CURRENT_STEP_A
