@@ -5,6 +5,7 @@ from typing import Any
 from bench.cli.bench_session import BenchSession
 from bench.cli.cores import progress
 from bench.cli.output import percent, table
+from compensator.lab.chance import chance_cell
 
 
 def diagnose_studies(
@@ -28,4 +29,11 @@ def _row(one: dict[str, Any]) -> tuple[object, ...]:
         return one["study_id"], "not judged", None, None, None, None, one["error"]
     first = one["ranking"][0] if one["ranking"] else None
     errors = (None, None) if first is None else (percent(first["held_out_before"]), percent(first["held_out_after"]))
-    return one["study_id"], one["verdict"], first and first["effect"], *errors, one["p_value"], one["sentence"]
+    return (
+        one["study_id"],
+        one["verdict"],
+        first and first["effect"],
+        *errors,
+        chance_cell(one["p_value"]),
+        one["sentence"],
+    )

@@ -3,6 +3,7 @@
 from typing import Any
 
 from bench.cli.output import conditions, percent, say, share_interval, table, text
+from compensator.lab.chance import chance_cell
 
 Found = dict[str, Any]
 
@@ -64,7 +65,7 @@ def diagnosis(found: Found) -> None:
             one["effect"],
             "yes" if one["in_class"] else "",
             one["score"],
-            one["p_value"],
+            chance_cell(one["p_value"]),
             percent(one["held_out_before"]),
             percent(one["held_out_after"]),
             share_interval(one["gain"], one["gain_low"], one["gain_high"]),

@@ -6,10 +6,12 @@ from typing import Literal
 from pydantic import BaseModel, Field
 
 from bench.service.pages import Page
+from compensator.lab.chance import LEAST_STATED
 
 Numbers = list[float | None]
 Condition = float | str | bool
 Role = Literal["training", "held_out"]
+LEAST_P = f"{LEAST_STATED:g} stands for that and less: no smaller chance can be known"
 
 
 class EffortName(BaseModel):
@@ -182,7 +184,7 @@ class Ranked(BaseModel):
     effect: str
     title: str
     score: float | None
-    p_value: float | None
+    p_value: float | None = Field(description=f"of this effect alone; {LEAST_P}")
     held_out_before: float | None
     held_out_after: float | None
     gain: float | None
@@ -205,7 +207,9 @@ class Diagnosis(BaseModel):
     model_id: int
     verdict: Literal["missing", "nothing", "unknown-effect", "data-problem"]
     sentence: str
-    p_value: float | None
+    p_value: float | None = Field(
+        description=f"chance of such evidence in any of a diagnosis's screenings if nothing were missing; {LEAST_P}"
+    )
     notes: list[str]
     data_problems: list[str]
     classes: list[EffectClass]

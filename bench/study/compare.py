@@ -8,6 +8,7 @@ from bench.store import Store
 from bench.study.material import Material, load_model
 from compensator.lab import comparison
 from compensator.lab.breakaway_comparison import breakaway_estimates
+from compensator.lab.data_checks import data_problems
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.fit import Fit
 from compensator.lab.intervals import ParameterEstimate, estimates
@@ -145,6 +146,7 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
         f"Errors count {int(material.dataset.counted.sum())} rows {rows[material.definition.rows]}, effort and motion "
         f"filtered alike at {material.definition.cutoff_hz:.3g} Hz."
     ]
+    notes += [f"Data: {problem}." for problem in data_problems(found.fit)]
     if material.dataset.crosses_free_play:
         notes.append(
             "The motion is so quick that the teeth cross their free play all the time: those rows are counted too, and "

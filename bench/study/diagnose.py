@@ -7,6 +7,7 @@ from bench.study.errors import lab_errors
 from bench.study.material import load_model
 from compensator.lab import diagnosis
 from compensator.lab.catalogue import effect_named
+from compensator.lab.chance import stated
 from compensator.lab.dataset import Dataset
 from compensator.lab.diagnose import diagnose as diagnose_fit
 from compensator.lab.drivers import DRIVERS
@@ -43,11 +44,11 @@ def diagnosis_of(fit: Fit, study_id: int, model_id: int) -> dict[str, Any]:
         "model_id": model_id,
         "verdict": found.verdict,
         "sentence": found.sentence,
-        "p_value": found.p_value,
+        "p_value": stated(found.p_value),
         "notes": [*found.notes, *left_out],
         "data_problems": found.data_problems,
         "classes": [_class(members) for members in found.classes[:1]] if named else [],
-        "ranking": [_ranked(fit.dataset, candidate, named) for candidate in found.candidates],
+        "ranking": [] if found.too_short else [_ranked(fit.dataset, one, named) for one in found.candidates],
     }
 
 
@@ -68,7 +69,7 @@ def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -
         "effect": effect.name,
         "title": effect.title,
         "score": candidate.score,
-        "p_value": candidate.p_value,
+        "p_value": stated(candidate.p_value),
         "held_out_before": candidate.before,
         "held_out_after": candidate.after,
         "gain": candidate.gain.value,

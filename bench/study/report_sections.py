@@ -5,6 +5,7 @@ from typing import Any
 
 from bench.report import Bars, Figure, Line, Points, Section, Table
 from bench.store import Store
+from compensator.lab.chance import chance_cell
 
 Found = dict[str, Any]
 PICTURES = 3  # of a diagnosis, best effects first
@@ -174,7 +175,7 @@ def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
             one["title"],
             "yes" if one["in_class"] else "",
             _number(one["score"]),
-            one["p_value"],
+            chance_cell(one["p_value"]),
             _percent(one["held_out_after"]),
             f"{one['gain']:.1%} ({one['gain_low']:.1%} .. {one['gain_high']:.1%})",
             _number(one["d_prime"]),

@@ -39,7 +39,8 @@ def suggest(
         trials: how many at most.
 
     Raises:
-        StudyError: no such model, a study of another rig, or what a trial would show cannot be computed.
+        StudyError: no such model, a study of another rig, data that are wrong themselves, or what a trial would show
+            cannot be computed.
     """
     material, model = load_model(store, study_id, model_id)
     if facts_of(configuration.rig) != material.definition.facts:
@@ -52,6 +53,8 @@ def suggest(
     with lab_errors():
         fit = material.fit_of(model)
         diagnosis = diagnose(fit)
+        if diagnosis.verdict == "data-problem":
+            raise StudyError(f"{diagnosis.sentence} Mend it before more is recorded")
         found, chosen = choose(fit, diagnosis, configuration, possible, trials)
     return {
         "study_id": study_id,

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.bandwidth import choose_cutoff_hz
+from compensator.lab.channel_checks import check_channels
 from compensator.lab.dataset import Dataset, Processing, Scales, Trial
 from compensator.lab.effects.effect import SESSION_START, Motion
-from compensator.lab.effort import choose_effort
+from compensator.lab.effort import Effort, choose_effort
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.facts import Facts
-from compensator.lab.processing import DIFFERENTIATION_FACTOR, Signals, make_signals
+from compensator.lab.processing import DIFFERENTIATION_FACTOR, SATURATED_DUTY, Signals, make_signals
 from compensator.lab.recording import FloatArray, Recording
 from compensator.lab.regimes import Regime, classify, near_flank_change
 
@@ -22,6 +23,7 @@ ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope
 NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
 FEWEST_ROWS = 40
 CONSTANT = 1e-9  # of its largest value: what changes less does not change
+WANTED_MOTION = "record trials with motion in both directions: sines or triangles of several speeds"
 FLANK_SHARE = 0.1  # of the sliding rows that must be left when those near a crossing of the free play are dropped
 
 
@@ -36,16 +38,17 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
         raise UnusableDataError("no recordings: choose at least one trial")
     _check_conditions(recordings)
     effort = choose_effort(recordings, facts)
+    check_channels(recordings, effort, facts)
     cutoff = processing.cutoff_hz or choose_cutoff_hz(recordings, effort, facts)
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
     usable = np.concatenate([s.usable for s in signals])
     if not usable.any():
-        raise UnusableDataError("no usable rows: every sample is in a gap, with the power stage off, or saturated")
+        raise UnusableDataError(_no_usable(recordings, effort, facts))
     speed = np.abs(np.concatenate([s.velocity for s in signals]))[usable]
     position = np.concatenate([s.position for s in signals])[usable]
     fast, span = float(np.quantile(speed, 0.95)), float(np.ptp(position))
     if not span > CONSTANT * float(np.abs(position).max()):
-        raise UnusableDataError("the joint does not move in any trial; record trials with motion in both directions")
+        raise UnusableDataError(f"the joint does not move in any trial; {WANTED_MOTION}")
     measured = np.concatenate([s.effort for s in signals])[usable]
     if not float(np.ptp(measured)) > CONSTANT * float(np.abs(measured).max()):
         raise UnusableDataError(
@@ -64,7 +67,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     if found < FEWEST_ROWS:
         raise UnusableDataError(
             f"{found} rows where the joint moves faster than {slow:.3g} {facts.position_unit}/s; at least "
-            f"{FEWEST_ROWS} are needed: record longer motion"
+            f"{FEWEST_ROWS} are needed: {WANTED_MOTION}"
         )
     return dataset
 
@@ -91,6 +94,33 @@ def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]
             continue
         found.append(recording)
     return found
+
+
+def _no_usable(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> str:
+    """Why no row of any recording is left, and what to record instead: the reason that takes most samples."""
+    names = (f"position_{facts.position_unit}", *effort.channels)
+    unknown, off, saturated = (
+        float(np.mean(np.concatenate([of(recording) for recording in recordings])))
+        for of in (
+            lambda one: ~np.isfinite([one.channels[name] for name in names]).all(axis=0),
+            lambda one: ~(one.channels.get("enabled", np.ones(len(one))) > 0.5),
+            lambda one: np.abs(one.channels.get("duty", np.zeros(len(one)))) >= SATURATED_DUTY,
+        )
+    )
+    if saturated > max(unknown, off):
+        return (
+            f"no usable rows: the duty is at its limit in {saturated:.0%} of the samples, where it tells nothing "
+            "of the load; record with a lighter load or slower"
+        )
+    if off > unknown:
+        return f"no usable rows: the power stage is off in {off:.0%} of the samples; record with it on"
+    if unknown > 0.0:
+        return (
+            f"no usable rows: {' or '.join(names)} is missing in {unknown:.0%} of the samples, and no stretch without "
+            "a gap is long enough to be filtered; leave out the lines that do not hold all of them (time may be "
+            "irregular), or record all channels at every sample"
+        )
+    return "no usable rows: the trials are too short, or all gaps; record longer ones"
 
 
 def _session_span_s(signals: Sequence[Signals]) -> float:

@@ -10,6 +10,7 @@ from compensator.lab.breakaway_fit import BreakawayFit, fit_breakaway, held_out_
 from compensator.lab.breakaway_picture import picture_of_breakaway
 from compensator.lab.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.catalogue import candidates
+from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.errors import NotApplicableError
@@ -171,7 +172,8 @@ def _sentence(best: Candidate, p_value: float, starts: int, units: int) -> str:
     return (
         f"{best.effect.title} is missing{also}: over {starts} starts from rest ({units} of them independent), adding "
         f"it changes the held-out error of the breakaway effort from {best.before:.2%} to {best.after:.2%} "
-        f"(gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; p = {p_value:.3g})."
+        f"(gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
+        f"{chance_in_words(p_value)})."
     )
 
 

@@ -5,6 +5,8 @@ score, its null by sign flips of whole stretches), what is it called (likelihood
 shapes), does it help (held-out error, resampled by whole trials).
 """
 
+from math import nan
+
 import numpy as np
 
 from compensator.lab.breakaway_family import breakaway_answer
@@ -12,14 +14,16 @@ from compensator.lab.breakaway_rows import breakaway_rows
 from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import candidates, catalogue, effect_named
 from compensator.lab.clearing import with_noise
-from compensator.lab.data_checks import data_problems
+from compensator.lab.data_checks import data_problems, fatal_problems
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.evidence import Screening, kept_evidence, screen, screen_against_noise
+from compensator.lab.evidence import Screening, kept_evidence, least_p_value, screen, screen_against_noise
+from compensator.lab.examination import SIGNIFICANT
 from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
 from compensator.lab.fit import Fit, widened
 from compensator.lab.regimes import Regime
+from compensator.lab.wording import problem_in_words
 
 FEWEST_REVERSAL_ROWS = 40
 
@@ -31,11 +35,14 @@ def diagnose(fit: Fit) -> Diagnosis:
     memory, which live near reversals and starts; effects that show in the effort of breaking away from rest; effects of
     the measuring chain. The first that has something missing
     is the answer, the others are notes: while something large is missing, the smaller may be its shadow. For the same
-    reason a larger effect with memory goes before one of steady sliding.
+    reason a larger effect with memory goes before one of steady sliding. Where the data themselves are wrong, that is
+    the answer, and nothing is ranked.
 
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
+    if problems := data_problems(fit) if fatal_problems(fit) else []:
+        return Diagnosis("data-problem", problem_in_words(problems[0]), nan, [], [], data_problems=problems)
     gathered = with_noise(gather(fit))
     stretch = fit.dataset.block_index[gathered.rows]
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
@@ -68,6 +75,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         data_problems=data_problems(fit),
         notes=[*first.notes, *notes, *(rest.notes if rest is not None and rest is not first else [])],
         left_out={**gathered.left_out, **not_judged, **not_at_rest},
+        too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
         remains=first.remains or (first.verdict == "nothing" and steady.remains),
     )
 

@@ -63,15 +63,16 @@ class Diagnosis:
     """The answer.
 
     Attributes:
-        verdict: what kind of answer it is.
+        verdict: what kind of answer it is; "data-problem": the data are wrong, and nothing is ranked.
         sentence: the answer in words.
-        p_value: chance of evidence as strong as the best one's if nothing were missing.
+        p_value: chance of evidence as strong as the best one's if nothing were missing; NaN where nothing was judged.
         classes: effects that these trials cannot tell apart, best first; the first is the answer.
         candidates: ranked.
         driver: for "unknown-effect", what the residual varies with.
         data_problems: sentences.
         notes: sentences.
         left_out: effect -> why it could not be judged.
+        too_short: there are too few independent stretches for anything to be sure, so that ranks mean nothing.
         remains: something is left that nothing named explains: a curve that no effect follows, or more than noise.
     """
 
@@ -84,4 +85,5 @@ class Diagnosis:
     data_problems: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     left_out: dict[str, str] = field(default_factory=dict)
+    too_short: bool = False
     remains: bool = False

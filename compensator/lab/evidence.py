@@ -11,12 +11,12 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import chi2
 
+from compensator.lab.chance import SIGN_FLIPS
 from compensator.lab.dataset import IntArray
 from compensator.lab.linear import orthonormal
 from compensator.lab.noise import Noise, strength
 from compensator.lab.recording import FloatArray
 
-SIGN_FLIPS = 999
 SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 from compensator.lab.bursts import Bursts
+from compensator.lab.chance import chance_in_words
 from compensator.lab.dataset import BLOCK_S
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.evidence import least_p_value
@@ -34,7 +35,7 @@ def answer_in_words(
         why = "does not follow its curve" if best.physical else "would need a sign or size that is not physical"
         return (
             f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
-            f"{best.effect.title.lower()}, {why} (p = {p_value:.3g})."
+            f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)})."
         )
     title = best.effect.title
     also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
@@ -42,25 +43,31 @@ def answer_in_words(
     return (
         f"{title} is missing{also}{sign}: adding it changes the held-out error from {best.before:.2%} to "
         f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
-        f"p = {p_value:.3g})."
+        f"{chance_in_words(p_value)})."
     )
+
+
+def problem_in_words(problem: str) -> str:
+    """The answer where the data themselves are wrong."""
+    return f"The data have a problem that no effect could be told from: {problem}."
 
 
 def _too_few(stretches: int) -> str:
     enough = next(count for count in range(1, 99) if least_p_value(count) <= SIGNIFICANT)
     return (
         f"These trials are too short to tell whether anything is missing: only {stretches} independent stretches of "
-        f"{BLOCK_S:g} s, at best p = {least_p_value(stretches):.2g}, and {SIGNIFICANT:g} is needed; record "
-        f"{BLOCK_S * (enough - stretches):g} more seconds of motion at least."
+        f"{BLOCK_S:g} s, at best {chance_in_words(least_p_value(stretches))}, and {SIGNIFICANT:g} is needed; record "
+        f"{BLOCK_S * (enough - stretches):g} more seconds of motion at least; other loads and speeds tell most."
     )
 
 
 def _nothing(p_value: float) -> str:
     if p_value > SIGNIFICANT:
-        return f"Nothing is missing that these trials can show (p = {p_value:.3g}; {SIGNIFICANT:g} or less would tell)."
+        chance = f"{chance_in_words(p_value)}; {SIGNIFICANT:g} or less would tell"
+        return f"Nothing is missing that these trials can show ({chance})."
     return (
-        f"No effect of the catalogue is confirmed: the residual is not mere noise (p = {p_value:.3g}), but none lowers "
-        "the held-out error for sure."
+        f"No effect of the catalogue is confirmed: the residual is not mere noise ({chance_in_words(p_value)}), but "
+        "none lowers the held-out error for sure."
     )
 
 
@@ -73,9 +80,9 @@ def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: floa
     else:
         how = "it varies with nothing that is measured"
     return (
-        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {remainder.share:.1%} of the "
-        f"effort, is more than noise; {how}. Repeat a trial: what comes again is the joint's, what does not has "
-        "changed since."
+        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
+        f"{remainder.share:.1%} of the effort, is more than noise; {how}. Repeat a trial: what comes again is the "
+        "joint's, what does not has changed since."
     )
 
 
@@ -83,8 +90,8 @@ def bursts_in_words(bursts: Bursts, trials: Sequence[str], share: float, p_value
     """The answer where a few stretches leave far more than the others."""
     more = f" and {len(trials) - MOST_NAMES} more" if len(trials) > MOST_NAMES else ""
     return (
-        f"No effect of the catalogue is confirmed (p = {p_value:.3g}), yet what is left, {share:.1%} of the effort, "
-        f"comes in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to "
+        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, {share:.1%} of the "
+        f"effort, comes in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to "
         f"{bursts.largest:.1f} times as much as the others, in {', '.join(trials[:MOST_NAMES])}{more}. Something "
         "slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these trials with less "
         "load."

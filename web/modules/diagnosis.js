@@ -6,7 +6,7 @@ import { interval, nameOf, number, percent } from "./format.js";
 import { band, colour, draw } from "./plot.js";
 
 const SHOWN = 6;
-const LEAST_P = 0.0001;
+const LEAST_P = 0.001; // stands for that and less
 const NOT_JUDGED = /^Not judged/;
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
@@ -70,7 +70,6 @@ function picture(plot, { picture: shown, title }) {
   ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${shown.unit ? ` [${shown.unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
 }
 
-// no model of noise is right so far out in its tail
 function chanceOf(p) {
-  return p < LEAST_P ? `below ${LEAST_P}` : `= ${number(p, 2)}`;
+  return p <= LEAST_P ? `≤ ${LEAST_P}` : `= ${number(p, 2)}`;
 }
