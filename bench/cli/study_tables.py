@@ -34,6 +34,8 @@ def comparison(found: Found) -> None:
     _breakaway(found["breakaway"])
     _errors("Trials", f"rms [{unit}]#", [({"name": one["name"], **one}, one["role"]) for one in found["trials"]])
     _errors("Regimes", f"rms [{unit}]#", [(one, f"{one['rows']} rows") for one in found["regimes"]])
+    if found["at_rest"]:
+        _at_rest(found["at_rest"], unit)
     for note in found["notes"]:
         say(note)
 
@@ -49,6 +51,18 @@ def _breakaway(found: Found | None) -> None:
         return
     errors = f"{percent(found['training']['relative'])}, held out {percent(found['held_out']['relative'])}"
     _parameters(f"Breakaway, {found['starts']} starts from rest: error {errors}", found["parameters"])
+
+
+def _at_rest(found: Found, unit: str) -> None:
+    rows = [
+        (one["side"], percent(one["outside"]), one["largest"], chance_cell(one["p_value"]), one["trial"], one["time_s"])
+        for one in found["sides"]
+    ]
+    columns = ["side", "outside#", f"largest [{unit}]#", "p#", "surest in", "at [s]#"]
+    table(
+        f"At rest, {found['stretches']} stretches of {found['rests']} rests: beyond what friction holds", columns, rows
+    )
+    say(found["sentence"])
 
 
 def diagnosis(found: Found) -> None:

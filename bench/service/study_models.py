@@ -92,7 +92,7 @@ class TrialError(StudyTrial):
 
 
 class RegimeError(BaseModel):
-    """Error in one regime of motion."""
+    """Error in one regime of motion; of "stuck", by what efforts lie beyond those that friction holds."""
 
     name: str
     rows: int
@@ -139,6 +139,29 @@ class BreakawayError(BaseModel):
     parameters: list[FittedParameter] = Field(description="of the breakaway effort: not those of sliding")
 
 
+class BeyondFriction(BaseModel):
+    """What lies beyond one end of the span in which friction holds the joint."""
+
+    side: Literal["above", "below"]
+    outside: float | None = Field(description="share of the stretches, 0..1")
+    largest: float | None = Field(description="violation, in the unit of the effort")
+    p_value: float | None = Field(description=f"chance of one as sure in any stretch; {LEAST_P}")
+    trial: str = Field(description="of the surest one")
+    time_s: float | None = Field(description="of the surest one, since the start of the trial")
+
+
+class AtRest(BaseModel):
+    """The same model, held against the joint at rest: friction holds it between two efforts, and no others."""
+
+    stretches: int = Field(description="of 0.1 s")
+    rests: int
+    outside: float | None = Field(description="share of the stretches beyond either end, 0..1")
+    largest: float | None = Field(description="violation, in the unit of the effort")
+    sides: list[BeyondFriction]
+    static_friction_from: Literal["starts", "sliding"]
+    sentence: str
+
+
 class Comparison(BaseModel):
     """Measured against predicted, and where they differ."""
 
@@ -150,6 +173,7 @@ class Comparison(BaseModel):
     error: Errors
     trials: list[TrialError]
     regimes: list[RegimeError]
+    at_rest: AtRest | None = Field(description="null: next to no rest in these trials")
     breakaway: BreakawayError | None = Field(description="null: too few starts from rest in these trials")
     series: list[Series]
     residual_against: list[ResidualAgainst]

@@ -8,11 +8,13 @@ from bench.store import Store
 from bench.study.material import Material, load_model
 from compensator.lab import comparison
 from compensator.lab.breakaway_comparison import breakaway_estimates
+from compensator.lab.chance import stated
 from compensator.lab.data_checks import data_problems
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.fit import Fit
 from compensator.lab.intervals import ParameterEstimate, estimates
 from compensator.lab.recording import FloatArray
+from compensator.lab.rest_comparison import at_rest_in_words
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 
@@ -48,6 +50,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
         },
         "trials": _trials(material, found),
         "regimes": [{"name": regime.name, "rows": regime.rows, **_error(regime)} for regime in found.regimes],
+        "at_rest": _at_rest(found),
         "breakaway": _breakaway(found),
         "series": _series(material, fit),
         "residual_against": _against(material, found),
@@ -57,6 +60,31 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
 
 def _error(error: comparison.ErrorOf) -> dict[str, float]:
     return {"rms": error.rms, "relative": error.relative}
+
+
+def _at_rest(found: comparison.Comparison) -> dict[str, Any] | None:
+    if found.at_rest is None:
+        return None
+    one = found.at_rest
+    return {
+        "stretches": one.windows,
+        "rests": one.rests,
+        "outside": one.outside,
+        "largest": one.largest,
+        "sides": [
+            {
+                "side": name,
+                "outside": side.outside,
+                "largest": side.largest,
+                "p_value": stated(side.chance),
+                "trial": side.trial,
+                "time_s": side.time_s,
+            }
+            for name, side in (("above", one.above), ("below", one.below))
+        ],
+        "static_friction_from": "starts" if one.by_starts else "sliding",
+        "sentence": at_rest_in_words(one, found.fit.dataset.effort_definition.unit),
+    }
 
 
 def _breakaway(found: comparison.Comparison) -> dict[str, Any] | None:

@@ -105,11 +105,16 @@ def model_section(found: Found) -> Section:
     ]
     return Section(
         f"Model {found['model_id']}",
-        [f"Effects: {', '.join(found['effects'])}.", *found["notes"]],
+        [
+            f"Effects: {', '.join(found['effects'])}.",
+            *found["notes"],
+            *([found["at_rest"]["sentence"]] if found["at_rest"] else []),
+        ],
         [
             _parameters("Parameters", found["parameters"]),
             *([_parameters("Parameters of the breakaway effort", breakaway["parameters"])] if breakaway else []),
             Table("Error by regime", ["regime", "rows#", f"rms [{unit}]#", "relative#"], regimes),
+            *([_at_rest(found["at_rest"], unit)] if found["at_rest"] else []),
             Table("Error by trial", ["trial", "used as", f"rms [{unit}]#", "relative#"], trials),
         ],
         [_over_time(found, trial) for trial in _worst(found)],
@@ -121,6 +126,22 @@ def _parameters(title: str, found: list[Found]) -> Table:
         (one["effect"], one["name"], _number(one["value"]), _interval(one), one["unit"], one["note"]) for one in found
     ]
     return Table(title, ["effect", "parameter", "value#", "95 % interval", "unit", "note"], rows)
+
+
+def _at_rest(found: Found, unit: str) -> Table:
+    rows = [
+        (
+            one["side"],
+            _percent(one["outside"]),
+            one["largest"],
+            chance_cell(one["p_value"]),
+            one["trial"],
+            one["time_s"],
+        )
+        for one in found["sides"]
+    ]
+    title = f"At rest, {found['stretches']} stretches: beyond what friction holds"
+    return Table(title, ["side", "outside#", f"largest [{unit}]#", "p#", "surest in", "at [s]#"], rows)
 
 
 def _worst(found: Found) -> list[Found]:

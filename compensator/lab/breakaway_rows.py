@@ -82,7 +82,7 @@ class BreakawayRows:
 def breakaway_rows(fit: Fit) -> BreakawayRows | None:
     """The starts of a fitted model's trials whose effort is known; None where there are none."""
     dataset = fit.dataset
-    positions = [_position(trial, dataset) for trial in dataset.trials]
+    positions = [measured_position(trial, dataset) for trial in dataset.trials]
     count = resolution_of(positions)
     least = _static_friction(fit)
     onsets, starts, trials = [], [], []
@@ -124,8 +124,8 @@ def shares_of(effects: Sequence[Effect]) -> list[tuple[Effect, BreakawayShare]]:
     return [(effect, effect.breakaway) for effect in effects if effect.breakaway is not None and not effect.carried]
 
 
-def _position(trial: Trial, dataset: Dataset) -> FloatArray:
-    """As measured, on the signals' grid."""
+def measured_position(trial: Trial, dataset: Dataset) -> FloatArray:
+    """Position of a trial as measured, not filtered, on the signals' grid, shape (n,)."""
     channels = trial.signals.recording.channels
     measured = channels[f"position_{dataset.facts.position_unit}"]
     finite = np.isfinite(measured)

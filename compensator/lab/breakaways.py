@@ -55,11 +55,8 @@ def starts_of(signals: Signals, position: FloatArray, count: float, slow: float)
         slow: speed below which the joint is at rest.
     """
     period_s = 1.0 / signals.rate_hz
-    cycles = max(1, int(np.ceil(COUNTS * count / (slow * period_s))))
-    if len(position) <= 2 * cycles:
-        return []
     least = max(TRAVEL_COUNTS * count, TRAVEL_S * slow)
-    rests = _rests(_resting(position, cycles, slow * period_s), position, least)
+    rests = rests_of(signals, position, count, slow)
     found = []
     for (begin, end), (after, _) in pairwise([*rests, (len(position) - 1, 0)]):
         way = position[end : after + 1] - position[end]
@@ -67,6 +64,16 @@ def starts_of(signals: Signals, position: FloatArray, count: float, slow: float)
         if (end - begin) * period_s >= REST_S and len(gone) and signals.usable[end]:
             found.append(_start(signals, begin, end, float(np.sign(way[gone[0]]))))
     return [start for start in found if start is not None]
+
+
+def rests_of(signals: Signals, position: FloatArray, count: float, slow: float) -> list[tuple[int, int]]:
+    """First and last sample of every rest of a trial, however short. Arguments as `starts_of`."""
+    period_s = 1.0 / signals.rate_hz
+    cycles = max(1, int(np.ceil(COUNTS * count / (slow * period_s))))
+    if len(position) <= 2 * cycles:
+        return []
+    least = max(TRAVEL_COUNTS * count, TRAVEL_S * slow)
+    return _rests(_resting(position, cycles, slow * period_s), position, least)
 
 
 def _resting(position: FloatArray, cycles: int, slow_step: float) -> BoolArray:

@@ -14,6 +14,7 @@ from compensator.lab.fit import Fit
 from compensator.lab.picture import BinnedMean, binned_mean
 from compensator.lab.recording import Condition
 from compensator.lab.regimes import BoolArray, Regime
+from compensator.lab.rest_comparison import RestComparison, compare_at_rest
 from compensator.lab.validation import HeldOut, held_out, relative_error, rms
 
 
@@ -52,9 +53,11 @@ class Comparison:
         held_out: on rows it was not fitted to.
         floor: error that no model can beat: scatter between repeated trials; None without repeats.
         trials: error of each trial, in the dataset's order, over its counted rows.
-        regimes: error of each regime over all rows; last, of breaking away, over the starts that were fitted.
+        regimes: error of each regime over all rows. Of "stuck", what lies beyond the efforts between which friction
+            holds, over stretches of 0.1 s; last, of breaking away, over the starts that were fitted.
         against: residual against every driver, by direction.
         breakaway: the model held against its starts from rest; None where there are too few.
+        at_rest: the model held against the joint at rest; None where there is next to none.
     """
 
     fit: Fit
@@ -65,6 +68,7 @@ class Comparison:
     regimes: list[ErrorOf]
     against: list[ResidualAgainst]
     breakaway: BreakawayComparison | None
+    at_rest: RestComparison | None
 
 
 def compare(fit: Fit) -> Comparison:
@@ -74,7 +78,11 @@ def compare(fit: Fit) -> Comparison:
         _error(fit, trial.signals.recording.name, dataset.counted & (dataset.trial_index == index))
         for index, trial in enumerate(dataset.trials)
     ]
-    regimes = [_error(fit, regime.name.lower(), dataset.regime == regime) for regime in Regime]
+    in_motion = (Regime.SLIDING, Regime.TRANSIENT)
+    regimes = [_error(fit, regime.name.lower(), dataset.regime == regime) for regime in in_motion]
+    at_rest = compare_at_rest(fit)
+    if at_rest is not None:
+        regimes.append(ErrorOf("stuck", at_rest.windows, at_rest.rms, at_rest.relative))
     breakaway = compare_breakaway(fit)
     if breakaway is not None:
         regimes.append(ErrorOf("breakaway", breakaway.training, breakaway.rms, breakaway.relative))
@@ -87,6 +95,7 @@ def compare(fit: Fit) -> Comparison:
         regimes=[error for error in regimes if error.rows],
         against=_residual_against(fit),
         breakaway=breakaway,
+        at_rest=at_rest,
     )
 
 

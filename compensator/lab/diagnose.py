@@ -23,6 +23,7 @@ from compensator.lab.examination import SIGNIFICANT
 from compensator.lab.families import FORMULA_SHARE, Answer, answer_of
 from compensator.lab.fit import Fit, widened
 from compensator.lab.regimes import Regime
+from compensator.lab.rest_comparison import at_rest_in_words, compare_at_rest
 from compensator.lab.wording import problem_in_words
 
 FEWEST_REVERSAL_ROWS = 40
@@ -73,7 +74,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         candidates=ranked,
         driver=first.driver,
         data_problems=data_problems(fit),
-        notes=[*first.notes, *notes, *(rest.notes if rest is not None and rest is not first else [])],
+        notes=[*first.notes, *notes, *(rest.notes if rest is not None and rest is not first else []), *_at_rest(fit)],
         left_out={**gathered.left_out, **not_judged, **not_at_rest},
         too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
         remains=first.remains or (first.verdict == "nothing" and steady.remains),
@@ -87,6 +88,14 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
     return screening.evidence[0].block.name if screening.evidence else None
+
+
+def _at_rest(fit: Fit) -> list[str]:
+    """What rests say against the model, which sliding cannot say."""
+    found = compare_at_rest(fit)
+    if found is None or not found.is_evidence:
+        return []
+    return [at_rest_in_words(found, fit.dataset.effort_definition.unit)]
 
 
 def _memory(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:

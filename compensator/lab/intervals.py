@@ -72,19 +72,26 @@ def _note(kept: bool, bound: bool) -> str:
 
 def _half_widths(fit: Fit) -> FloatArray:
     """Half widths of the intervals of all coefficients, shape (K,); NaN where there are too few units."""
+    without, half = without_each(fit), np.full(fit.columns.shape[1], np.nan)
+    count = len(without)
+    if count > 2:
+        spread = without - np.mean(without, axis=0)
+        error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
+        kept = np.concatenate([term.kept for term in fit.terms])
+        half[kept] = (error * stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE))[kept]
+    return half
+
+
+def without_each(fit: Fit) -> FloatArray:
+    """Coefficients with each independent unit left out in turn, shape (units, K); 0 where not kept."""
     kept = np.concatenate([term.kept for term in fit.terms])
     columns, effort = fit.training_equations
     columns, unit = columns[:, kept], independent_units(fit, fit.training)
     bounds = fit.bounds.of(kept)
     gram, moment = columns.T @ columns, columns.T @ effort
-    without = []
-    for label in np.unique(unit):
+    labels = np.unique(unit)
+    without = np.zeros((len(labels), len(kept)))
+    for row, label in enumerate(labels):
         inside, own = columns[unit == label], effort[unit == label]
-        without.append(solve_without((gram, moment), (inside.T @ inside, inside.T @ own), bounds))
-    half = np.full(len(kept), np.nan)
-    count = len(without)
-    if count > 2:
-        spread = np.array(without) - np.mean(without, axis=0)
-        error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
-        half[kept] = error * stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE)
-    return half
+        without[row, kept] = solve_without((gram, moment), (inside.T @ inside, inside.T @ own), bounds)
+    return without

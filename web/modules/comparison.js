@@ -3,7 +3,7 @@
 import { get } from "./api.js";
 import { facts, h, panel, replace, table } from "./dom.js";
 import { errorMap } from "./errormap.js";
-import { conditions, interval, nameOf, number, percent } from "./format.js";
+import { chance, conditions, interval, nameOf, number, percent } from "./format.js";
 import { momentList } from "./moments.js";
 import { band, colour, draw } from "./plot.js";
 import { attempt } from "./problem.js";
@@ -19,7 +19,7 @@ export async function comparison(place, compared, path) {
     panel("Measured against predicted", errors(compared), series),
     panel("Where the model is wrong", spots, moments),
     panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers),
-    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), parameterTable(compared), ...breakawayTable(compared))),
+    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), ...restTable(compared), parameterTable(compared), ...breakawayTable(compared))),
     compared.notes.length ? panel("Notes", compared.notes.map((note) => h("p", {}, note))) : null);
   const plot = new SeriesPlot(series, compared);
   const ask = (where, words) => attempt(moments, async () => {
@@ -79,6 +79,17 @@ function regimeTable({ regimes, effort }) {
     { title: `rms [${effort.unit}]`, number: true, cell: (regime) => number(regime.rms, 3) },
     { title: "Error", number: true, cell: (regime) => percent(regime.relative) },
   ], regimes);
+}
+
+function restTable({ at_rest: atRest, effort }) {
+  if (!atRest) return [];
+  return [table(`At rest, ${atRest.stretches} stretches of 0.1 s: beyond what friction holds`, [
+    { title: "Side", cell: (one) => one.side },
+    { title: "Outside", number: true, cell: (one) => percent(one.outside) },
+    { title: `Largest [${effort.unit}]`, number: true, cell: (one) => number(one.largest, 3) },
+    { title: "p", number: true, cell: (one) => chance(one.p_value) },
+    { title: "Surest in", cell: (one) => one.trial },
+  ], atRest.sides), h("p", { class: "soft" }, atRest.sentence)];
 }
 
 function breakawayTable({ breakaway }) {

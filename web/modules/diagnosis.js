@@ -2,11 +2,10 @@
 
 import { bar } from "./beforeafter.js";
 import { h, replace } from "./dom.js";
-import { interval, nameOf, number, percent } from "./format.js";
+import { chance as chanceIs, interval, nameOf, number, percent } from "./format.js";
 import { band, colour, draw } from "./plot.js";
 
 const SHOWN = 6;
-const LEAST_P = 0.001; // stands for that and less
 const NOT_JUDGED = /^Not judged/;
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
@@ -51,7 +50,7 @@ export function evidence(one) {
   const gain = `The held-out error would ${one.gain >= 0 ? "fall" : "rise"} by ${interval(Math.abs(one.gain), ...ends(one), (value) => percent(value, 1))}.`;
   const sure = one.gain_low > 0 ? "All of the interval is a gain." : "The interval includes no gain at all.";
   const pays = one.score > 0 ? "" : " Its evidence does not pay for its parameters.";
-  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Chance alone would do as well with p ${chanceOf(one.p_value)}.`;
+  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Chance alone would do as well with p ${chanceIs(one.p_value)}.`;
   const sign = one.physical ? "" : " Its fitted sign or size is not physical.";
   const like = one.confused_with.length ? ` These data confuse it with ${spaced(one.confused_with).join(", ")} (d′ = ${number(one.d_prime, 2)}; from 6 on the name is sure).` : "";
   return `${gain} ${sure}${pays}${chance}${sign}${like}`;
@@ -68,8 +67,4 @@ function picture(plot, { picture: shown, title }) {
     { x: shown.x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
     { x: shown.curve_x, y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
   ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${shown.unit ? ` [${shown.unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
-}
-
-function chanceOf(p) {
-  return p <= LEAST_P ? `≤ ${LEAST_P}` : `= ${number(p, 2)}`;
 }

@@ -58,3 +58,10 @@ export function when(iso) {
   const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join("-");
   return `${day} ${[date.getHours(), date.getMinutes(), date.getSeconds()].map(two).join(":")}`;
 }
+
+const LEAST_P = 0.001; // stands for that and less: no smaller chance can be known
+
+export function chance(p) {
+  if (p === null || p === undefined) return "–";
+  return p <= LEAST_P ? `≤ ${LEAST_P}` : `= ${number(p, 2)}`;
+}
