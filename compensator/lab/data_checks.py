@@ -25,15 +25,16 @@ WARMER_K = 2.0
 
 
 def fatal_problems(fit: Fit) -> list[str]:
-    """Problems that make any ranking of effects one of noise: wrong signs and units, an effort of something else."""
+    """Problems that make any ranking of effects one of noise: wrong signs, units and clocks."""
     found = [*_late(fit), *_wrong_sign(fit)][:1]  # what is late looks turned, too
-    return [*found, *_unexplained(fit), *_mirrored_trials(fit), *_load_units(fit)]
+    return [*found, *_mirrored_trials(fit), *_load_units(fit)]
 
 
 def data_problems(fit: Fit) -> list[str]:
     """Sentences, each naming the trial or channel, what was found, and what to do; those that are fatal first."""
     return [
         *fatal_problems(fit),
+        *unexplained(fit),
         *_ordered_conditions(fit),
         *_odd_trials(fit),
         *_few_usable(fit),
@@ -67,7 +68,8 @@ def _wrong_sign(fit: Fit) -> list[str]:
     ]
 
 
-def _unexplained(fit: Fit) -> list[str]:
+def unexplained(fit: Fit) -> list[str]:
+    """An effort that has next to nothing to do with the motion, unless an effect is named that explains most of it."""
     error = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
     if error < UNEXPLAINED or not set(DISSIPATIVE) <= set(fit.names):
         return []

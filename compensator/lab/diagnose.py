@@ -14,7 +14,7 @@ from compensator.lab.breakaway_rows import breakaway_rows
 from compensator.lab.candidates import Candidates, gather
 from compensator.lab.catalogue import candidates, catalogue, effect_named
 from compensator.lab.clearing import with_noise
-from compensator.lab.data_checks import data_problems, fatal_problems
+from compensator.lab.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
@@ -27,6 +27,7 @@ from compensator.lab.rest_comparison import at_rest_in_words, compare_at_rest
 from compensator.lab.wording import problem_in_words
 
 FEWEST_REVERSAL_ROWS = 40
+EXPLAINED = 0.75  # of the error: what an effect may leave of an effort that seemed alien to the motion
 
 
 def diagnose(fit: Fit) -> Diagnosis:
@@ -42,8 +43,8 @@ def diagnose(fit: Fit) -> Diagnosis:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
-    if problems := data_problems(fit) if fatal_problems(fit) else []:
-        return Diagnosis("data-problem", problem_in_words(problems[0]), nan, [], [], data_problems=problems)
+    if problems := fatal_problems(fit):
+        return _data_problem(fit, problems[0])
     gathered = with_noise(gather(fit))
     stretch = fit.dataset.block_index[gathered.rows]
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
@@ -63,6 +64,8 @@ def diagnose(fit: Fit) -> Diagnosis:
     first = _first_of(families)
     if memory is not None and wide is not None and first is steady and _casts(wide, memory, steady):
         first = memory
+    if (problems := unexplained(fit)) and not _explains_most(first):
+        return _data_problem(fit, problems[0])
     others = [answer for answer in families if answer is not first]
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [answer.sentence for answer in others if answer.verdict == "missing"]
@@ -88,6 +91,19 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
     return screening.evidence[0].block.name if screening.evidence else None
+
+
+def _explains_most(answer: Answer) -> bool:
+    """Whether an effect is named that makes sense of an effort that seemed alien to the motion, as a resonance can."""
+    if answer.verdict != "missing":
+        return False
+    best = answer.candidates[0]
+    return best.after < EXPLAINED * best.before
+
+
+def _data_problem(fit: Fit, problem: str) -> Diagnosis:
+    """The answer where the data are wrong: nothing is ranked."""
+    return Diagnosis("data-problem", problem_in_words(problem), nan, [], [], data_problems=data_problems(fit))
 
 
 def _at_rest(fit: Fit) -> list[str]:
