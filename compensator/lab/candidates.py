@@ -8,6 +8,7 @@ import numpy as np
 
 from compensator.lab import catalogue
 from compensator.lab.dataset import Dataset
+from compensator.lab.discrepancy import model_columns
 from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.evidence import Base, Block
@@ -19,8 +20,6 @@ from compensator.lab.prediction import with_own_prediction
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
 from compensator.lab.weights import bounded_influence, row_weights
-
-TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
 
 
 class Curves:
@@ -156,17 +155,3 @@ def _hidden(effect: Effect, hiding: list[str]) -> str:
         f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
         f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
     )
-
-
-def model_columns(fit: Fit) -> FloatArray:
-    """The model's columns that no bound holds, and the tangent of every fitted shape; shape (N, k)."""
-    free = np.concatenate([term.kept & ~term.at_bound for term in fit.terms])
-    tangents = []
-    for term in fit.terms:
-        if not term.effect.smooth_shape or term.at_bound.any():
-            continue
-        for index in range(len(term.shape)):
-            moved = tuple(x * (1.0 + TANGENT_STEP * (i == index)) for i, x in enumerate(term.shape))
-            here, there = fit.dataset.unchecked_columns(term.effect, [term.shape, moved])
-            tangents.append((there - here) @ term.coefficients)
-    return np.column_stack([fit.columns[:, free], *tangents])

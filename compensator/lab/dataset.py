@@ -215,6 +215,7 @@ class Dataset:
         load_effort: Sequence[FloatArray],
         predicted: Sequence[FloatArray],
         beyond: Sequence[tuple[float, FloatArray]],
+        inertia: Sequence[float],
     ) -> "Dataset":
         """The same rows, with the predicted load and effort in every trial's motion (n,) each.
 
@@ -222,20 +223,26 @@ class Dataset:
             load_effort: of each trial's motion.
             predicted: of each trial's motion.
             beyond: `inertia_beyond` and `parting` of each trial's motion.
+            inertia: of each trial's motion.
         """
+        largest = max(float(np.abs(total).max(initial=0.0)) for total in predicted)
         trials = tuple(
             replace(
                 trial,
                 motion=replace(
                     trial.motion,
                     load_effort=load,
-                    inertia_beyond=inertia,
+                    inertia_beyond=part,
+                    inertia=whole,
                     parting=parting,
                     predicted=total,
                     effort_rate=rate_of_change(total, trial.signals.rate_hz),
+                    largest_effort=largest,
                 ),
             )
-            for trial, load, total, (inertia, parting) in zip(self.trials, load_effort, predicted, beyond, strict=True)
+            for trial, load, total, (part, parting), whole in zip(
+                self.trials, load_effort, predicted, beyond, inertia, strict=True
+            )
         )
         return replace(self, trials=trials)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def with_own_prediction(fit: "Fit") -> "Dataset":
     """The fit's rows, with its own predicted load and effort in every motion."""
     per_torque = effort_per_torque(fit)
-    loads, totals, beyond = [], [], []
+    loads, totals, beyond, wholes = [], [], [], []
     for trial in fit.dataset.trials:
         load = np.zeros(len(trial.motion.time_s))
         total = np.zeros(len(trial.motion.time_s))
@@ -31,11 +31,13 @@ def with_own_prediction(fit: "Fit") -> "Dataset":
             if term.effect.carried:
                 load += part
         known = _inertia_beyond(fit, trial.motion, per_torque)
-        inertia = known if trial.motion.facts.arm_inertia_kg_m2 else _whole_inertia(fit, trial.motion)
+        whole = _whole_inertia(fit, trial.motion)
+        inertia = known if trial.motion.facts.arm_inertia_kg_m2 else whole
         beyond.append((inertia, (load + inertia * trial.motion.acceleration) / (inertia or np.inf)))
         loads.append(load + known * trial.motion.acceleration)
         totals.append(total)
-    return fit.dataset.with_prediction(loads, totals, beyond)
+        wholes.append(whole)
+    return fit.dataset.with_prediction(loads, totals, beyond, wholes)
 
 
 def effort_per_torque(fit: "Fit") -> float | None:

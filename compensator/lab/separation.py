@@ -15,10 +15,11 @@ from functools import cached_property
 
 import numpy as np
 
-from compensator.lab.candidates import Candidates, model_columns
+from compensator.lab.candidates import Candidates
 from compensator.lab.catalogue import effect_named
 from compensator.lab.dataset import Dataset, IntArray
 from compensator.lab.diagnosis import Candidate
+from compensator.lab.discrepancy import model_columns
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.evidence import Block, inflation_of
 from compensator.lab.fit import Fit

@@ -32,9 +32,11 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
         direction=np.tanh(v / 0.01),
         load_effort=1.3 * np.sin(q) - 0.2,
         inertia_beyond=0.1,
+        inertia=0.3,
         parting=13.0 * np.sin(q) - 2.0,
         predicted=0.7 * np.cos(q) - 0.3,
         effort_rate=4.0 * v,
+        largest_effort=1.5,
         temperature_c=20.0 + 5.0 * time_s,
         supply_v=np.full(41, 12.0),
         position_span=2.0,
@@ -120,7 +122,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "cogging": ((9.0,), lambda m: [np.cos(9 * m.position), np.sin(9 * m.position)]),
     "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
     "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
-    "dead_time": ((), lambda m: [np.tanh(predicted(m) / (0.02 * np.abs(predicted(m)).max()))]),
+    "dead_time": ((0.02,), lambda m: [np.tanh(predicted(m) / (0.02 * 1.5))]),
     "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
     "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
     "frictional_lag": ((0.5,), lambda m: [m.acceleration * np.exp(-np.abs(m.velocity) / 0.5)]),
@@ -131,7 +133,12 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "elasticity": ((2.0, 0.05), twisted),
     "encoder_eccentricity": (
         (2.0,),
-        lambda m: [slope(slope(np.cos(2 * m.position))), slope(slope(np.sin(2 * m.position)))],
+        lambda m: [
+            0.3 * slope(slope(np.cos(2 * m.position))),
+            0.3 * slope(slope(np.sin(2 * m.position))),
+            slope(np.cos(2 * m.position)),
+            slope(np.sin(2 * m.position)),
+        ],
     ),
 }
 

@@ -28,4 +28,5 @@ EFFECT = Effect(
     source="Saini et al. 2013, section 2.4 (assumed away there)",
     confused_with=("offset",),
     breakaway=at_rest(columns, PARAMETERS, "direction"),
+    dry_friction=True,
 )

@@ -27,4 +27,5 @@ EFFECT = Effect(
     confused_with=("viscous_temperature",),
     varies_with="temperature_c",
     breakaway=at_rest(columns, PARAMETERS, "temperature"),
+    dry_friction=True,
 )

@@ -5,13 +5,27 @@ import numpy as np
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recording import FloatArray
 
-SMOOTH_SHARE = 0.02  # of the largest effort: the sign of a small effort is uncertain
+
+def shapes(_: Motion) -> list[Shape]:
+    """Shares of the largest effort below which the predicted effort is too uncertain to tell its sign."""
+    return [(0.01,), (0.02,), (0.05,), (0.1,)]
 
 
-def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Sign of the predicted effort, smooth where it passes through zero."""
-    small = SMOOTH_SHARE * float(np.abs(motion.predicted).max() or 1.0)
-    return np.tanh(motion.predicted / small)[None]
+def columns(motion: Motion, shape: Shape) -> FloatArray:
+    """Sign of the predicted effort, smooth where it passes through zero, for shape (share,)."""
+    return np.tanh(_over_uncertain(motion, shape))[None]
+
+
+def discrepancy(motion: Motion, shape: Shape) -> FloatArray:
+    """Where the current is zero, as it is not known as well as effort: derivatives of tanh(i + i_0 + F sgn v + D v)."""
+    near_zero = 1.0 - np.tanh(_over_uncertain(motion, shape)) ** 2
+    return np.array([near_zero, near_zero * motion.direction, near_zero * motion.velocity])
+
+
+def _over_uncertain(motion: Motion, shape: Shape) -> FloatArray:
+    """Predicted effort over that below which its sign is not sure."""
+    found: FloatArray = motion.predicted / (shape[0] * (motion.largest_effort or 1.0))
+    return found
 
 
 EFFECT = Effect(
@@ -27,7 +41,11 @@ EFFECT = Effect(
     driver="effort",
     excited_by="holds and slow motion at small torque of both signs",
     source="Jeong, Park 1991",
+    shapes=shapes,
+    smooth_shape=True,
+    shape_names=("share of the largest effort at which its sign is sure",),
     confused_with=("coulomb", "torque_constant_saturation"),
     efforts=("terminal_voltage", "current_estimate"),
     builds_on="effort",
+    discrepancy=discrepancy,
 )

@@ -29,8 +29,10 @@ class Motion:
         direction: smooth sign of the velocity, -1 .. 1.
         load_effort: predicted effort without friction, in the effort's unit (never the measured one).
         inertia_beyond: effort per acceleration of what hangs beyond the gear; 0 before anything is predicted.
+        inertia: effort per acceleration of all that moves; 0 before anything is predicted.
         parting: acceleration at which the motor side would leave what hangs beyond the gear behind, were it not driven.
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
+        largest_effort: predicted, of all trials; 0 before anything is predicted.
         temperature_c, supply_v: NaN where not measured.
         position_span: range of position over all trials of the study.
         session_span_s: from the first trial's start to the last one's end, as far as the conditions tell.
@@ -48,9 +50,11 @@ class Motion:
     direction: FloatArray
     load_effort: FloatArray
     inertia_beyond: float
+    inertia: float
     parting: FloatArray
     predicted: FloatArray
     effort_rate: FloatArray
+    largest_effort: float
     temperature_c: FloatArray
     supply_v: FloatArray
     position_span: float
@@ -190,7 +194,7 @@ class Effect:
         carried: part of the load that the gear transmits (see `prediction`).
         pipeline: of the measuring chain, not of the joint: reported as a finding of its own, so that a small skew
             between channels never hides physics.
-        builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), or "effort"
+        builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), "inertia", or "effort"
             (`predicted`, `effort_rate`), which is the sum of all effects that do not build on it themselves.
         rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see;
             "breakaway" where it shows in the effort of breaking away only.
@@ -201,6 +205,8 @@ class Effect:
         unbounded_in: quantities of effort that hold an error of the same form, of either sign: no bound holds there.
         standing_in: pipeline nuisance columns that would absorb this effect (see `nuisance`).
         varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
+        dry_friction: it is friction that varies with something else than speed; see `discrepancy`.
+        discrepancy: (motion, shape) -> array (k, n): what the truth may differ from the equation by; None for nothing.
     """
 
     name: str
@@ -219,7 +225,7 @@ class Effect:
     confused_with: tuple[str, ...] = ()
     carried: bool = False
     pipeline: bool = False
-    builds_on: Literal["load", "effort"] | None = None
+    builds_on: Literal["load", "inertia", "effort"] | None = None
     standing_in: frozenset[str] = field(default_factory=frozenset)
     varies_with: str | None = None
     rows: EffectRows = "sliding"
@@ -228,6 +234,8 @@ class Effect:
     efforts: tuple[EffortQuantity, ...] = ()
     breakaway: BreakawayShare | None = None
     unbounded_in: tuple[EffortQuantity, ...] = ()
+    dry_friction: bool = False
+    discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
         """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""

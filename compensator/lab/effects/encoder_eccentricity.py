@@ -14,10 +14,22 @@ def shapes(motion: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """Second rates of change of the cosine and sine of the encoder's turn, for shape (n,)."""
-    rate = 1.0 / (motion.time_s[1] - motion.time_s[0])
-    phase = shape[0] * motion.position
-    return np.array([rate_of_change(rate_of_change(part, rate), rate) for part in (np.cos(phase), np.sin(phase))])
+    """What accelerations and speeds that never were add to the effort, for shape (n,)."""
+    speeds = _rates(motion, shape[0])
+    rate = 1.0 / motion.step_s
+    return np.array([*(motion.inertia * rate_of_change(speed, rate) for speed in speeds), *speeds])
+
+
+def discrepancy(motion: Motion, shape: Shape) -> FloatArray:
+    """The second order in the angle that is misread, which goes round twice as often."""
+    rate = 1.0 / motion.step_s
+    return np.array([motion.inertia * rate_of_change(speed, rate) for speed in _rates(motion, 2.0 * shape[0])])
+
+
+def _rates(motion: Motion, order: float) -> list[FloatArray]:
+    """Rates of change of the cosine and sine of the encoder's turn."""
+    phase = order * motion.position
+    return [rate_of_change(part, 1.0 / motion.step_s) for part in (np.cos(phase), np.sin(phase))]
 
 
 EFFECT = Effect(
@@ -25,13 +37,15 @@ EFFECT = Effect(
     title="Encoder eccentricity",
     physics=(
         "A disc or magnet off its centre reads an angle that swings once a turn: the model sees accelerations "
-        "that never were."
+        "and speeds that never were, and so does a current that is estimated from the speed."
     ),
-    equation=r"J\,\frac{d^2}{dt^2}(a\cos nq + b\sin nq)",
+    equation=r"J\,\frac{d^2}{dt^2}(a\cos nq + b\sin nq) + \frac{d}{dt}(c\cos nq + d\sin nq)",
     columns=columns,
     parameters=(
-        Parameter("cosine part", "{effort} s2"),
-        Parameter("sine part", "{effort} s2"),
+        Parameter("cosine part", "{position}"),
+        Parameter("sine part", "{position}"),
+        Parameter("cosine part, by speed", "{effort} s"),
+        Parameter("sine part, by speed", "{effort} s"),
     ),
     driver="position",
     excited_by="steady speeds at which a turn of the encoder lies within the pass band",
@@ -41,4 +55,6 @@ EFFECT = Effect(
     confused_with=("cogging",),
     facts=("gear_ratio",),
     pipeline=True,
+    builds_on="inertia",
+    discrepancy=discrepancy,
 )

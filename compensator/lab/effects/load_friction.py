@@ -5,10 +5,18 @@ import numpy as np
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
+UNCERTAIN_SHARE = 0.05  # of the largest effort: the sign of a smaller load is uncertain
+
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
     """Transmitted load against the motion."""
     return (np.abs(motion.load_effort) * motion.direction)[None]
+
+
+def discrepancy(motion: Motion, _: Shape) -> FloatArray:
+    """What else the teeth transmit, friction and inertia beyond them: derivatives of |load + F sgn v + D v + J a|."""
+    side = np.tanh(motion.load_effort / (UNCERTAIN_SHARE * (motion.largest_effort or 1.0)))
+    return np.array([side, side * np.abs(motion.velocity), side * motion.acceleration * motion.direction])
 
 
 PARAMETERS = (Parameter("share of the load lost", "1", 0.0, 1.0),)
@@ -29,4 +37,6 @@ EFFECT = Effect(
     confused_with=("load_friction_quadratic", "position_periodic_friction", "weight_friction"),
     builds_on="load",
     breakaway=at_rest(columns, PARAMETERS, "load"),
+    dry_friction=True,
+    discrepancy=discrepancy,
 )

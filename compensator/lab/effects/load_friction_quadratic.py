@@ -1,5 +1,7 @@
 """Load-dependent friction, quadratic."""
 
+import numpy as np
+
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
 from compensator.lab.recording import FloatArray
 
@@ -7,6 +9,11 @@ from compensator.lab.recording import FloatArray
 def columns(motion: Motion, _: Shape) -> FloatArray:
     """Square of the transmitted load against the motion."""
     return (motion.load_effort**2 * motion.direction)[None]
+
+
+def discrepancy(motion: Motion, _: Shape) -> FloatArray:
+    """What else the teeth transmit, friction and inertia beyond them: derivatives of (load + D v + J a)^2."""
+    return np.array([np.abs(motion.velocity), motion.acceleration * motion.direction]) * motion.load_effort
 
 
 PARAMETERS = (Parameter("quadratic load loss", "1/{effort}", 0.0),)
@@ -26,4 +33,6 @@ EFFECT = Effect(
     confused_with=("load_friction",),
     builds_on="load",
     breakaway=at_rest(columns, PARAMETERS, "load"),
+    dry_friction=True,
+    discrepancy=discrepancy,
 )

@@ -35,4 +35,5 @@ EFFECT = Effect(
     shapes=shapes,
     shape_names=("order",),
     confused_with=("load_friction",),
+    dry_friction=True,
 )

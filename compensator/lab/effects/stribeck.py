@@ -36,4 +36,5 @@ EFFECT = Effect(
     shape_names=("Stribeck speed", "Stribeck exponent"),
     confused_with=("viscous_quadratic",),
     standing_in=frozenset({"slow_sign", "fast_sign"}),
+    dry_friction=True,
 )

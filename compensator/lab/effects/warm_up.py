@@ -34,4 +34,5 @@ EFFECT = Effect(
     shape_names=("warm-up time",),
     confused_with=("coulomb_temperature",),
     varies_with="session_s",
+    dry_friction=True,
 )

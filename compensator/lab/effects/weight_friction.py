@@ -27,4 +27,5 @@ EFFECT = Effect(
     confused_with=("load_friction", "coulomb"),
     varies_with="load_kg",
     breakaway=at_rest(columns, PARAMETERS, "load_kg"),
+    dry_friction=True,
 )
