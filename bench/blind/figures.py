@@ -48,6 +48,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     right = [one for one in strong if _is_right(one)]
     weak = [one for one in singles if _standing(one).detectability < MUST_NOT_NAME]
     shown = [one for one in singles if _standing(one).ratio >= SHOWN]
+    findable = [one for one in shown if _standing(one).ratio >= _standing(one).smallest]
     pairs = [one for one in answered if one.family == "pair" and _both_clear(one)]
     memory = [one for one in answered if one.family == "memory"]
     settled = [one for one in answered if one.settled is not None and one.settled.predicted >= MUST_NAME]
@@ -55,6 +56,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         *_false_alarms(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
         _share("truth in the class, r >= 0.15", 0.97, shown, _in_class),
+        _share("the same, where theory finds it nine times in ten", 0.97, findable, _in_class),
         _class_size([one for one in shown if _in_class(one)]),
         _share("a single name where d' < 3", 0.1, weak, lambda one: len(_first(one)) == 1, at_most=True),
         _smallest_found(singles),

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import isnan
 
 import pytest
@@ -42,10 +43,19 @@ def test_what_must_be_named_and_what_must_not() -> None:
     assert not named.reached
     in_class = _figure(results, "truth in the class")
     assert (in_class.items, in_class.measured) == (3, pytest.approx(2 / 3))
+    assert _figure(results, "where theory finds it").items == 3
     assert _figure(results, "mean size").measured == pytest.approx(1.5)
     single = _figure(results, "a single name")
     assert (single.items, single.measured) == (2, 0.5)
     assert _figure(results, "over the oracle's, mean").measured == pytest.approx(1.05)
+
+
+def test_what_theory_cannot_find_in_so_few_rows_is_counted_apart() -> None:
+    hard = replace(_result("single", "spring", (), 0.2, 2.0), standings=(Standing(0.2, 2.0, "cogging", 0.25),))
+    results = [_result("single", "spring", ("spring",), 0.3, 9.0), hard]
+    assert _figure(results, "truth in the class").measured == 0.5
+    findable = _figure(results, "where theory finds it")
+    assert (findable.items, findable.measured) == (1, 1.0)
 
 
 def test_false_alarms_come_with_the_interval_of_a_share() -> None:
