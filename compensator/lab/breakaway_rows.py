@@ -134,7 +134,7 @@ def measured_position(trial: Trial, dataset: Dataset) -> FloatArray:
 
 def _static_friction(fit: Fit) -> float:
     """What sliding tells of it, in the effort's unit; the median effort where it tells nothing."""
-    told = sum(float(term.coefficients[0]) for term in fit.terms if term.effect.name in ("coulomb", "stribeck"))
+    told = fit.dry_friction
     return told if told > 0.0 else float(np.median(np.abs(fit.dataset.effort)))
 
 

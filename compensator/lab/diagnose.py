@@ -131,7 +131,7 @@ def _memory(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]
 
 def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
     """Whether what steady sliding speaks for is the shadow of a larger effect with memory, which stands without it."""
-    if memory.verdict != "missing" or steady.verdict != "missing" or memory.strength <= steady.strength:
+    if memory.verdict == "nothing" or steady.verdict != "missing" or memory.strength <= steady.strength:
         return False
     shadow = steady.candidates[0]
     given = wide.with_columns(wide.fit.dataset.columns(shadow.effect, shadow.shape))
@@ -140,15 +140,15 @@ def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
 
 
 def _first_of(families: list[Answer]) -> Answer:
-    """The first family that names something; a curve that no effect follows, unless a name of another explains it."""
+    """The first family with an answer; a curve that no effect follows, unless another family explains it."""
     steady = families[0]
     if steady.verdict == "nothing":
-        return next((answer for answer in families if answer.verdict == "missing"), steady)
+        return next((answer for answer in families if answer.verdict != "nothing"), steady)
     if steady.verdict == "missing":
         chain = families[-1]
         return chain if chain.verdict == "missing" and _explains_more(chain, steady) else steady
     enough = FORMULA_SHARE * steady.strength
-    return next((a for a in families[1:] if a.verdict == "missing" and a.strength >= enough), steady)
+    return next((a for a in families[1:] if a.verdict != "nothing" and a.strength >= enough), steady)
 
 
 def _least_p(screening: Screening) -> dict[str, float]:

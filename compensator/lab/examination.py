@@ -46,13 +46,18 @@ def is_confirmed(candidate: Candidate) -> bool:
     hold most of the evidence, as those at the highest speed do of drag: there a very strong score stands without them,
     if the error falls at all.
     """
+    return is_sure(candidate) and (candidate.physical or candidate.rows != "moving")
+
+
+def is_sure(candidate: Candidate) -> bool:
+    """Whether a candidate is confirmed but for the size and sign that it would need."""
     strong = candidate.score >= VERY_STRONG
     no_luck = candidate.p_value <= SIGNIFICANT or strong
     falls = candidate.before - candidate.after >= LEAST_FALL
     steady = candidate.rows == "sliding"
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     helps = candidate.gain.value >= least and falls and (candidate.gain.low > 0.0 or (steady and strong))
-    return candidate.score > 0.0 and no_luck and helps and (candidate.physical or candidate.rows != "moving")
+    return candidate.score > 0.0 and no_luck and helps
 
 
 def _with_effect(fit: Fit, item: Evidence) -> Fit:
@@ -127,9 +132,25 @@ def _candidate(
 
 
 def is_physical(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of."""
+    return is_within_bounds(gathered, item) and not is_too_small(gathered, item)
+
+
+def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients lie within the effect's bounds."""
+    ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
+    return all(low <= c <= high for (low, high), c in zip(ranges, _coefficients(gathered, item), strict=True))
+
+
+def is_too_small(gathered: Candidates, item: Evidence) -> bool:
+    """Whether an effect that stands in the place of dry friction is but a part of it."""
+    least = effect_named(item.block.name).least_of_friction * gathered.fit.dry_friction
+    return least > 0.0 and bool(np.all(_coefficients(gathered, item) < least))
+
+
+def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:
+    """Freely fitted, on top of the model, shape (k,)."""
     base = gathered.bases[item.block.base]
     columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
-    coefficients = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0]
-    ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
-    return all(low <= c <= high for (low, high), c in zip(ranges, coefficients, strict=True))
+    found: FloatArray = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0].astype(np.float64)
+    return found

@@ -7,22 +7,38 @@ import numpy as np
 from compensator.lab.bursts import Bursts, bursts_of
 from compensator.lab.candidates import Candidates
 from compensator.lab.catalogue import catalogue
+from compensator.lab.constancy import change_of
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.drivers import DRIVERS
 from compensator.lab.evidence import Evidence, Screening, among_all, screen
-from compensator.lab.examination import SIGNIFICANT, examine, is_confirmed, is_physical
+from compensator.lab.examination import (
+    SIGNIFICANT,
+    examine,
+    is_confirmed,
+    is_physical,
+    is_sure,
+    is_too_small,
+    is_within_bounds,
+)
 from compensator.lab.fit import Fit, with_columns
 from compensator.lab.gain import held_out_gain
 from compensator.lab.remainder import LEAST_SHARE, remainder_of
 from compensator.lab.validation import held_out
 from compensator.lab.weights import row_weights
-from compensator.lab.wording import answer_in_words, bursts_in_words, unexplained_in_words
+from compensator.lab.wording import (
+    answer_in_words,
+    bending_in_words,
+    bursts_in_words,
+    changing_in_words,
+    unexplained_in_words,
+)
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
+SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 
 
 @dataclass(frozen=True)
@@ -68,21 +84,37 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
     p_value = among_all(named.p_value)
     # what explains much less than an effect that cannot be it is the shadow of something else
-    enough = best.noncentrality >= FORMULA_SHARE * max(item.noncentrality for item in best_of_each)
+    share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
+    enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
     if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
         return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
+    bends = _bends(gathered, examined, best_of_each)
+    if p_value <= SIGNIFICANT and bends is not None:
+        sentence, others = bending_in_words(bends, fit.dataset.facts, p_value), [c for c in examined if c is not bends]
+        driver, strength = bends.effect.driver, max(item.noncentrality for item in best_of_each)
+        return Answer("unknown-effect", sentence, p_value, [bends, *others], driver, [], strength, remains=True)
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
     sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
     if generic is not None:
         left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
         bursts = _bursts(gathered)
+        change = change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights)
         if left.share > LEAST_SHARE and bursts.are_there:
             names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
             sentence, remains = bursts_in_words(bursts, names, left.share, p_value), True
-        elif left.is_more_than_noise:
-            sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value), True
+        elif left.is_more_than_noise or change is not None:
+            sentence, remains = unexplained_in_words(left, change, _nearest_driver(generic), p_value), True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+
+
+def _bends(gathered: Candidates, examined: list[Candidate], best_of_each: list[Evidence]) -> Candidate | None:
+    """What explains most, for sure, but is only a part of the friction that it stands in the place of."""
+    most = max(best_of_each, key=lambda item: item.noncentrality)
+    candidate = next((one for one in examined if one.effect.name == most.block.name), None)
+    if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
+        return None
+    return candidate if is_too_small(gathered, most) else None
 
 
 def _best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
@@ -138,8 +170,10 @@ def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
     """What remains once the best effect is in the model."""
     left = gathered.with_block(best.block)
     dataset, rows = gathered.fit.dataset, gathered.rows
-    remainder = remainder_of(dataset, left.bases[best.block.base].residual / gathered.weights, rows)
-    if not remainder.is_more_than_noise:
+    base = left.bases[best.block.base]
+    remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
+    change = change_of(dataset, rows, base, gathered.weights)
+    if change is None and not remainder.is_more_than_noise:
         return []
     rest = screen(left.bases, left.curves.blocks, dataset.block_index[rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
@@ -147,6 +181,8 @@ def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
         driver = DRIVERS[name.removesuffix(" against motion")]
         how = " against the motion" if name.endswith("against motion") else ""
         return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
+    if change is not None:
+        return [f"After {best.block.name}, {changing_in_words(change)}; repeat a trial to see whether it comes again."]
     return [
         f"After {best.block.name}, what is left is still more than noise, {remainder.share:.1%} of the effort, and "
         "has structure over no variable that is measured; add it and diagnose again."

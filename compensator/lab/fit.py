@@ -18,6 +18,7 @@ from compensator.lab.shape_search import find_shapes, first_shapes
 from compensator.lab.weights import regime_weights
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
+DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
 SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
 
 
@@ -82,6 +83,11 @@ class Fit:
     def shapes(self) -> dict[str, Shape]:
         """Shape of each effect by name."""
         return {term.effect.name: term.shape for term in self.terms}
+
+    @property
+    def dry_friction(self) -> float:
+        """What the model takes off the effort, or adds to it, at the slowest, by the direction of motion alone."""
+        return sum(float(term.coefficients[0]) for term in self.terms if term.effect.name in DRY)
 
     @property
     def training_equations(self) -> tuple[FloatArray, FloatArray]:

@@ -5,10 +5,12 @@ from math import isfinite
 
 from compensator.lab.bursts import Bursts
 from compensator.lab.chance import chance_in_words
+from compensator.lab.constancy import Change
 from compensator.lab.dataset import BLOCK_S
 from compensator.lab.diagnosis import Candidate, Verdict
 from compensator.lab.evidence import least_p_value
 from compensator.lab.examination import SIGNIFICANT
+from compensator.lab.facts import Facts
 from compensator.lab.remainder import Remainder
 
 MOST_NAMES = 3
@@ -71,10 +73,12 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: float) -> str:
+def unexplained_in_words(remainder: Remainder, change: Change | None, driver: str | None, p_value: float) -> str:
     """The answer where much is left that no effect and no curve explains."""
     if isfinite(remainder.frequency_hz):
         how = f"it swings at about {remainder.frequency_hz:.2g} Hz in most trials: look at the supply and at what turns"
+    elif change is not None:
+        how = changing_in_words(change)
     elif driver is not None:
         how = f"it varies with {driver}, most of all that is measured"
     else:
@@ -83,6 +87,21 @@ def unexplained_in_words(remainder: Remainder, driver: str | None, p_value: floa
         f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
         f"{remainder.share:.1%} of the effort, is more than noise; {how}. Repeat a trial: what comes again is the "
         "joint's, what does not has changed since."
+    )
+
+
+def changing_in_words(change: Change) -> str:
+    """What is not as constant as the model takes it for."""
+    return f"{change.what} changes from one stretch of {BLOCK_S:g} s to the next, by {change.share:.1%} of the effort"
+
+
+def bending_in_words(bends: Candidate, facts: Facts, p_value: float) -> str:
+    """The answer where something comes up over a distance after a reversal that is not the friction itself."""
+    return (
+        "Something is missing, and it is none of the catalogue: it varies with the travel since the last reversal, "
+        f"over some {bends.shape[0]:.2g} {facts.position_unit}, and is too small a part of the dry friction for "
+        f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
+        f"fall from {bends.before:.2%} to {bends.after:.2%}). Look at hoses, cables and seals that bend with the joint."
     )
 
 

@@ -101,6 +101,22 @@ def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
     assert found.candidates[0].gain.low > 0.0
 
 
+def test_a_hose_that_bends_along_is_not_called_pre_sliding():
+    def hose(x):
+        """A strand that bends by up to 0.3 rad, and then slides in its sheath with 0.02 N m."""
+        bent, strand = 0.0, []
+        for moved in np.diff(x.q, prepend=x.q[0]):
+            bent = min(max(bent + moved, -0.3), 0.3)
+            strand.append(bent)
+        return 0.02 * np.array(strand) / 0.3
+
+    found = diagnosis_of(recordings(Joint(extra=hose), seed=4))
+    assert found.verdict == "unknown-effect", found.sentence
+    assert found.remains
+    assert found.driver == "since_reversal"
+    assert "hoses" in found.sentence
+
+
 @pytest.mark.parametrize("name", ["inertia", "gravity", "offset", "viscous", "stribeck"])
 def test_an_effect_taken_from_the_model_is_missed(name):
     found = diagnosis_of(recordings(seed=3), tuple(effect for effect in DEFAULT if effect != name))

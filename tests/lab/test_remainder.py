@@ -87,3 +87,17 @@ def test_friction_that_jumps_is_not_called_nothing():
     fit = fitted(jumps)
     assert left(fit).is_more_than_noise
     assert "Nothing is missing" not in diagnose(fit).sentence
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_that_rises_with_frequency_does_not_swing(seed):
+    """Time stamps that jitter: noise of the position, twice differentiated, takes the place of the residual."""
+    fit = fitted()
+    random = np.random.default_rng(seed)
+    shaken = [np.diff(random.standard_normal(len(one.motion.time_s) + 2), 2)[None] for one in fit.dataset.trials]
+    noise = fit.dataset.stack(shaken)[:, 0]
+    noise *= 0.05 * np.std(fit.dataset.effort) / np.std(noise)
+    found = remainder_of(fit.dataset, noise[fit.training], fit.training)
+    assert found.share > 0.01
+    assert found.swinging < 0.2
+    assert not found.is_more_than_noise

@@ -207,6 +207,7 @@ class Effect:
         varies_with: a quantity that must differ over the data, e.g. "temperature_c", "load_kg".
         dry_friction: it is friction that varies with something else than speed; see `discrepancy`.
         discrepancy: (motion, shape) -> array (k, n): what the truth may differ from the equation by; None for nothing.
+        least_of_friction: lowest coefficient over the model's dry friction: what stands in its place is as large as it.
     """
 
     name: str
@@ -236,6 +237,7 @@ class Effect:
     unbounded_in: tuple[EffortQuantity, ...] = ()
     dry_friction: bool = False
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
+    least_of_friction: float = 0.0
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
         """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""

@@ -23,7 +23,8 @@ EFFECT = Effect(
     title="Pre-sliding",
     physics=(
         "Before surfaces slide they give like springs: after a reversal friction comes up over a distance "
-        "instead of at once. Dahl's law, to be had from the position alone."
+        "instead of at once. Dahl's law, to be had from the position alone. All of the dry friction comes up like "
+        "that: where a part of it does, something else bends, as a hose or a cable."
     ),
     equation=r"F_p\,(z - \mathrm{sgn}\,\dot q),\quad x_s\,dz = (1 - z\,\mathrm{sgn}\,\dot q)\,dq",
     columns=columns,
@@ -37,4 +38,5 @@ EFFECT = Effect(
     confused_with=("backlash", "frictional_lag", "measurement_delay"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",
+    least_of_friction=0.5,
 )
