@@ -55,6 +55,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     return [
         *_false_alarms(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
+        _share("truth among the first three, r >= 0.15", 0.98, shown, _among_three),
         _share("truth in the class, r >= 0.15", 0.97, shown, _in_class),
         _share("the same, where theory finds it nine times in ten", 0.97, findable, _in_class),
         _class_size([one for one in shown if _in_class(one)]),
@@ -67,7 +68,17 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
         _share("named alone after six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
+        _gain_over_chance(answered),
     ]
+
+
+def _gain_over_chance(answered: Sequence[Result]) -> Figure:
+    """Predicted d'^2 of the rivals with the suggested trials, over that with as many drawn from the same options."""
+    known = [one.settled for one in answered if one.settled is not None and one.settled.by_chance > 0.0]
+    ratios = [(one.predicted / one.by_chance) ** 2 for one in known]
+    mean = float(np.exp(np.mean(np.log(ratios)))) if ratios else nan
+    what = "d'^2 with suggested trials over that with random ones, geometric mean"
+    return Figure(what, "at least 1.7", mean, nan, nan, len(ratios), mean >= 1.7)
 
 
 def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
@@ -174,6 +185,10 @@ def _is_right(one: Result) -> bool:
 
 def _in_class(one: Result) -> bool:
     return one.names[0] in _first(one)
+
+
+def _among_three(one: Result) -> bool:
+    return one.names[0] in (*_first(one)[:1], *_answer(one).ranked)
 
 
 def _flagged(one: Result) -> bool:

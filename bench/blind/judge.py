@@ -74,7 +74,8 @@ class Result:
         if values["answer"] is not None:
             answer = values["answer"]
             named = tuple(tuple(names) for names in answer["named"])
-            made["answer"] = LabAnswer(**{**answer, "first": tuple(answer["first"]), "named": named})
+            lists = {name: tuple(answer.get(name, ())) for name in ("first", "ranked")}
+            made["answer"] = LabAnswer(**{**answer, **lists, "named": named})
         made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
         made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
         made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}

@@ -14,6 +14,7 @@ from compensator.lab.recording import Recording
 from compensator.lab.validation import held_out
 
 Classes = tuple[tuple[str, ...], ...]
+SHOWN = 3  # effects of a ranking that a reader looks at
 CHAIN = "measurement_delay"  # a sample is taken at the end of the cycle whose effort it holds: half a cycle, at least
 
 
@@ -28,6 +29,7 @@ class LabAnswer:
         unknown: the last step says that none of the catalogue is it, or that something remains.
         p_value, detectability: of the first diagnosis and its best candidate.
         error: held-out, of the model with all that was named in it.
+        ranked: the first three effects of the first diagnosis, named or not.
     """
 
     verdict: str
@@ -37,6 +39,7 @@ class LabAnswer:
     p_value: float
     detectability: float
     error: float
+    ranked: tuple[str, ...] = ()
 
 
 def base_fit(recordings: Sequence[Recording], rig: Rig) -> Fit:
@@ -71,4 +74,5 @@ def ask_lab(fit: Fit, steps: int) -> LabAnswer:
         p_value=first.p_value,
         detectability=first.candidates[0].detectability if first.candidates else 0.0,
         error=held_out(fit).relative,
+        ranked=tuple(one.effect.name for one in first.candidates[:SHOWN]),
     )

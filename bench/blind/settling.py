@@ -14,6 +14,7 @@ from bench.study.next_trial.predict import choose
 from compensator.lab.diagnose import diagnose
 from compensator.lab.fit import Fit
 from compensator.lab.recording import Recording
+from compensator.lab.suggestion import shows_from_rest
 
 TRIALS = 6
 
@@ -25,6 +26,7 @@ class Settled:
     Attributes:
         rivals: that were to be separated.
         before, predicted: smallest d' of them, predicted on the trials measured and with those suggested.
+        by_chance: the same with as many trials drawn at random from the same options.
         trials: suggested.
         named: the class that is named at the end.
     """
@@ -34,6 +36,7 @@ class Settled:
     predicted: float
     trials: int
     named: tuple[str, ...]
+    by_chance: float = 0.0  # not known of older results
 
     @classmethod
     def from_json(cls, values: dict[str, Any]) -> "Settled":
@@ -53,7 +56,8 @@ def settle(configuration: BenchConfiguration, recordings: Sequence[Recording], f
     first = diagnose(fit)
     if first.verdict == "missing" and len(first.classes[0]) == 1:
         return None
-    found, chosen = choose(fit, first, configuration, choices(configuration, hung_by_hand=False), TRIALS)
+    possible = choices(configuration, hung_by_hand=False, from_rest=shows_from_rest(first))
+    found, chosen = choose(fit, first, configuration, possible, TRIALS)
     concerned = [pair for pair in found.pairs if name in (pair.true, pair.rival)]
     if not chosen or not concerned:
         return None
@@ -68,6 +72,7 @@ def settle(configuration: BenchConfiguration, recordings: Sequence[Recording], f
         predicted=min(pair.after for pair in concerned),
         trials=len(chosen),
         named=last.classes[0] if last.verdict == "missing" else (),
+        by_chance=min(pair.by_chance for pair in concerned),
     )
 
 

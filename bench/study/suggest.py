@@ -15,7 +15,7 @@ from bench.study.next_trial.predict import choose
 from bench.study.selection import Criterion
 from compensator.lab.catalogue import effect_named
 from compensator.lab.diagnose import diagnose
-from compensator.lab.suggestion import Pair, Pick, Suggestion
+from compensator.lab.suggestion import Pair, Pick, Suggestion, shows_from_rest
 
 MOST_TRIALS = 6
 
@@ -49,12 +49,13 @@ def suggest(
             "of its bench with --config"
         )
     configuration = with_friction(store, configuration)
-    possible = _fitted_ones(material, choices(configuration, not is_simulated(configuration)))
     with lab_errors():
         fit = material.fit_of(model)
         diagnosis = diagnose(fit)
         if diagnosis.verdict == "data-problem":
             raise StudyError(f"{diagnosis.sentence} Mend it before more is recorded")
+        possible = choices(configuration, not is_simulated(configuration), shows_from_rest(diagnosis))
+        possible = _fitted_ones(material, possible)
         found, chosen = choose(fit, diagnosis, configuration, possible, trials)
     return {
         "study_id": study_id,

@@ -25,6 +25,7 @@ from compensator.lab.recording import FloatArray
 
 WINDOW_S = 0.1  # over which the effort at rest is averaged
 TRIM_S = 0.1  # at both ends of a rest: the joint still brakes, or lets go already
+STILL = 4.0  # counts of position, from TRIM_S before a window to TRIM_S after it: what turns slowly still accelerates
 SLOWEST = 1e-3  # of a model's static friction per second: an effort that rises less is held
 
 
@@ -82,9 +83,10 @@ def windows_of(dataset: Dataset) -> Windows:
         size, trim = (max(2, round(span_s * signals.rate_hz)) for span_s in (WINDOW_S, TRIM_S))
         for begin, end in rests_of(signals, position, count, dataset.scales.slow):
             for start in range(begin + trim, end - trim - size + 2, size):
-                part = slice(start, start + size)
+                part, around = slice(start, start + size), slice(start - trim, start + size + trim)
                 effort = signals.effort[part]
-                if signals.usable[part].all() and np.isfinite(effort).all():
+                still = float(np.ptp(position[around])) <= STILL * count
+                if still and signals.usable[part].all() and np.isfinite(effort).all():
                     middle, since_s = start + size // 2, (start - begin) / signals.rate_hz
                     rate = float(np.polyfit(signals.time_s[part], effort, 1)[0])
                     rows.append((number, rests, middle, position[middle], float(effort.mean()), rate, since_s))

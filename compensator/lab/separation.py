@@ -9,6 +9,7 @@ its best shape can make of it; s^2 is the weighted residual's power, v its rows 
 All of it follows from the normal equations, which add up over trials: what a trial would bring costs one small solve.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -64,42 +65,37 @@ class Equations:
         return Equations(self.rows + other.rows, self.gram + other.gram)
 
 
-class Separation:
-    """Predicted d' between rivals, on the rows of a diagnosis and on those of trials to come.
+class Rivalry(ABC):
+    """Predicted d' between rivals from normal equations, whatever the rows are.
 
-    Args:
-        gathered: what the diagnosed model may be missing, on the rows where the rivals show.
-        candidates: the rivals, as the diagnosis found them.
+    Columns stand in this order: the model's, the measuring chain's, every shape of every rival's.
+
+    Attributes:
+        rivals: effects that may be the missing one.
+        noise_power: of the weighted residual once the first of them is in the model.
+        measured: what the rows of the diagnosis say.
     """
 
-    def __init__(self, gathered: Candidates, candidates: Sequence[Candidate]) -> None:
-        self._fit, self._show_in = gathered.fit, gathered.show_in
-        self._weights = RowWeights.learnt(gathered.fit.dataset, gathered.fit.residual, gathered.rows)
-        self.rivals = [_rival(gathered, candidate) for candidate in candidates]
-        left = _left_by_best(gathered, candidates[0])
-        self.noise_power = float(np.mean(left**2))
-        stretch = gathered.fit.dataset.block_index[gathered.rows]
-        inflation = inflation_of(left)
-        self._inflation = [max(inflation, _between_stretches(gathered, one, left, stretch)) for one in candidates]
-        self._nuisance = tuple(nuisance_columns(gathered.fit.dataset, gathered.show_in))
-        self._model = model_columns(gathered.fit).shape[1]
-        stacked = self._columns(gathered.fit, gathered.weights, gathered.rows)
-        self.measured = Equations(len(stacked), stacked.T @ stacked)
+    rivals: list[Rival]
+    noise_power: float
+    measured: Equations
+    _inflation: list[float]  # rows per independent row, for each rival
+    _nuisance: tuple[str, ...]
+    _model: int  # columns
 
     @property
+    @abstractmethod
     def dataset(self) -> Dataset:
         """Of the diagnosed model."""
-        return self._fit.dataset
 
+    @abstractmethod
     def of_trials(self, dataset: Dataset) -> Equations:
         """Normal equations that trials to come would add, by the model's own prediction."""
-        planned = replace(self._fit, dataset=dataset)
-        dataset = with_own_prediction(planned)
-        columns = [dataset.unchecked_columns(term.effect, [term.shape])[0] for term in self._fit.terms]
-        counted = dataset.in_regimes(self._show_in)
-        fit = replace(planned, dataset=dataset, columns=np.concatenate(columns, axis=1))
-        stacked = self._columns(fit, self._weights.of(dataset, counted), counted)
-        return Equations(len(stacked), stacked.T @ stacked)
+
+    @staticmethod
+    @abstractmethod
+    def _stands_in(rival: Rival) -> frozenset[str]:
+        """Columns of the measuring chain that stand for this rival, and are left out beside it."""
 
     def d_prime(self, equations: Equations, true: int, rival: int | None) -> float:
         """d' of one rival if it is the truth, against another by its index; None: against nothing being missing."""
@@ -138,11 +134,64 @@ class Separation:
 
     def _base(self, true: int, rival: int | None) -> IntArray:
         """Columns of the model and of the measuring chain, less those that stand in for the one or the other."""
-        standing_in = self.rivals[true].effect.standing_in
+        standing_in = self._stands_in(self.rivals[true])
         if rival is not None:
-            standing_in = standing_in | self.rivals[rival].effect.standing_in
+            standing_in = standing_in | self._stands_in(self.rivals[rival])
         kept = [i for i, name in enumerate(self._nuisance) if name not in standing_in]
         return np.concatenate([np.arange(self._model), self._model + np.array(kept, dtype=np.int64)])
+
+    @cached_property
+    def _shaped(self) -> list[list[IntArray]]:
+        """Indices of the columns of each rival's shapes."""
+        found, start = [], self._model + len(self._nuisance)
+        for one in self.rivals:
+            width = len(one.coefficients)
+            found.append([start + width * number + np.arange(width) for number in range(len(one.shapes))])
+            start += width * len(one.shapes)
+        return found
+
+    @cached_property
+    def _own(self) -> list[IntArray]:
+        """Indices of the columns of each rival at its best shape."""
+        return [columns[one.shapes.index(one.shape)] for one, columns in zip(self.rivals, self._shaped, strict=True)]
+
+
+class Separation(Rivalry):
+    """Predicted d' between rivals, on the rows of a diagnosis and on those of trials to come.
+
+    Args:
+        gathered: what the diagnosed model may be missing, on the rows where the rivals show.
+        candidates: the rivals, as the diagnosis found them.
+    """
+
+    def __init__(self, gathered: Candidates, candidates: Sequence[Candidate]) -> None:
+        self._fit, self._show_in = gathered.fit, gathered.show_in
+        self._weights = RowWeights.learnt(gathered.fit.dataset, gathered.fit.residual, gathered.rows)
+        self.rivals = [_rival(gathered, candidate) for candidate in candidates]
+        left = _left_by_best(gathered, candidates[0])
+        self.noise_power = float(np.mean(left**2))
+        stretch = gathered.fit.dataset.block_index[gathered.rows]
+        inflation = inflation_of(left)
+        self._inflation = [max(inflation, _between_stretches(gathered, one, left, stretch)) for one in candidates]
+        self._nuisance = tuple(nuisance_columns(gathered.fit.dataset, gathered.show_in))
+        self._model = model_columns(gathered.fit).shape[1]
+        stacked = self._columns(gathered.fit, gathered.weights, gathered.rows)
+        self.measured = Equations(len(stacked), stacked.T @ stacked)
+
+    @property
+    def dataset(self) -> Dataset:
+        """Of the diagnosed model."""
+        return self._fit.dataset
+
+    def of_trials(self, dataset: Dataset) -> Equations:
+        """Normal equations that trials to come would add, by the model's own prediction."""
+        planned = replace(self._fit, dataset=dataset)
+        dataset = with_own_prediction(planned)
+        columns = [dataset.unchecked_columns(term.effect, [term.shape])[0] for term in self._fit.terms]
+        counted = dataset.in_regimes(self._show_in)
+        fit = replace(planned, dataset=dataset, columns=np.concatenate(columns, axis=1))
+        stacked = self._columns(fit, self._weights.of(dataset, counted), counted)
+        return Equations(len(stacked), stacked.T @ stacked)
 
     def _columns(self, fit: Fit, weights: FloatArray, rows: BoolArray) -> FloatArray:
         """Weighted columns of the model, of the measuring chain, and of every shape of every rival; shape (n, K)."""
@@ -152,20 +201,9 @@ class Separation:
         stacked: FloatArray = np.column_stack([model, *nuisance.values(), *blocks])[rows] * weights[:, None]
         return stacked
 
-    @cached_property
-    def _shaped(self) -> list[list[IntArray]]:
-        """Indices of the columns of each rival's shapes."""
-        found, start = [], self._model + len(self._nuisance)
-        for one in self.rivals:
-            width = len(one.effect.parameters)
-            found.append([start + width * number + np.arange(width) for number in range(len(one.shapes))])
-            start += width * len(one.shapes)
-        return found
-
-    @cached_property
-    def _own(self) -> list[IntArray]:
-        """Indices of the columns of each rival at its best shape."""
-        return [columns[one.shapes.index(one.shape)] for one, columns in zip(self.rivals, self._shaped, strict=True)]
+    @staticmethod
+    def _stands_in(rival: Rival) -> frozenset[str]:
+        return frozenset(rival.effect.standing_in)
 
 
 def _absorbed(

@@ -7,17 +7,20 @@ from math import inf
 import numpy as np
 
 from compensator.lab.assembly import more_trials, usable
+from compensator.lab.breakaway_separation import BreakawaySeparation
 from compensator.lab.candidates import gather
 from compensator.lab.diagnosis import Candidate, Diagnosis
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.fit import Fit, widened
 from compensator.lab.recording import Recording
-from compensator.lab.separation import Equations, Separation
+from compensator.lab.separation import Equations, Rivalry, Separation
+from compensator.lab.validation import rms
 
 SURE = 7.0  # d' from which a name is right every time; from 6 on nearly every time
 MOST_RIVALS = 4
 RUNNERS_UP = 3  # that are looked at where no class of several is named
 LEAST_RISE = 0.05  # of d': less is not worth a trial
+DRAWS = 12  # of random trials, to hold the suggested ones against
 HOPELESS = 2.0  # d' that even all options together do not reach: no trial of this bench tells the two apart
 
 
@@ -43,6 +46,7 @@ class Pair:
     Attributes:
         before, after: predicted d' on the trials measured, and with all that are suggested.
         reachable: predicted d' with every option together.
+        by_chance: root mean square of the predicted d' with as many options drawn at random.
     """
 
     true: str
@@ -50,6 +54,7 @@ class Pair:
     before: float
     after: float
     reachable: float
+    by_chance: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,18 +107,20 @@ def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int
     rivals = rivals_of(diagnosis)
     if not rivals:
         raise UnusableDataError("the diagnosis ranks no effect: there is nothing to separate; record any motion first")
+    enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
+    separation = _separation(fit, rivals)
+    return _Choice(separation, options, _pairs(separation, diagnosis)).made(most, enough)
+
+
+def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
+    """Of the rivals, on the rows where they show: in motion, or at starts from rest."""
     show_in = rivals[0].rows
     if show_in == "breakaway":
-        raise UnusableDataError(
-            f"what {rivals[0].effect.name} shows is told by starts from rest, and these are not predicted; record "
-            f"{rivals[0].effect.excited_by}"
-        )
+        return BreakawaySeparation(fit, rivals)
     wide = fit.dataset.choice_for([one.effect for one in rivals])
     gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
     known = {(block.name, block.key) for block in gathered.named}
-    separation = Separation(gathered, [one for one in rivals if (one.effect.name, one.shape) in known])
-    enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
-    return _Choice(separation, options, _pairs(separation, diagnosis)).made(most, enough)
+    return Separation(gathered, [one for one in rivals if (one.effect.name, one.shape) in known])
 
 
 def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
@@ -125,11 +132,16 @@ def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
     return members[:MOST_RIVALS] if len(members) > 1 else family[:RUNNERS_UP]
 
 
+def shows_from_rest(diagnosis: Diagnosis) -> bool:
+    """Whether the rivals of a diagnosis are told apart by starts from rest."""
+    return any(one.rows == "breakaway" for one in rivals_of(diagnosis)[:1])
+
+
 def _of_one_kind(candidate: Candidate, first: Candidate) -> bool:
     return (candidate.rows, candidate.effect.pipeline) == (first.rows, first.effect.pipeline)
 
 
-def _pairs(separation: Separation, diagnosis: Diagnosis) -> list[tuple[int, int | None]]:
+def _pairs(separation: Rivalry, diagnosis: Diagnosis) -> list[tuple[int, int | None]]:
     """Within a class each against each; a name that stands alone against the next; what is not sure against nothing."""
     count = len(separation.rivals)
     if diagnosis.verdict == "missing" and len(diagnosis.classes[0]) == 1:
@@ -141,7 +153,7 @@ def _pairs(separation: Separation, diagnosis: Diagnosis) -> list[tuple[int, int 
 class _Choice:
     """Greedy choice among options."""
 
-    def __init__(self, separation: Separation, options: Sequence[Option], pairs: list[tuple[int, int | None]]) -> None:
+    def __init__(self, separation: Rivalry, options: Sequence[Option], pairs: list[tuple[int, int | None]]) -> None:
         self._separation = separation
         dataset = separation.dataset
         found = [(option, usable(dataset, option.recordings)) for option in options]
@@ -162,12 +174,21 @@ class _Choice:
                 break
             picks.append(self._pick(best, known))
             known = known + self._brings[best]
+        drawn = self._drawn(len(picks))
         return Suggestion(
-            pairs=tuple(self._pair(pair, measured, known) for pair in self._pairs),
-            hopeless=tuple(self._pair(pair, measured, known) for pair in self._hopeless),
+            pairs=tuple(self._pair(pair, measured, known, drawn) for pair in self._pairs),
+            hopeless=tuple(self._pair(pair, measured, known, drawn) for pair in self._hopeless),
             picks=tuple(picks),
             noise=float(np.sqrt(self._separation.noise_power)),
         )
+
+    def _drawn(self, count: int) -> list[Equations]:
+        """What is known with so many options drawn at random instead, a few times over."""
+        if count == 0:
+            return [self._separation.measured]
+        generator = np.random.default_rng(0)
+        draws = [generator.choice(len(self._brings), count, replace=False).tolist() for _ in range(DRAWS)]
+        return [sum((self._brings[index] for index in drawn), self._separation.measured) for drawn in draws]
 
     def _all(self, equations: Equations) -> list[float]:
         return [self._separation.d_prime(equations, *pair) for pair in self._pairs]
@@ -208,10 +229,13 @@ class _Choice:
             difference=self._separation.difference(known, brings, *most),
         )
 
-    def _pair(self, pair: tuple[int, int | None], before: Equations, after: Equations) -> Pair:
+    def _pair(
+        self, pair: tuple[int, int | None], before: Equations, after: Equations, drawn: Sequence[Equations]
+    ) -> Pair:
         true, rival = self._names(pair)
         now, then = (self._separation.d_prime(equations, *pair) for equations in (before, after))
-        return Pair(true, rival, now, then, self._reachable[pair])
+        by_chance = rms(np.array([self._separation.d_prime(equations, *pair) for equations in drawn]))
+        return Pair(true, rival, now, then, self._reachable[pair], by_chance)
 
     def _names(self, pair: tuple[int, int | None]) -> tuple[str, str | None]:
         rivals = self._separation.rivals

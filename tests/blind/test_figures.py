@@ -9,6 +9,7 @@ from bench.blind.figures import Figure, figures
 from bench.blind.judge import Result
 from bench.blind.lab_answer import LabAnswer
 from bench.blind.oracle import Standing
+from bench.blind.settling import Settled
 
 
 def _result(
@@ -116,3 +117,28 @@ def test_calibration_counts_what_was_stated() -> None:
     assert by_d["d' 4 .. 5"] == (2, 0.5)
     assert by_d["d' >= 7"] == (1, 1.0)
     assert by_d["d' 0 .. 2"][0] == 0
+
+
+def test_the_first_three_are_those_of_the_ranking_and_the_name_given() -> None:
+    third = replace(_result("single", "spring", (), 0.2, 6.5), answer=None)
+    answer = LabAnswer("nothing", (), (), False, 0.2, 1.0, 0.02, ("gravity", "offset", "spring"))
+    results = [
+        replace(third, answer=answer),
+        replace(third, answer=replace(answer, ranked=("gravity", "offset", "viscous_asymmetry"))),
+        _result("single", "spring", ("spring",), 1.0, 9.0),
+        _result("single", "spring", (), 0.1, 6.5),  # too small to be asked for
+    ]
+    three = _figure(results, "among the first three")
+    assert (three.items, three.measured) == (3, pytest.approx(2 / 3))
+
+
+def test_suggested_trials_are_held_against_random_ones() -> None:
+    one = _result("settle", "spring", ("spring",), 1.0, 9.0)
+    settled = [
+        Settled(("spring",), 1.0, predicted, 6, ("spring",), by_chance) for predicted, by_chance in ((4, 2), (3, 3))
+    ]
+    gain = _figure([*(replace(one, settled=found) for found in settled), one], "over that with random ones")
+    assert (gain.items, gain.measured) == (2, pytest.approx(2.0))  # of 4 and 1
+    assert gain.reached
+    old = {"rivals": [], "before": 1.0, "predicted": 2.0, "trials": 6, "named": []}
+    assert Settled.from_json(old).by_chance == 0.0

@@ -15,7 +15,9 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.fit import fit_model
 from compensator.lab.separation import Separation
 from compensator.lab.suggestion import SURE, Option, suggest
+from tests.lab.ramps import HORIZONTAL, MODEL, ramp_trial, swing
 from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, plans, recordings
+from tests.lab.test_breakaways import falling
 
 BENCH = Bench(duration_s=9.0)
 LIGHT, HEAVY = (0.1, 0.15), (0.0, 0.5)
@@ -130,3 +132,46 @@ def test_rivals_that_no_trial_separates_are_named(fit, diagnosis):
 def test_without_a_ranking_there_is_nothing_to_separate(fit, diagnosis):
     with pytest.raises(UnusableDataError, match="ranks no effect"):
         suggest(fit, replace(diagnosis, candidates=[], classes=[], verdict="nothing"), [])
+
+
+IN_STEP = ((0.3, 0.5), (1.5, 0.15), (6.0, 0.05))  # rest [s] and rate [N m/s]: the longer the one, the slower the other
+
+
+@pytest.fixture(scope="module")
+def ramps_in_step():
+    """Ramps of which nobody can say whether rest or rate did it, and a maker of more."""
+    random = np.random.default_rng(5)
+
+    def ramp(name, dwell_s, rate):
+        scatter = 1.0 + 0.01 * random.standard_normal()
+        return ramp_trial(name, dwell_s, rate, lambda rest_s, r: scatter * falling(rest_s, r), random)[0]
+
+    made = [swing(f"swing-{hz}", hz, random) for hz in (0.15, 0.3, 0.5, 0.7)]
+    made += [ramp(f"ramp-{rate}-{repeat}", dwell_s, rate) for repeat in range(6) for dwell_s, rate in IN_STEP]
+    return (
+        fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL),
+        ramp,
+        swing("more", 0.4, random),
+    )
+
+
+def test_a_slow_ramp_after_a_short_rest_tells_rate_from_dwell(ramps_in_step):
+    fit, ramp, more = ramps_in_step
+    found = diagnose(fit)
+    assert set(found.classes[0]) == {"rate_dependent_breakaway", "dwell_strengthening"}
+    offered = {"swing": more, "in step": ramp("a", *IN_STEP[2]), "crossed": ramp("b", 0.3, 0.05)}
+    suggested = suggest(fit, found, [Option(name, 1.0, (one,)) for name, one in offered.items()])
+    assert suggested.picks[0].name == "crossed"
+    assert all(pair.before < 5.0 and pair.after > SURE for pair in suggested.pairs)
+    assert all(pair.before < pair.by_chance < pair.after for pair in suggested.pairs)
+
+
+def test_predicted_d_prime_of_breakaway_comes_true(ramps_in_step):
+    fit, ramp, _ = ramps_in_step
+    suggested = suggest(fit, diagnose(fit), [Option("crossed", 1.0, (ramp("a", 0.3, 0.05),))])
+    assert suggested.pairs
+    recorded = [trial.signals.recording for trial in fit.dataset.trials] + [
+        ramp(f"more-{n}", 0.3, 0.05) for n in (1, 2)
+    ]
+    last = diagnose(fit_model(make_dataset(recorded, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL))
+    assert last.classes[0] == ("rate_dependent_breakaway",)

@@ -14,6 +14,8 @@ from bench.experiments.waveforms import WAVEFORMS
 
 LOAD_SHARES = (0.0, 0.5, 1.0)  # of the heaviest load
 SPEED_SHARES = (0.15, 0.6)  # of the speed limit
+RATES_A_S = (0.03, 0.1, 0.3, 1.0, 3.0)  # of breakaway ramps: a hundredfold
+DWELLS_S = (0.2, 1.0, 5.0, 20.0)  # at rest before each
 LONGEST_S = 90.0
 HANG_S = 30.0  # that a person takes to change the load
 
@@ -39,18 +41,20 @@ class Choice:
         return " ".join([self.kind, *(f"{name}={_text(value)}" for name, value in self.parameters.items())])
 
 
-def choices(configuration: BenchConfiguration, hung_by_hand: bool) -> list[Choice]:
+def choices(configuration: BenchConfiguration, hung_by_hand: bool, from_rest: bool = False) -> list[Choice]:
     """Every experiment that the limits allow, of one or two trials each.
 
     Args:
         configuration: of the bench.
         hung_by_hand: a person hangs the loads, which takes time.
+        from_rest: what is to be told apart shows at starts from rest: ramps of each rate after each rest, and no other.
     """
     found = []
     for kind in KINDS.values():
-        if kind.name == commissioned.KIND:
+        if kind.name == commissioned.KIND or (from_rest and kind.name not in _FROM_REST):
             continue
-        for values in _VALUES.get(kind.name, _plainly)(kind, configuration):
+        values_of = (_FROM_REST if from_rest else _VALUES).get(kind.name, _plainly)
+        for values in values_of(kind, configuration):
             choice = _choice(kind, values, configuration, HANG_S if hung_by_hand else 0.0)
             if choice is not None:
                 found.append(choice)
@@ -104,6 +108,13 @@ def _steps(_: ExperimentKind, configuration: BenchConfiguration) -> Values:
         yield {"load_kg": load_kg, "repeats": 2, "slowest_rad_s": 0.2 * fastest_rad_s, "fastest_rad_s": fastest_rad_s}
 
 
+def _breakaway_ramps(_: ExperimentKind, configuration: BenchConfiguration) -> Values:
+    for load_kg in _loads(configuration):
+        for rate_a_s in RATES_A_S:
+            for dwell_s in DWELLS_S:
+                yield {"load_kg": load_kg, "rates_a_s": [rate_a_s], "dwells_s": [dwell_s]}
+
+
 def _plainly(kind: ExperimentKind, configuration: BenchConfiguration) -> Values:
     """Any other kind at its defaults, with each load, once."""
     fields = kind.parameters.model_fields
@@ -122,6 +133,8 @@ _VALUES: dict[str, Callable[[ExperimentKind, BenchConfiguration], Values]] = {
     "steps": _steps,
 }
 """What is tried of each kind; kinds that are not here are tried as they are."""
+_FROM_REST: dict[str, Callable[[ExperimentKind, BenchConfiguration], Values]] = {"breakaway-ramps": _breakaway_ramps}
+"""The same where starts from rest are what tells."""
 
 
 def _loads(configuration: BenchConfiguration) -> list[float]:
