@@ -127,7 +127,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
     if len(time) < shortest:
         raise UnusableDataError(
             f"recording '{recording.name}' has {len(time)} samples; at least {shortest} are needed "
-            f"to filter at {cutoff_hz:.3g} Hz; record longer, or leave the trial out"
+            f"to filter at {cutoff_hz:.3g} Hz; record longer, choose a higher cut-off, or leave the trial out"
         )
     raw_position = recording.channels[position_name]
     position = low_pass(_resample(time, raw_time, raw_position), DIFFERENTIATION_FACTOR * cutoff_hz, rate)

@@ -148,7 +148,7 @@ REFUSED = {
     "holes": Bad(every(put("torque_n_m", every_other_empty)), "torque_n_m is missing in 50% of the samples"),
     "milliseconds": Bad(every(put("time_s", lambda t: 1e3 * t)), "check that time_s is in seconds"),
     "a trial of two samples": Bad(first(part(2)), "has 2 samples; at least"),
-    "a short trial": Bad(first(part(50)), "record longer, or leave the trial out"),
+    "a short trial": Bad(first(part(50)), "record longer, choose a higher cut-off, or leave the trial out"),
     "degrees": Bad(every(in_degrees), r"velocity_rad_s differ by a factor of 57.* \(degrees\?\)"),
     "degrees beside a set point": Bad(
         every(add("target_rad", lambda c: np.radians(c["position_rad"]))),

@@ -2,7 +2,9 @@
 
 import importlib
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from bench import study
@@ -12,7 +14,11 @@ from bench.service.json_numbers import plain
 from bench.service.suggestion_models import Extended, Suggested
 from bench.study.errors import StudyError
 from bench.study.extend import note_for
+from bench.study.material import load
 from bench.study.next_trial.options import LONGEST_S, choices
+from bench.study.next_trial.predict import predicted
+from compensator.lab.assembly import more_trials
+from compensator.lab.breakaway_rows import breakaway_rows
 
 SUGGEST = importlib.import_module("bench.study.suggest")  # the package has the function of that name
 MOTIONS = {
@@ -69,6 +75,24 @@ def test_every_option_is_one_that_the_bench_may_run():
     inside = choices(CONFIGURATION.model_copy(update={"limits": narrow}), hung_by_hand=False)
     assert all(one.parameters["amplitude_rad"] < 0.5 for one in inside if one.kind == "excitation")
     assert "steps" not in {one.kind for one in inside}
+
+
+def test_where_starts_from_rest_tell_ramps_of_every_rate_are_run_on_the_model_after_every_rest(store, made):
+    found = choices(CONFIGURATION, hung_by_hand=False, from_rest=True)
+    assert {one.kind for one in found} == {"breakaway-ramps"}
+    told = [(one.parameters["rates_a_s"][0], one.parameters["dwells_s"][0]) for one in found]
+    assert max(rate for rate, _ in told) >= 10.0 * min(rate for rate, _ in told)
+    assert max(dwell for _, dwell in told) >= 10.0 * min(dwell for _, dwell in told)
+    number = store.trial(made["trials"][0]["trial_id"]).experiment_id
+    material = load(store, study.create_study(store, "quick", [number], cutoff_hz=8.0)["study_id"])
+    fit = material.fit(list(material.definition.base))
+    chosen = [one for one in found if one.parameters["load_kg"] == 0.0 and one.parameters["dwells_s"] == [2.0]][:2]
+    dataset = more_trials(fit.dataset, [one for o in predicted(fit, CONFIGURATION, chosen) for one in o.recordings])
+    starts = breakaway_rows(replace(fit, dataset=dataset, training=np.ones(len(dataset.trial_index), dtype=bool)))
+    assert len(starts) == 4  # there and back, each
+    np.testing.assert_allclose(starts.direction, [1.0, -1.0, 1.0, -1.0])
+    assert (starts.rest_s > 2.0).all()
+    assert starts.rate[2] > 2.0 * starts.rate[0]
 
 
 def test_a_suggestion_can_be_started_as_it_is(store, made, found):

@@ -14,8 +14,8 @@ from bench.experiments.waveforms import WAVEFORMS
 
 LOAD_SHARES = (0.0, 0.5, 1.0)  # of the heaviest load
 SPEED_SHARES = (0.15, 0.6)  # of the speed limit
-RATES_A_S = (0.03, 0.1, 0.3, 1.0, 3.0)  # of breakaway ramps: a hundredfold
-DWELLS_S = (0.2, 1.0, 5.0, 20.0)  # at rest before each
+RATES_A_S = (0.03, 0.1, 0.3, 1.0)  # of breakaway ramps: quicker ones show the servo
+DWELLS_S = (0.2, 2.0, 20.0)  # at rest before each
 LONGEST_S = 90.0
 HANG_S = 30.0  # that a person takes to change the load
 
