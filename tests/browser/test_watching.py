@@ -60,8 +60,7 @@ def test_what_the_bench_asks_of_its_person_is_said_in_every_view_and_answered_on
     page.get_by_role("button", name="Continue").click()
     for each in (page, other):
         each.get_by_text("Hang 100 g at the tip of the arm").wait_for(state="detached")
-    page.locator(".badge.running").wait_for()
-    for _ in range(200):
+    for _ in range(600):
         if drive.exchanges:
             break
         page.wait_for_timeout(50)
@@ -105,7 +104,7 @@ def test_a_frozen_picture_stays_while_the_joint_goes_on(service, open_page):
 def test_the_load_is_followed_with_its_band(service, open_page):
     page = open_page()
     page.get_by_role("button", name="Start", exact=True).wait_for()
-    service.start("steps", pace="real-time", repeats=3)
+    service.start("steps", pace="real-time", repeats=30)
     live = page.get_by_label("Live", exact=True)
     live.locator(".legend-entry").get_by_text("load current (band: 95 %)").wait_for()
     live.locator(".readings").get_by_text(re.compile(r"^−?\d\.\d{3} ± 0\.\d{3} A$")).wait_for()

@@ -12,18 +12,21 @@ export function effectView(place, name) {
   const [text, picture] = [h("div"), h("div", { class: "example" })];
   let plot = null;
   let left = false;
-  replace(place, h("p", {}, h("a", { href: "#learn" }, "All effects")), text, panel("A simulated example", picture));
+  replace(place, h("p", {}, h("a", { href: "#learn" }, "All effects")), text);
   const described = attempt(text, async () => {
     const { items } = await get("/effects");
     const effect = items.find((one) => one.name === name);
     if (!effect) throw new Error(`There is no effect ${name}.`);
     replace(text, description(effect, items));
   });
+  const shown = described.then(() => { // what is above it does not push it down
+    if (!left) place.append(panel("A simulated example", picture));
+  });
   attempt(picture, async () => {
-    const example = await get(`/effects/${encodeURIComponent(name)}/example`);
+    const [example] = await Promise.all([get(`/effects/${encodeURIComponent(name)}/example`), shown]);
     if (!left) plot = examplePlot(picture, example);
   }, { busy: "Computing …" });
-  together(place, [described]);
+  together(place, [shown]);
   return () => {
     left = true;
     plot?.close();

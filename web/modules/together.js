@@ -1,6 +1,6 @@
 // A view shows itself when its first answers are there, all at once: nothing jumps while it fills.
 
-const LONGEST_MS = 1000; // then what there is is shown
+const LONGEST_MS = 5000; // then what there is is shown; STOP, in the head of the page, waits for nothing
 
 export function together(place, firstAnswers) {
   const timer = setTimeout(() => show(), LONGEST_MS);
