@@ -15,7 +15,7 @@ from scipy.signal import butter, sosfiltfilt, welch
 from compensator.lab.effort import Effort
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.facts import Facts
-from compensator.lab.processing import Signals, low_pass, make_signals, sample_rate_hz
+from compensator.lab.processing import Signals, low_pass, make_signals, sample_rate_hz, shortest_samples
 from compensator.lab.recording import FloatArray, Recording
 
 COHERENT = 0.5
@@ -66,10 +66,23 @@ def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Fact
     edges = LOWEST_HZ * 2.0 ** (np.arange(64) / BANDS_PER_OCTAVE)
     edges = np.append(edges[edges < 0.99 * highest_hz], max(highest_hz, LOWEST_HZ))
     for low, high in pairwise(edges):
-        signals = [make_signals(recording, effort, facts, high) for recording in recordings]
+        signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, float(high))]
         if _explained_share(signals, low, high) < COHERENT:
             return float(low)
     return float(highest_hz)
+
+
+def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[Recording]:
+    """Those that can be filtered so low; all, if none can, for the error to be raised.
+
+    A quick start from rest is over in two seconds: beside longer motion it has no say in what is noise.
+    """
+    kept = []
+    for recording in recordings:
+        rate_hz, time_s = sample_rate_hz(recording), recording.channels["time_s"]
+        if rate_hz * float(time_s[-1] - time_s[0]) >= shortest_samples(rate_hz, cutoff_hz):
+            kept.append(recording)
+    return kept or recordings
 
 
 def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -> float:

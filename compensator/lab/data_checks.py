@@ -17,6 +17,8 @@ POOR = 0.4  # of the effort: what is left where inertia and friction would be ne
 MIRRORED = 0.5  # of the error of one trial: the same
 SUSPECT = 0.2  # of the effort: an error from which clocks are tried
 MOST_LAG_S, LAG_STEP_S = 2.0, 0.1
+LEAST_LAG_S = 0.3  # less may be a delay of the chain, which is an effect of its own
+MOVED = 0.6  # of the error: what moving the effort in time must leave at most
 FEWEST_ROWS = 20  # of a trial whose sign is judged
 TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
 WORSE = 1.5  # times the error that the loads as told leave, for that to be sure
@@ -94,7 +96,7 @@ def _late(fit: Fit) -> list[str]:
             effort - columns @ solve(columns, effort, fit.bounds).coefficients, effort
         )
     best = min(errors, key=lambda lag_s: errors[lag_s])
-    if abs(best) < LAG_STEP_S or errors[best] > MIRRORED * error:
+    if abs(best) < LEAST_LAG_S or errors[best] > MOVED * error:
         return []
     which = "behind" if best > 0.0 else "ahead of"
     return [

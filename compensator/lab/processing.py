@@ -103,6 +103,11 @@ def sample_rate_hz(recording: Recording) -> float:
     return 1.0 / float(np.median(np.diff(time)))
 
 
+def shortest_samples(rate_hz: float, cutoff_hz: float) -> int:
+    """How many samples a recording must have to be filtered: less is all edge."""
+    return int(np.ceil(2 * EDGE_PERIODS * rate_hz / cutoff_hz)) + 6 * FILTER_ORDER
+
+
 def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: float) -> Signals:
     """Resample, filter and differentiate one recording.
 
@@ -123,7 +128,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
     rate = sample_rate_hz(recording)
     period = 1.0 / rate
     time = _uniform(raw_time, period)
-    shortest = int(np.ceil(2 * EDGE_PERIODS * rate / cutoff_hz)) + 6 * FILTER_ORDER
+    shortest = shortest_samples(rate, cutoff_hz)
     if len(time) < shortest:
         raise UnusableDataError(
             f"recording '{recording.name}' has {len(time)} samples; at least {shortest} are needed "

@@ -5,6 +5,8 @@ import pytest
 
 from compensator.lab.bandwidth import LOWEST_HZ, choose_cutoff_hz, motion_bandwidth_hz, noise_corner_hz
 from compensator.lab.effort import choose_effort
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.recording import Recording
 from tests.lab.synthetic import FACTS, Bench, Plan, recordings
 
 
@@ -45,3 +47,12 @@ def test_an_effort_of_mere_noise_has_its_corner_at_the_bottom():
     made, effort = swing(1.0, Bench())
     made[0].channels["torque_n_m"][:] = random.standard_normal(len(made[0]))
     assert noise_corner_hz(made, effort, FACTS, 30.0) == LOWEST_HZ
+
+
+def test_a_start_from_rest_of_two_seconds_has_no_say_in_what_is_noise():
+    made, effort = swing(3.0, Bench(noise=0.001))
+    short = {name: values[:400] for name, values in made[0].channels.items()}  # too short to be filtered at 2.8 Hz
+    both = [*made, Recording("start", "ramps", {}, short)]
+    assert noise_corner_hz(both, effort, FACTS, 12.0) == noise_corner_hz(made, effort, FACTS, 12.0)
+    with pytest.raises(UnusableDataError, match="'start' has 400 samples; at least"):
+        noise_corner_hz(both[1:], effort, FACTS, 12.0)
