@@ -49,13 +49,14 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     weak = [one for one in singles if _standing(one).detectability < MUST_NOT_NAME]
     shown = [one for one in singles if _standing(one).ratio >= SHOWN]
     findable = [one for one in shown if _standing(one).ratio >= _standing(one).smallest]
+    ranked = [one for one in shown if _answer(one).ranked is not None]
     pairs = [one for one in answered if one.family == "pair" and _both_clear(one)]
     memory = [one for one in answered if one.family == "memory"]
     settled = [one for one in answered if one.settled is not None and one.settled.predicted >= MUST_NAME]
     return [
         *_false_alarms(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
-        _share("truth among the first three, r >= 0.15", 0.98, shown, _among_three),
+        _share("truth among the first three, r >= 0.15", 0.98, ranked, _among_three),
         _share("truth in the class, r >= 0.15", 0.97, shown, _in_class),
         _share("the same, where theory finds it nine times in ten", 0.97, findable, _in_class),
         _class_size([one for one in shown if _in_class(one)]),
@@ -188,7 +189,7 @@ def _in_class(one: Result) -> bool:
 
 
 def _among_three(one: Result) -> bool:
-    return one.names[0] in (*_first(one)[:1], *_answer(one).ranked)
+    return one.names[0] in (*_first(one)[:1], *(_answer(one).ranked or ()))
 
 
 def _flagged(one: Result) -> bool:

@@ -74,7 +74,7 @@ class Result:
         if values["answer"] is not None:
             answer = values["answer"]
             named = tuple(tuple(names) for names in answer["named"])
-            lists = {name: tuple(answer.get(name, ())) for name in ("first", "ranked")}
+            lists = {name: tuple(answer[name]) for name in ("first", "ranked") if answer.get(name) is not None}
             made["answer"] = LabAnswer(**{**answer, **lists, "named": named})
         made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
         made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])

@@ -29,7 +29,7 @@ class LabAnswer:
         unknown: the last step says that none of the catalogue is it, or that something remains.
         p_value, detectability: of the first diagnosis and its best candidate.
         error: held-out, of the model with all that was named in it.
-        ranked: the first three effects of the first diagnosis, named or not.
+        ranked: the first three effects of the first diagnosis, named or not; None in older results, which do not tell.
     """
 
     verdict: str
@@ -39,7 +39,7 @@ class LabAnswer:
     p_value: float
     detectability: float
     error: float
-    ranked: tuple[str, ...] = ()
+    ranked: tuple[str, ...] | None = None
 
 
 def base_fit(recordings: Sequence[Recording], rig: Rig) -> Fit:

@@ -125,8 +125,9 @@ def test_the_first_three_are_those_of_the_ranking_and_the_name_given() -> None:
     results = [
         replace(third, answer=answer),
         replace(third, answer=replace(answer, ranked=("gravity", "offset", "viscous_asymmetry"))),
-        _result("single", "spring", ("spring",), 1.0, 9.0),
-        _result("single", "spring", (), 0.1, 6.5),  # too small to be asked for
+        replace(third, answer=replace(answer, first=("spring",), ranked=())),
+        replace(_result("single", "spring", (), 0.1, 6.5), answer=answer),  # too small to be asked for
+        _result("single", "spring", ("spring",), 1.0, 9.0),  # an older result does not tell
     ]
     three = _figure(results, "among the first three")
     assert (three.items, three.measured) == (3, pytest.approx(2 / 3))
