@@ -26,12 +26,14 @@ class Bursts:
         largest: scatter of the worst stretch over the median one's; NaN where there are too few stretches.
         stretches: that scatter LARGER times as much as the median one, and more; of: how many there are.
         trials: indices of their trials.
+        share: of the residual's power that is theirs.
     """
 
     largest: float
     stretches: int
     of: int
     trials: tuple[int, ...]
+    share: float = 0.0
 
     @property
     def are_there(self) -> bool:
@@ -60,4 +62,6 @@ def bursts_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Bursts
     wild = enough & (scatter >= LARGER * usual)
     _, first = np.unique(stretch, return_index=True)
     trials = np.unique(dataset.trial_index[rows][first[wild]])
-    return Bursts(float(scatter[enough].max() / usual), int(wild.sum()), int(enough.sum()), tuple(map(int, trials)))
+    share = float(power[wild].sum() / power.sum())
+    largest = float(scatter[enough].max() / usual)
+    return Bursts(largest, int(wild.sum()), int(enough.sum()), tuple(map(int, trials)), share)

@@ -100,7 +100,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
         bursts = _bursts(gathered)
         change = change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights)
-        if left.share > LEAST_SHARE and bursts.are_there:
+        if bursts.are_there and left.share * np.sqrt(bursts.share) > LEAST_SHARE:
             names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
             sentence, remains = bursts_in_words(bursts, names, left.share, p_value), True
         elif left.is_more_than_noise or change is not None:
@@ -172,7 +172,8 @@ def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
     dataset, rows = gathered.fit.dataset, gathered.rows
     base = left.bases[best.block.base]
     remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
-    change = change_of(dataset, rows, base, gathered.weights)
+    steady = gathered.show_in == "sliding"  # a formula of memory that is nearly right leaves some in every stretch
+    change = change_of(dataset, rows, base, gathered.weights) if steady else None
     if change is None and not remainder.is_more_than_noise:
         return []
     rest = screen(left.bases, left.curves.blocks, dataset.block_index[rows])

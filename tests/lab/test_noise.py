@@ -90,3 +90,5 @@ def test_bursts_are_stretches_that_scatter_more_than_the_others():
     found = bursts_of(dataset(), residual, ALL)
     assert (found.are_there, found.stretches, found.trials) == (True, 1, (1,))
     assert found.largest > 4.0
+    burst = residual[ROWS : ROWS + 40]
+    assert found.share == pytest.approx(float(burst @ burst) / float(residual @ residual))
