@@ -11,7 +11,7 @@ discrepancy). So candidates are judged on top of
   one more effect (Hamada, Wu 1992: effect heredity).
 """
 
-from itertools import combinations
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -32,8 +32,9 @@ def discrepancy_columns(fit: Fit) -> FloatArray:
     """What formulas leave open beside their shapes, over all rows, shape (N, k)."""
     dataset = fit.dataset
     terms = [term for term in fit.terms if np.any(term.coefficients)]
-    full_rate = [np.array([*_own(terms, trial.motion), *_products(terms, trial.motion)]) for trial in dataset.trials]
-    return dataset.stack(full_rate) if len(full_rate[0]) else np.empty((len(dataset.effort), 0))
+    full_rate = (np.array([*_own(terms, trial.motion), *_products(terms, trial.motion)]) for trial in dataset.trials)
+    first = next(full_rate)  # the others one by one: all of them at the full rate would need much memory
+    return dataset.stack(chain([first], full_rate)) if len(first) else np.empty((len(dataset.effort), 0))
 
 
 def _tangents(fit: Fit) -> list[FloatArray]:

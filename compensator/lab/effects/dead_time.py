@@ -8,7 +8,7 @@ from compensator.lab.recording import FloatArray
 
 def shapes(_: Motion) -> list[Shape]:
     """Shares of the largest effort below which the predicted effort is too uncertain to tell its sign."""
-    return [(0.01,), (0.02,), (0.05,), (0.1,)]
+    return [(0.01,), (0.02,), (0.05,)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
