@@ -41,12 +41,12 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
 def is_confirmed(candidate: Candidate) -> bool:
     """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
 
-    Near reversals, what explains nothing unless it is larger, smaller, or of the other sign than it can be, is the
-    shadow of something else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials
-    hold most of the evidence, as those at the highest speed do of drag: there a very strong score stands without them,
-    if the error falls at all.
+    What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
+    else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
+    evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
+    falls at all.
     """
-    return is_sure(candidate) and (candidate.physical or candidate.rows != "moving")
+    return is_sure(candidate) and candidate.physical
 
 
 def is_sure(candidate: Candidate) -> bool:

@@ -182,7 +182,7 @@ def _fit(
     if len(plain) == len(effects):
         return fit
     fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept})
-    return _settle(fit, effects, find_shapes(with_own_prediction(fit), effects, rows, kept, weight))
+    return _settle(fit, effects, find_shapes(with_own_prediction(fit), effects, rows, kept, weight, fit.shapes))
 
 
 def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> Fit:

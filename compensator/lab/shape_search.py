@@ -15,6 +15,7 @@ from compensator.lab.linear import orthonormal
 from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
 
+SWEEPS = 2  # the first shape is found while the others' are guesses
 REFINEMENTS = 24  # evaluations between the grid's values
 
 
@@ -25,9 +26,14 @@ def first_shapes(dataset: Dataset, effects: Sequence[Effect]) -> dict[str, Shape
 
 
 def find_shapes(
-    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
+    dataset: Dataset,
+    effects: Sequence[Effect],
+    rows: BoolArray,
+    kept: Mapping[str, Shape],
+    weight: FloatArray,
+    start: Mapping[str, Shape] | None = None,
 ) -> dict[str, Shape]:
-    """The shape of every effect that has one, each searched with the others held.
+    """The shape of every effect that has one, each searched with the others held; twice, where there are others.
 
     Args:
         dataset: of the rows.
@@ -35,10 +41,12 @@ def find_shapes(
         rows: to fit to, shape (N,).
         kept: shapes that are not searched but taken as they are.
         weight: of each row, shape (N,).
+        start: shapes that the others have until they are searched; else the middle of their grids.
     """
-    shapes = {**first_shapes(dataset, effects), **kept}
-    for effect in effects:
-        if effect.shape_names and effect.name not in kept:
+    shapes = {**first_shapes(dataset, effects), **(start or {}), **kept}
+    searched = [effect for effect in effects if effect.shape_names and effect.name not in kept]
+    for _ in range(min(len(searched), SWEEPS)):
+        for effect in searched:
             others = [dataset.columns(other, shapes.get(other.name, ())) for other in effects if other is not effect]
             fixed = np.concatenate(others, axis=1)[rows] if others else np.empty((int(rows.sum()), 0))
             search = _Search(dataset, effect, rows, fixed, weight[rows])

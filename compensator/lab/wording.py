@@ -41,9 +41,8 @@ def answer_in_words(
         )
     title = best.effect.title
     also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
-    sign = "" if best.physical else "; the sign found is not physical for it, so the shape fits, the name may not"
     return (
-        f"{title} is missing{also}{sign}: adding it changes the held-out error from {best.before:.2%} to "
+        f"{title} is missing{also}: adding it changes the held-out error from {best.before:.2%} to "
         f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
         f"{chance_in_words(p_value)})."
     )

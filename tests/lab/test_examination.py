@@ -25,3 +25,11 @@ def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, co
     gained = Gain(gain, low, 2.0 * gain)
     candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, True, None)
     assert is_confirmed(candidate) == confirmed
+
+
+@pytest.mark.parametrize("rows", ["sliding", "moving"])
+def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
+    gained = Gain(0.2, 0.1, 0.3)
+    for physical in (True, False):
+        candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, physical, None, rows)
+        assert is_confirmed(candidate) == physical

@@ -70,6 +70,14 @@ def test_the_stribeck_shape_is_found(speed, exponent):
     assert fit.shapes["stribeck"] == pytest.approx((speed, exponent), rel=0.12)
 
 
+def test_a_shape_is_searched_again_once_those_of_the_others_are_found():
+    joint = Joint(extra=lambda x: 0.06 * np.sin(5.0 * x.q + 0.4) * np.sign(x.v))
+    dataset = make_dataset(recordings(joint, bench=QUIET), FACTS, Processing(8.0))
+    fit = fit_model(dataset, [*DEFAULT, "position_periodic_friction"])
+    assert fit.shapes["position_periodic_friction"] == (5.0,)
+    assert fit.shapes["stribeck"] == pytest.approx((0.25, 1.0), rel=0.12)
+
+
 def test_shapes_that_are_given_are_kept():
     dataset = make_dataset(recordings(), FACTS, Processing(8.0))
     fit = fit_model(dataset, DEFAULT, shapes={"stribeck": (0.4, 1.5)})
