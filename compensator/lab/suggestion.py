@@ -183,11 +183,11 @@ class _Choice:
         )
 
     def _drawn(self, count: int) -> list[Equations]:
-        """What is known with so many options drawn at random instead, a few times over."""
+        """What is known with so many options drawn at random instead, a few times over; an option may be drawn again."""
         if count == 0:
             return [self._separation.measured]
         generator = np.random.default_rng(0)
-        draws = [generator.choice(len(self._brings), count, replace=False).tolist() for _ in range(DRAWS)]
+        draws = [generator.integers(len(self._brings), size=count).tolist() for _ in range(DRAWS)]
         return [sum((self._brings[index] for index in drawn), self._separation.measured) for drawn in draws]
 
     def _all(self, equations: Equations) -> list[float]:
