@@ -183,7 +183,7 @@ class _Choice:
         )
 
     def _drawn(self, count: int) -> list[Equations]:
-        """What is known with so many options drawn at random instead, a few times over; an option may be drawn again."""
+        """What is known with so many options drawn at random instead, a few times over; one may come again."""
         if count == 0:
             return [self._separation.measured]
         generator = np.random.default_rng(0)
