@@ -5,6 +5,7 @@ from scipy.stats import spearmanr
 
 from compensator.lab.fit import Fit
 from compensator.lab.linear import solve, solve_without
+from compensator.lab.stuck_sensor import stuck_positions
 from compensator.lab.validation import relative_error, rms
 
 ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
@@ -19,7 +20,7 @@ SUSPECT = 0.2  # of the effort: an error from which clocks are tried
 MOST_LAG_S, LAG_STEP_S = 2.0, 0.1
 LEAST_LAG_S = 0.3  # less may be a delay of the chain, which is an effect of its own
 MOVED = 0.6  # of the error: what moving the effort in time must leave at most
-FEWEST_ROWS = 20  # of a trial whose sign is judged
+FEWEST_ROWS = 20  # of a trial that is judged
 TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
 WORSE = 1.5  # times the error that the loads as told leave, for that to be sure
 ORDERED = 0.95  # rank correlation of two conditions over the trials
@@ -27,9 +28,10 @@ WARMER_K = 2.0
 
 
 def fatal_problems(fit: Fit) -> list[str]:
-    """Problems that make any ranking of effects one of noise: wrong signs, units and clocks."""
+    """Problems that make any ranking of effects one of noise: stuck sensors, wrong signs, units and clocks."""
+    stuck = stuck_positions([trial.signals.recording for trial in fit.dataset.trials], fit.dataset.facts)
     found = [*_late(fit), *_wrong_sign(fit)][:1]  # what is late looks turned, too
-    return [*found, *_mirrored_trials(fit), *_load_units(fit)]
+    return [*stuck, *found, *_mirrored_trials(fit), *_load_units(fit)]
 
 
 def data_problems(fit: Fit) -> list[str]:
@@ -171,7 +173,8 @@ def _odd_trials(fit: Fit) -> list[str]:
     errors = {}
     for index in np.unique(dataset.trial_index[fit.training]):
         rows = fit.training & (dataset.trial_index == index)
-        errors[int(index)] = rms(fit.residual[rows])
+        if int(rows.sum()) >= FEWEST_ROWS:
+            errors[int(index)] = rms(fit.residual[rows])
     if len(errors) < FEWEST_TRIALS_TO_COMPARE:
         return []
     median = float(np.median(list(errors.values())))
@@ -200,14 +203,15 @@ def _few_usable(fit: Fit) -> list[str]:
 
 
 def _unused(fit: Fit) -> list[str]:
+    """Trials of no use to any effect. Those that only reverse still tell of effects with memory."""
     dataset = fit.dataset
-    used = set(np.unique(dataset.trial_index[dataset.counted]).tolist())
+    used = set(np.unique(dataset.trial_index[dataset.in_regimes("moving")]).tolist())
     idle = [f"'{t.signals.recording.name}'" for index, t in enumerate(dataset.trials) if index not in used]
     if not idle:
         return []
     return [
-        f"not used, since no row of theirs counts ({dataset.rows}): {', '.join(idle)}; the joint rests, reverses or "
-        "crosses its free play all the time: record slower or longer motion in one direction"
+        f"not used, since the joint does not move in any usable row of theirs: {', '.join(idle)}; record motion, or "
+        "leave them out"
     ]
 
 

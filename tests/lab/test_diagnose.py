@@ -9,6 +9,7 @@ from scipy.stats import binom
 from compensator.lab import diagnose as diagnose_module
 from compensator.lab.assembly import make_dataset
 from compensator.lab.catalogue import catalogue, default_effects
+from compensator.lab.data_checks import data_problems
 from compensator.lab.dataset import Processing
 from compensator.lab.diagnose import diagnose
 from compensator.lab.diagnosis import Diagnosis
@@ -230,6 +231,16 @@ def test_one_disturbed_trial_is_named():
     disturbed += 0.2 * np.sin(2.0 * made[4].channels["time_s"])
     found = diagnosis_of(made)
     assert any(f"'{made[4].name}' is unlike the others" in problem for problem in found.data_problems)
+
+
+def test_a_trial_of_rest_is_not_used_and_one_that_only_reverses_is():
+    made = recordings(seed=3)
+    made[2].channels["position_rad"][:] = made[2].channels["position_rad"][0]
+    made[4].channels["position_rad"][:] = 0.02 * np.sin(2.0 * np.pi * 3.0 * made[4].channels["time_s"])
+    problems = data_problems(fit_model(make_dataset(made, FACTS, Processing()), DEFAULT))
+    (told,) = [problem for problem in problems if problem.startswith("not used")]
+    assert made[2].name in told
+    assert made[4].name not in told
 
 
 def test_a_trial_at_the_limit_of_the_duty_is_named():

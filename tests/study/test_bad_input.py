@@ -106,6 +106,13 @@ def against(recording: Recording) -> None:
     recording.channels["velocity_rad_s"] = -speed(recording.channels)
 
 
+def stuck_half_the_time(recording: Recording) -> None:
+    recording.channels["velocity_rad_s"] = speed(recording.channels)
+    count = np.arange(len(recording))
+    seen = np.where(count % 300 < 150, count // 300 * 300, count)
+    recording.channels["position_rad"] = recording.channels["position_rad"][seen]
+
+
 def duty_of_an_unsigned_register(recording: Recording) -> None:
     recording.channels["duty"] = np.mod(np.round(100.0 * recording.channels.pop("torque_n_m")), 65536.0) / 1000.0
     recording.channels["supply_v"] = np.full(len(recording), 12.0)
@@ -176,6 +183,9 @@ WRONG = {
     "loads mixed up": Bad(swapped, "the loads seem to weigh nothing: .* which trial had which load"),
     "clocks apart": Bad(
         every(put("torque_n_m", lambda x: np.roll(x, 80))), "the effort is about 0.8 s behind the motion"
+    ),
+    "a sensor that is stuck": Bad(
+        every(stuck_half_the_time), r"position_rad stands still from 0 to 1.49 s, .* the sensor is stuck .*; leave"
     ),
     "noise for effort": Bad(
         every(put("torque_n_m", lambda x: np.random.default_rng(3).standard_normal(len(x)))), "explain next to nothing"
