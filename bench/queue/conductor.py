@@ -136,6 +136,8 @@ class Conductor:
         item = self.table.next()
         if item is None:
             return None
+        if self._held is not None:
+            return 0.0  # since it was looked for: what is added after a pause stays
         if not self._runner.wait(0.0):
             self._hung = None
             return BUSY_S

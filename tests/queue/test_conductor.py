@@ -142,6 +142,24 @@ def test_stop_ends_a_paused_experiment(conductor, runner):
     assert (runner.status().outcome, runner.status().reason) == ("stopped", "enough")
 
 
+def test_what_is_added_after_a_pause_stays_also_where_it_was_just_being_looked_for(runner, store, monkeypatch):
+    conductor = Conductor(runner, store)
+    look, added = conductor.table.next, []
+
+    def while_looking():
+        if not added:
+            conductor.pause("later")
+            added.extend(conductor.add([steps()]))
+        return look()
+
+    monkeypatch.setattr(conductor.table, "next", while_looking)
+    conductor.begin()
+    wait_for(lambda: store.queue("paper").held() == "later")
+    conductor.close()
+    assert [item.state for item in conductor.table.items()] == ["waiting"]
+    assert store.experiments() == []
+
+
 def test_after_a_restart_the_queue_is_held_and_nothing_moves_until_somebody_resumes(runner, store):
     first = Conductor(runner, store)
     first.begin()
