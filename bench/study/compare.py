@@ -15,6 +15,7 @@ from compensator.lab.fit import Fit
 from compensator.lab.intervals import ParameterEstimate, estimates
 from compensator.lab.recording import FloatArray
 from compensator.lab.rest_comparison import at_rest_in_words
+from compensator.lab.run_to_run import by_run_in_words, friction_by_run
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 
@@ -184,6 +185,9 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
         notes.append("Too few trials to hold one out: stretches of 2 s are left out instead, which flatters the model.")
     if found.floor is None:
         notes.append("No trial repeats another: how well any model could do is unknown. Repeat at least one trial.")
+    by_run = friction_by_run(found.fit, found.held_out)
+    if by_run is not None:
+        notes.append(by_run_in_words(by_run, material.dataset.effort_definition.unit))
     return notes
 
 

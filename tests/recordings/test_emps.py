@@ -1,5 +1,7 @@
 """The EMPS benchmark (Janot, Gautier, Brunot 2019): published errors, the missing asymmetry, and where to stop."""
 
+import re
+
 import pytest
 
 BASE = ("inertia", "viscous", "coulomb", "offset")
@@ -34,6 +36,14 @@ def test_asymmetric_viscous_friction_is_named_first_and_lowers_both_errors(comma
     after = command("study", "add", study_id, "viscous_asymmetry")["after"]
     assert after["training"] <= 0.032
     assert after["held_out"] <= 0.0545
+
+
+def test_friction_that_differs_from_run_to_run_is_told_as_a_floor(command, study_id):
+    command("study", "add", study_id, "viscous_asymmetry")
+    told = " ".join(command("study", "compare", study_id)["notes"])
+    found = re.search(r"differs from run to run by ([\d.]+) N, ([\d.]+)% of Coulomb friction, in 'pulses'", told)
+    assert float(found[1]) == pytest.approx(1.0, abs=0.1)
+    assert float(found[2]) == pytest.approx(5.0, abs=0.5)
 
 
 @pytest.mark.parametrize("base", [BASE, ("inertia", "offset", "coulomb", "viscous", "stribeck")])
