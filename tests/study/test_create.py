@@ -106,7 +106,7 @@ def test_held_out_trials_at_rest_judge_nothing(store):
     assert math.isnan(compared["trials"][1]["relative"])
     assert Comparison.model_validate(plain(compared)).trials[1].relative is None
     problems = diagnose(store, study["study_id"])["data_problems"]
-    assert any("no row of theirs counts (sliding): 'load-0g-1-1'" in problem for problem in problems)
+    assert any("does not move in any usable row of theirs: 'load-0g-1-1'" in problem for problem in problems)
 
 
 def test_where_keeps_some_trials(store, experiment_id):
