@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.breakaway_comparison import FEWEST_STARTS
-from compensator.lab.breakaway_fit import BreakawayFit, fit_breakaway, held_out_breakaway, lag_column
+from compensator.lab.breakaway_fit import LAG, BreakawayFit, fit_breakaway, held_out_breakaway, lag_column
 from compensator.lab.breakaway_picture import picture_of_breakaway
 from compensator.lab.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.catalogue import candidates
@@ -32,6 +32,7 @@ from compensator.lab.validation import HeldOut
 
 SPREAD = 3.0  # longest over shortest rest, or quickest over slowest rate, that shows an effect of it
 SHOWS = 0.01  # p in steady sliding, of one effect, from which it is seen there
+WITH_LAG, WITHOUT_LAG = 0, 1  # bases that effects are judged on top of
 RANGES = {"rest": "rests", "effort_rate": "rates of the effort"}
 
 
@@ -64,7 +65,9 @@ def breakaway_answer(
     base = fit_breakaway(rows, fit.effects)
     blocks, bases, left_out = _blocks(base, wanted)
     unit = rows.unit[rows.training]
-    screening = screen_events(bases, blocks, unit)
+    lag = base.coefficients_of(LAG)
+    late = lag is not None and bool(lag[0] > 0.0)  # no start is seen before it happens
+    screening = screen_events(bases, blocks, unit, model=WITH_LAG if late else WITHOUT_LAG)
     judged = _judge(base, screening, {effect.name: effect for effect in wanted})
     if not judged:
         return Answer("nothing", "", 1.0, [], None, []), left_out
@@ -116,7 +119,9 @@ def _blocks(base: BreakawayFit, wanted: list[Effect]) -> tuple[list[Block], list
             columns = rows.columns(share, shape)
             if np.isfinite(columns).all():
                 weighted = weight[:, None] * columns[inside]
-                blocks.append(Block(effect.name, weighted, int(share.replaces_lag), len(shapes), shape))
+                blocks.append(
+                    Block(effect.name, weighted, WITHOUT_LAG if share.replaces_lag else WITH_LAG, len(shapes), shape)
+                )
     return blocks, bases, left_out
 
 

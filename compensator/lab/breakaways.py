@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.stats import t as student
 
 from compensator.lab.processing import Signals
 from compensator.lab.recording import FloatArray
@@ -21,6 +22,7 @@ TRAVEL_COUNTS = 10.0  # of a start, at least
 TRAVEL_S = 0.1  # that a start lasts, at `slow`, at least
 WINDOWS_S = (0.05, 0.1, 0.2, 0.4)  # over which a line is laid through the effort before the start
 CURVED = 3.0  # t value of a bend that makes a window too long
+JUMPED = 0.01  # chance that noise brings an effort so far from the line through those before it
 FEWEST_SAMPLES = 4
 
 
@@ -32,7 +34,7 @@ class Start:
         index: of the last sample at rest, in the trial's signals.
         direction: 1 or -1, of the motion.
         effort: at that sample, from a line through those before it, in the effort's unit.
-        effort_sd: standard deviation of that, by the scatter about the line.
+        effort_sd: standard deviation of that, by the scatter about the line, or by how far the effort jumped.
         rate: of the effort, along the motion [effort/s].
         rest_s: how long the joint had been at rest by then.
     """
@@ -100,12 +102,18 @@ def _start(signals: Signals, begin: int, end: int, direction: float) -> Start | 
     line = _line(signals, begin, end)
     if line is None:
         return None
-    effort, deviation, slope = line
+    effort, deviation, slope, count = line
+    jump = _jump(signals, end, count, direction)
+    if jump is not None:
+        effort, deviation = jump
     return Start(end, direction, effort, deviation, direction * slope, (end - begin) / signals.rate_hz)
 
 
-def _line(signals: Signals, begin: int, end: int) -> tuple[float, float, float] | None:
-    """Effort at the end of a rest, its standard deviation, and its slope; over the longest window without a bend."""
+def _line(signals: Signals, begin: int, end: int) -> tuple[float, float, float, int] | None:
+    """Effort at the end of a rest, its standard deviation, and its slope; over the longest window without a bend.
+
+    Beside them how many samples the window has.
+    """
     found = None
     for window_s in WINDOWS_S:
         count = round(window_s * signals.rate_hz) + 1
@@ -126,8 +134,29 @@ def _line(signals: Signals, begin: int, end: int) -> tuple[float, float, float] 
         rest = effort - plain @ coefficients
         variance = float(rest @ rest) / (count - 2)
         deviation = float(np.sqrt(variance * np.linalg.inv(plain.T @ plain)[0, 0]))
-        found = float(coefficients[0]), deviation, float(coefficients[1])
+        found = float(coefficients[0]), deviation, float(coefficients[1]), count
     return found
+
+
+def _jump(signals: Signals, end: int, count: int, direction: float) -> tuple[float, float] | None:
+    """Effort and its standard deviation where it jumps along the motion, as a servo makes it; None where it does not.
+
+    The last sample at rest and the first in motion are held against the line through those before. It let go somewhere
+    between.
+    """
+    before, after = signals.effort[end - count + 1 : end], signals.effort[end : end + 2]
+    columns = np.column_stack([np.ones(len(before)), np.arange(-len(before), 0)])
+    coefficients = np.linalg.lstsq(columns, before, rcond=None)[0]
+    rest = before - columns @ coefficients
+    free = len(before) - 2
+    ahead = np.column_stack([np.ones(len(after)), np.arange(len(after))])
+    spread = 1.0 + np.einsum("ij,jk,ik->i", ahead, np.linalg.inv(columns.T @ columns), ahead)
+    way = direction * (after - ahead @ coefficients)
+    jumps = way > student.isf(JUMPED / len(after), free) * np.sqrt(float(rest @ rest) / free * spread)
+    if not jumps.any():
+        return None
+    most = float(way[jumps].max())
+    return float(coefficients[0]) + 0.5 * direction * most, most / np.sqrt(12.0)  # uniform on the way
 
 
 def _bends(columns: FloatArray, effort: FloatArray) -> bool:

@@ -21,6 +21,8 @@ from compensator.lab.recording import FloatArray
 from compensator.lab.regimes import BoolArray
 from compensator.lab.weights import bounded_influence, row_weights
 
+WITH_CHAIN = 0  # base with all columns that the measuring chain can produce; others lack what an effect stands in for
+
 
 class Curves:
     """Driver splines, made when they are first asked for: effects with memory are judged without them.

@@ -151,12 +151,16 @@ def screen_against_noise(bases: Sequence[Base], blocks: Sequence[Block], noise: 
     return Screening(sorted(evidence, key=lambda item: -item.score), noise.joint_chance(covariance, places, least))
 
 
-def screen_events(bases: Sequence[Base], blocks: Sequence[Block], unit: IntArray, seed: int = 0) -> Screening:
+def screen_events(
+    bases: Sequence[Base], blocks: Sequence[Block], unit: IntArray, seed: int = 0, model: int = 0
+) -> Screening:
     """Judge every block on rows that are events: few, weighted to one variance, independent between units.
 
     The null is had by flipping the signs of whole units of the residual (wild bootstrap); the score itself is the
     statistic. Studentised by units, as for rows in motion, a contrast between a few of them could never be told.
-    Arguments as `screen`; `unit` in place of its stretches.
+    Arguments as `screen`; `unit` in place of its stretches. A block of another base than the first would stand in the
+    place of what the model has beyond that base, and must explain more than that; `model` is the base that holds what
+    the model itself has, within its bounds.
     """
     _, labels = np.unique(unit, return_inverse=True)
     signs = np.vstack([np.ones(int(labels.max()) + 1), _sign_flips(int(labels.max()) + 1, seed)])
@@ -168,17 +172,37 @@ def screen_events(bases: Sequence[Base], blocks: Sequence[Block], unit: IntArray
         count, rank = directions.shape
         if rank == 0:
             continue
-        by_unit = np.zeros((signs.shape[1], rank))
-        np.add.at(by_unit, labels, directions * base.residual[:, None])
-        gains = np.array([_likelihood(base, share, inflation) for share in signs @ by_unit])
-        scores = gains - rank * np.log(count / inflation) - 2.0 * np.log(block.scanned)
+        if block.base == 0:
+            by_unit = np.zeros((signs.shape[1], rank))
+            np.add.at(by_unit, labels, directions * base.residual[:, None])
+            gains = np.array([_likelihood(base, share, inflation) for share in signs @ by_unit])
+        else:
+            gains = _gains_in_place(bases[model], base, directions, signs[:, labels]) / inflation
+        replaced = max(bases[model].basis.shape[1] - base.basis.shape[1], 0) if block.base else 0
+        scores = gains - (rank - replaced) * np.log(count / inflation) - 2.0 * np.log(block.scanned)
         highest = np.maximum(highest, scores)
         own = directions @ (directions.T @ base.residual)
         norm = float(np.linalg.norm(own))
-        evidence.append(Evidence(block, float(scores[0]), float(gains[0]), _rank(scores), own / (norm or 1.0)))
+        gain = max(float(gains[0]), 0.0)
+        evidence.append(Evidence(block, float(scores[0]), gain, _rank(scores), own / (norm or 1.0)))
     if not evidence:
         return Screening([], 1.0)
     return Screening(sorted(evidence, key=lambda item: -item.score), _rank(highest))
+
+
+def _gains_in_place(whole: Base, part: Base, directions: FloatArray, signs: FloatArray) -> FloatArray:
+    """Gain of 2 ln L, per independent row, from directions (n, rank) in the place of what `whole` has beyond `part`.
+
+    For each row of signs (f, n) of the whole base's residual, its own share of the effort as it is: what stands in the
+    model already is no evidence for what would replace it (Cox 1961).
+    """
+    flipped = signs * whole.residual
+    before = np.sum(flipped**2, axis=1) - np.sum((flipped @ whole.basis) ** 2, axis=1)
+    left = part.residual - whole.residual + flipped - (flipped @ part.basis) @ part.basis.T
+    after = np.sum(left**2, axis=1) - np.sum((left @ directions) ** 2, axis=1)
+    tiny = np.finfo(float).tiny
+    gains: FloatArray = len(whole.residual) * np.log(np.maximum(before, tiny) / np.maximum(after, tiny))
+    return gains
 
 
 def _rank(statistics: FloatArray) -> float:
@@ -205,6 +229,13 @@ def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise |
         directions = new_directions(base, block)
         kept[block.name] = max(kept.get(block.name, 0.0), _gain(base, directions, inflation, noise))
     return kept
+
+
+def score_of(bases: Sequence[Base], block: Block, noise: Noise | None = None) -> float:
+    """The score of one block on top of its base; that of no gain where nothing new is left."""
+    inflation = max(inflation_of(base.residual) for base in bases)
+    directions = new_directions(bases[block.base], block)
+    return _gain(bases[block.base], directions, inflation, noise) - _price(block, directions, inflation)
 
 
 def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:

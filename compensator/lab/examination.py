@@ -1,12 +1,14 @@
 """Examine candidates: refit with each, measure the gain on held-out rows, find its rivals."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from compensator.lab.candidates import Candidates
+from compensator.lab.candidates import WITH_CHAIN, Candidates
 from compensator.lab.catalogue import effect_named
 from compensator.lab.diagnosis import Candidate
 from compensator.lab.effects.effect import Shape
-from compensator.lab.evidence import Evidence, kept_evidence, new_directions
+from compensator.lab.evidence import Evidence, kept_evidence, new_directions, score_of
 from compensator.lab.fit import Fit, fit_model
 from compensator.lab.gain import chance_not_worse, held_out_gain
 from compensator.lab.pictures import picture_of
@@ -132,8 +134,23 @@ def _candidate(
 
 
 def is_physical(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of."""
-    return is_within_bounds(gathered, item) and not is_too_small(gathered, item)
+    """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
+
+    What the measuring chain makes near reversals is nothing physical.
+    """
+    fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
+    return fits and not is_made_by_chain(gathered, item)
+
+
+def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:
+    """Whether an effect near reversals has no very strong evidence beside the chain's columns that it stands in for.
+
+    Without these, all that a sign leaves that is smoothed or late would count for the effect. In steady sliding that
+    is not asked: what stands for the chain is there what is missing, as a Stribeck curve of a low speed is.
+    """
+    if gathered.show_in != "moving" or item.block.base == WITH_CHAIN:
+        return False
+    return score_of(gathered.bases, replace(item.block, base=WITH_CHAIN), gathered.noise) < VERY_STRONG
 
 
 def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:

@@ -1,5 +1,7 @@
 """Breakaway events: found with their effort, rest and rate; named is what static friction depends on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -108,3 +110,38 @@ def test_events_are_judged_by_flips_of_whole_units():
 def test_few_units_cannot_give_a_small_p():
     assert least_p_value(5) == pytest.approx(5.0 / 16.0)
     assert least_p_value(9) > 0.01 >= least_p_value(10)
+
+
+def test_an_effort_that_jumps_at_the_start_is_not_known():
+    """A servo that first sees the motion wanted jumps over static friction, from far below it."""
+    recording, ramps = ramp_trial("r", 1.0, 0.05, constant, np.random.default_rng(0))
+    effort = choose_effort([recording], HORIZONTAL)
+    signals = make_signals(recording, effort, HORIZONTAL, 12.0)
+    position = recording.channels["position_rad"]
+    quiet = starts_of(signals, position, COUNT_RAD, slow=0.02)
+    early = signals.effort.copy()
+    for one in quiet:
+        early[one.index - 40 : one.index + 1] -= 0.7 * one.effort  # until the last sample at rest
+    jumping = starts_of(replace(signals, effort=early), position, COUNT_RAD, slow=0.02)
+    for one, ramp, before in zip(jumping, ramps, quiet, strict=True):
+        assert before.effort_sd < 0.02 * STATIC
+        assert one.effort_sd == pytest.approx(0.7 * STATIC / np.sqrt(12.0), rel=0.4)  # it goes on rising
+        assert abs(one.effort - ramp.effort) < 2.0 * one.effort_sd
+
+
+def test_what_the_model_has_is_no_evidence_for_what_would_stand_in_its_place():
+    random = np.random.default_rng(5)
+    unit = np.repeat(np.arange(20), 2)
+    rate = np.repeat(np.tile([0.1, 0.3, 0.6, 1.0], 5), 2)
+    has, would_be = np.sqrt(rate)[:, None], (rate / (rate + 0.5))[:, None]
+    constant_part = np.ones((40, 1))
+    block = Block("x", would_be, 1, 1)
+    p_values = []
+    for seed in range(40):
+        effort = 5.0 * has[:, 0] + 0.1 * random.standard_normal(40)
+        bases = [Base.of(np.hstack([constant_part, has]), effort), Base.of(constant_part, effort)]
+        p_values.append(screen_events(bases, [block], unit, seed).p_value)
+    assert np.mean(np.array(p_values) <= 0.05) <= 0.12
+    effort = 5.0 * would_be[:, 0] + 0.1 * random.standard_normal(40)
+    bases = [Base.of(np.hstack([constant_part, has]), effort), Base.of(constant_part, effort)]
+    assert screen_events(bases, [block], unit).p_value <= 0.002
