@@ -22,6 +22,7 @@ LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little 
 LEAST_FALL = 1e-4  # of the effort: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
+UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
@@ -134,6 +135,11 @@ def _candidate(
 
 
 def is_physical(gathered: Candidates, item: Evidence) -> bool:
+    """Whether size and shape are such that it can be the effect."""
+    return is_possible(gathered, item) and not is_past_scan(gathered, item)
+
+
+def is_possible(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
 
     What the measuring chain makes near reversals is nothing physical.
@@ -154,9 +160,11 @@ def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:
 
 
 def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the freely fitted coefficients lie within the effect's bounds."""
+    """Whether the freely fitted coefficients lie within the effect's bounds, as far as the rows can tell."""
     ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
-    return all(low <= c <= high for (low, high), c in zip(ranges, _coefficients(gathered, item), strict=True))
+    found = _coefficients(gathered, item)
+    unsure = UNSURE * _standard_error(item, found)
+    return all(low - unsure <= c <= high + unsure for (low, high), c in zip(ranges, found, strict=True))
 
 
 def is_too_small(gathered: Candidates, item: Evidence) -> bool:
@@ -165,9 +173,23 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
     return least > 0.0 and bool(np.all(_coefficients(gathered, item) < least))
 
 
+def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the shape lies at the end of a scan that holds all that the effect can be: what fits there goes on."""
+    effect, shape = effect_named(item.block.name), _shape(item)
+    if not effect.ends_within_scan or not shape:
+        return False
+    return shape[0] >= max(scanned[0] for scanned in effect.shapes(gathered.fit.dataset.trials[0].motion))
+
+
 def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:
     """Freely fitted, on top of the model, shape (k,)."""
     base = gathered.bases[item.block.base]
     columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
     found: FloatArray = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0].astype(np.float64)
     return found
+
+
+def _standard_error(item: Evidence, coefficients: FloatArray) -> float:
+    """Of a coefficient that stands alone: its evidence is the square of how many of them it is; 0 beside others."""
+    alone = len(coefficients) == 1 and item.noncentrality > 0.0
+    return float(abs(coefficients[0]) / np.sqrt(item.noncentrality)) if alone else 0.0

@@ -15,7 +15,8 @@ from compensator.lab.examination import (
     SIGNIFICANT,
     examine,
     is_confirmed,
-    is_physical,
+    is_past_scan,
+    is_possible,
     is_sure,
     is_too_small,
     is_within_bounds,
@@ -89,9 +90,11 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
         return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
-    bends = _bends(gathered, examined, best_of_each)
-    if p_value <= SIGNIFICANT and bends is not None:
-        sentence, others = bending_in_words(bends, fit.dataset.facts, p_value), [c for c in examined if c is not bends]
+    found = _bends(gathered, examined, best_of_each)
+    if p_value <= SIGNIFICANT and found is not None:
+        bends, too_far = found
+        others = [one for one in examined if one is not bends]
+        sentence = bending_in_words(bends, too_far, fit.dataset.facts, p_value)
         driver, strength = bends.effect.driver, max(item.noncentrality for item in best_of_each)
         return Answer("unknown-effect", sentence, p_value, [bends, *others], driver, [], strength, remains=True)
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
@@ -108,13 +111,16 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 
 
-def _bends(gathered: Candidates, examined: list[Candidate], best_of_each: list[Evidence]) -> Candidate | None:
-    """What explains most, for sure, but is only a part of the friction that it stands in the place of."""
+def _bends(
+    gathered: Candidates, examined: list[Candidate], best_of_each: list[Evidence]
+) -> tuple[Candidate, bool] | None:
+    """What explains most, for sure, but cannot be the friction it stands in the place of: a part of it, or too far."""
     most = max(best_of_each, key=lambda item: item.noncentrality)
     candidate = next((one for one in examined if one.effect.name == most.block.name), None)
     if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
         return None
-    return candidate if is_too_small(gathered, most) else None
+    too_far = candidate.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
+    return (candidate, too_far) if too_far or is_too_small(gathered, most) else None
 
 
 def _best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
@@ -134,7 +140,7 @@ def _best_shape(gathered: Candidates, shapes: list[Evidence]) -> Evidence:
     """The best one; near reversals, of those whose size can be: what swings too little, or too much, makes up by it."""
     if gathered.show_in != "moving":
         return shapes[0]
-    return next((item for item in shapes if item.score > 0.0 and is_physical(gathered, item)), shapes[0])
+    return next((item for item in shapes if item.score > 0.0 and is_possible(gathered, item)), shapes[0])
 
 
 def _ties(item: Evidence, best: Evidence) -> bool:

@@ -94,11 +94,13 @@ def changing_in_words(change: Change) -> str:
     return f"{change.what} changes from one stretch of {BLOCK_S:g} s to the next, by {change.share:.1%} of the effort"
 
 
-def bending_in_words(bends: Candidate, facts: Facts, p_value: float) -> str:
+def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: float) -> str:
     """The answer where something comes up over a distance after a reversal that is not the friction itself."""
+    least = " or more" if too_far else ""
+    why = "is too far" if too_far else "is too small a part of the dry friction"
     return (
         "Something is missing, and it is none of the catalogue: it varies with the travel since the last reversal, "
-        f"over some {bends.shape[0]:.2g} {facts.position_unit}, and is too small a part of the dry friction for "
+        f"over some {bends.shape[0]:.2g} {facts.position_unit}{least}, and {why} for "
         f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
         f"fall from {bends.before:.2%} to {bends.after:.2%}). Look at hoses, cables and seals that bend with the joint."
     )

@@ -102,14 +102,15 @@ def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
     assert found.candidates[0].gain.low > 0.0
 
 
-def test_a_hose_that_bends_along_is_not_called_pre_sliding():
+@pytest.mark.parametrize(("bend_rad", "torque_n_m"), [(0.3, 0.02), (0.6, 0.1)])
+def test_a_hose_that_bends_along_is_not_called_pre_sliding(bend_rad, torque_n_m):
     def hose(x):
-        """A strand that bends by up to 0.3 rad, and then slides in its sheath with 0.02 N m."""
+        """A strand that bends so far, and then slides in its sheath: a small part of the friction, or as much again."""
         bent, strand = 0.0, []
         for moved in np.diff(x.q, prepend=x.q[0]):
-            bent = min(max(bent + moved, -0.3), 0.3)
+            bent = min(max(bent + moved, -bend_rad), bend_rad)
             strand.append(bent)
-        return 0.02 * np.array(strand) / 0.3
+        return torque_n_m * np.array(strand) / bend_rad
 
     found = diagnosis_of(recordings(Joint(extra=hose), seed=4))
     assert found.verdict == "unknown-effect", found.sentence

@@ -1,10 +1,15 @@
 """When a candidate counts as confirmed."""
 
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
 import pytest
 
 from compensator.lab.catalogue import effect_named
 from compensator.lab.diagnosis import Candidate
-from compensator.lab.examination import is_confirmed
+from compensator.lab.evidence import Base, Block, Evidence
+from compensator.lab.examination import is_confirmed, is_within_bounds
 from compensator.lab.gain import Gain
 
 
@@ -33,3 +38,23 @@ def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     for physical in (True, False):
         candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, physical, None, rows)
         assert is_confirmed(candidate) == physical
+
+
+@pytest.mark.parametrize(
+    ("share", "noncentrality", "possible"),
+    [
+        (0.5, 400.0, True),
+        (0.29, 400.0, True),  # 0.3 is the least, and lies within two standard errors
+        (0.29, 40000.0, False),  # it does not: they are a tenth as large
+        (0.2, 400.0, False),
+        (-0.5, 400.0, False),
+    ],
+)
+def test_a_size_beyond_its_bounds_for_sure_cannot_be(share, noncentrality, possible):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block("backlash", column[:, None], 0, 15, (0.02,)), 50.0, noncentrality, 0.001, column)
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"))
+    gathered: Any = SimpleNamespace(
+        bases=[Base(np.zeros((200, 1)), share * column)], fit=SimpleNamespace(dataset=dataset)
+    )
+    assert is_within_bounds(gathered, item) == possible

@@ -208,6 +208,7 @@ class Effect:
         dry_friction: it is friction that varies with something else than speed; see `discrepancy`.
         discrepancy: (motion, shape) -> array (k, n): what the truth may differ from the equation by; None for nothing.
         least_of_friction: lowest coefficient over the model's dry friction: what stands in its place is as large as it.
+        ends_within_scan: what fits best at the upper end of its scan goes on beyond it, and is something else.
     """
 
     name: str
@@ -238,6 +239,7 @@ class Effect:
     dry_friction: bool = False
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
+    ends_within_scan: bool = False
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
         """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""

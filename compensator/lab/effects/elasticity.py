@@ -49,4 +49,5 @@ EFFECT = Effect(
     confused_with=("measurement_delay", "inertia"),
     builds_on="load",
     rows="moving",
+    ends_within_scan=True,
 )
