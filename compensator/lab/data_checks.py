@@ -20,7 +20,8 @@ SUSPECT = 0.2  # of the effort: an error from which clocks are tried
 MOST_LAG_S, LAG_STEP_S = 2.0, 0.1
 LEAST_LAG_S = 0.3  # less may be a delay of the chain, which is an effect of its own
 MOVED = 0.6  # of the error: what moving the effort in time must leave at most
-FEWEST_ROWS = 20  # of a trial that is judged
+FEWEST_ROWS = 20  # of a trial whose sign is judged
+FEWEST_ROWS_OF_ODD = 5  # of a trial: an error of four times the others' is no chance in so many
 TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
 WORSE = 1.5  # times the error that the loads as told leave, for that to be sure
 ORDERED = 0.95  # rank correlation of two conditions over the trials
@@ -98,7 +99,9 @@ def _late(fit: Fit) -> list[str]:
             effort - columns @ solve(columns, effort, fit.bounds).coefficients, effort
         )
     best = min(errors, key=lambda lag_s: errors[lag_s])
-    if abs(best) < LEAST_LAG_S or errors[best] > MOVED * error:
+    effort = weight * dataset.effort[rows]
+    turned = relative_error(-effort - columns @ solve(columns, -effort, fit.bounds).coefficients, effort)
+    if abs(best) < LEAST_LAG_S or errors[best] > min(MOVED * error, turned):  # a sine that is turned seems late, too
         return []
     which = "behind" if best > 0.0 else "ahead of"
     return [
@@ -173,7 +176,7 @@ def _odd_trials(fit: Fit) -> list[str]:
     errors = {}
     for index in np.unique(dataset.trial_index[fit.training]):
         rows = fit.training & (dataset.trial_index == index)
-        if int(rows.sum()) >= FEWEST_ROWS:
+        if int(rows.sum()) >= FEWEST_ROWS_OF_ODD:
             errors[int(index)] = rms(fit.residual[rows])
     if len(errors) < FEWEST_TRIALS_TO_COMPARE:
         return []

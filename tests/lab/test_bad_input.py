@@ -16,7 +16,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.facts import Facts
 from compensator.lab.fit import fit_model
 from compensator.lab.recording import Recording
-from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
 
 NO_GRAVITY = Joint(arm_moment=0.0)
 LINEAR = Facts(joint="linear")
@@ -172,6 +172,15 @@ def test_an_effort_that_has_nothing_to_do_with_the_motion_is_a_problem_of_the_da
     assert found.verdict == "data-problem"
     assert found.candidates == []
     assert any("explain next to nothing" in problem for problem in found.data_problems)
+
+
+def test_a_sine_that_is_turned_is_not_said_to_be_late():
+    sines = [Plan(f"sine-{n}", ((0.6, 1.0, n), (0.1, 0.37, n)), load_kg=0.1 * n) for n in range(3)]
+    made = recordings(trials=sines, seed=3)
+    for recording in made:
+        recording.channels["torque_n_m"] *= -1.0
+    (told, *_) = diagnosed(made).data_problems
+    assert "turn the sign of torque_n_m" in told
 
 
 def test_copies_of_a_trial_are_told():
