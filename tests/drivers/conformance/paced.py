@@ -1,7 +1,8 @@
 """A joint in step with a host that a busy machine keeps waiting: one control period passes with each cycle.
 
 The simulated device waits for the host (`--patience`); here the host's time does, too. Else the reference of a trial
-would run on while the joint waits, and the servo would kick it after. Nothing else of driver, wire or loop is touched.
+would run on while the joint waits, and the servo would kick it after. For the same reason a cycle waits for its own
+answer. Nothing else of driver, wire or loop is touched.
 """
 
 from collections.abc import Iterator
@@ -27,6 +28,7 @@ class Paced:
         self._drive = drive
         self._period_s = 0.0
         self._cycles = 0
+        self._number = 0
 
     def open(self, period_s: float) -> None:
         self._period_s = period_s
@@ -34,7 +36,10 @@ class Paced:
 
     def exchange(self, command: Command) -> Sample:
         sample = self._drive.exchange(command)
+        while sample.number and sample.number == self._number:  # handed over twice: the drive had no turn to answer
+            sample = self._drive.exchange(command)  # it raises where the drive is silent for too long
         self._cycles += 1
+        self._number = sample.number
         return sample._replace(time_s=self._cycles * self._period_s)
 
     def __getattr__(self, name: str) -> Any:
