@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -81,6 +82,11 @@ def _shade(share: float) -> str:
     return "#" + "".join(f"{round(one + part * (two - one)):02x}" for one, two in zip(low, high, strict=True))
 
 
+def _length(low: float, high: float) -> float | None:
+    """Of one side of a bar; None where it is not known: a mean of one value."""
+    return high - low if isfinite(high - low) else None
+
+
 def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
     common: dict[str, Any] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
     if not isinstance(one, Bars):
@@ -93,8 +99,8 @@ def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
         common["error_y"] = {
             "type": "data",
             "symmetric": False,
-            "array": [high - value for high, value in zip(one.high, measured, strict=True)],
-            "arrayminus": [value - low for low, value in zip(one.low, measured, strict=True)],
+            "array": [_length(value, high) for high, value in zip(one.high, measured, strict=True)],
+            "arrayminus": [_length(low, value) for low, value in zip(one.low, measured, strict=True)],
         }
     if isinstance(one, Points):
         # many points in one figure: small ones
