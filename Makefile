@@ -27,10 +27,11 @@ paper: $(STAMP)  ## every figure and table of the paper, ours beside it: one HTM
 serve: $(STAMP)  ## the service and the page on the simulated bench
 	$(BIN)/friction-bench serve
 
-test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, which mostly wait
+test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, which mostly wait; drives on a wire by themselves
 	@failed=0; \
 	$(BIN)/pytest --numprocesses auto --dist loadfile -m 'not wall_clock' || failed=1; \
-	$(BIN)/pytest --numprocesses 2 --dist loadfile -m wall_clock || failed=1; \
+	$(BIN)/pytest --numprocesses 2 --dist loadfile -m wall_clock --ignore=tests/drivers || failed=1; \
+	$(BIN)/pytest tests/drivers -m wall_clock || failed=1; \
 	exit $$failed
 
 report: $(STAMP) ## has a change made the bench worse? beside bench-baseline.json, as table, JUnit XML and HTML in out/

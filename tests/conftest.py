@@ -16,7 +16,8 @@ if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_I
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HERE = Path(__file__).parent
-# devices, services and browsers in processes of their own: they mostly wait, and run after the others, two at a time
+# devices, services and browsers in processes of their own: they mostly wait, and run after the others, two at a time;
+# those of the drivers one by one: hosts and devices with real-time priorities of two tests keep one another waiting
 WALL_CLOCK = (
     "browser",
     "devices",

@@ -5,6 +5,7 @@ would run on while the joint waits, and the servo would kick it after. For the s
 answer. Nothing else of driver, wire or loop is touched.
 """
 
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -15,6 +16,7 @@ from bench.drive_factory import Equipment
 from drivers.contract import Command, Drive, Sample
 
 make_equipment = station.make_equipment
+TURN_S = 0.05  # that a device may wait for its turn of the processor
 
 
 class Paced:
@@ -37,6 +39,7 @@ class Paced:
     def exchange(self, command: Command) -> Sample:
         sample = self._drive.exchange(command)
         while sample.number and sample.number == self._number:  # handed over twice: the drive had no turn to answer
+            time.sleep(TURN_S)  # a word of the host lets its time go on: few of them
             sample = self._drive.exchange(command)  # it raises where the drive is silent for too long
         self._cycles += 1
         self._number = sample.number
