@@ -1,10 +1,15 @@
 """Time that waits for a late host."""
 
+import socket
+import threading
 from types import SimpleNamespace
 
 import pytest
 
 from sim_backend.devices import wall_time
+from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
+from sim_backend.devices.modbus.serve import ModbusSettings, serve_modbus
+from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 from sim_backend.devices.wall_time import HOST_IS_GONE_S, HOST_LISTENS_S, PatientTime
 
 
@@ -57,3 +62,30 @@ def test_the_moment_of_the_axis_is_told_by_the_wall(wall):
     clock = PatientTime(axis(), 0.02)
     pass_time(clock, wall, 0.5)
     assert clock.origin_s + clock.now_s() == pytest.approx(wall.s)
+
+
+def serve(kind):
+    match kind:
+        case "roboclaw":
+            return serve_roboclaw(RoboClawSettings(patience_s=0.02))
+        case "canopen":
+            return serve_canopen(CanOpenSettings(patience_s=0.02))
+        case _:
+            return serve_modbus(ModbusSettings(transport=kind, patience_s=0.02))
+
+
+@pytest.mark.parametrize("kind", ["roboclaw", "canopen", "rtu", "tcp"])
+def test_a_word_of_the_host_is_heard_on_every_wire(monkeypatch, kind):
+    heard = threading.Event()
+    monkeypatch.setattr(PatientTime, "hear", lambda _clock: heard.set())
+    with serve(kind) as device:
+        assert not heard.wait(0.05)
+        if kind == "tcp":
+            host, port = device.path.split(":")
+            with socket.create_connection((host, int(port))) as wire:
+                wire.sendall(b"\r")
+                assert heard.wait(5.0)
+        else:
+            with open(device.path, "r+b", buffering=0) as wire:
+                wire.write(b"\r")
+                assert heard.wait(5.0)

@@ -6,9 +6,10 @@ import pytest
 from compensator.lab.assembly import make_dataset
 from compensator.lab.candidates import gather
 from compensator.lab.catalogue import default_effects
-from compensator.lab.constancy import DRY_FRICTION, OFFSET, change_of
+from compensator.lab.constancy import DRY_FRICTION, OFFSET, _change, change_of, inflation_of
 from compensator.lab.dataset import Processing
 from compensator.lab.diagnose import diagnose
+from compensator.lab.evidence import Base
 from compensator.lab.fit import fit_model
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
@@ -34,6 +35,24 @@ def jumping(of):
         return size * np.where(x.time_s > at_s, 1.0, -1.0) * of(x)
 
     return extra
+
+
+def test_the_base_is_fitted_anew_beside_the_stretches_as_least_squares_would():
+    random = np.random.default_rng(3)
+    rows, of = 600, 6
+    stretch, time = np.arange(rows) * of // rows, np.linspace(-1.0, 1.0, rows)
+    column = np.sign(np.sin(40.0 * time))
+    base_columns = np.column_stack([column, time * column, time])  # the first is the sum of the stretches' own
+    effort = 0.5 * time * column + random.choice([-0.3, 0.3], of)[stretch] * column + 0.1 * random.normal(size=rows)
+    cut = column[:, None] * (stretch[:, None] == np.arange(of))
+    dense = np.column_stack([base_columns, cut])
+    after = effort - dense @ np.linalg.lstsq(dense, effort, rcond=None)[0]
+    base, power = Base.of(base_columns, effort), float(effort @ effort)
+    noise = inflation_of(after) * float(after @ after) / (rows - of + 1 - 3)
+    explained = float(base.residual @ base.residual - after @ after)
+    found = _change(OFFSET, base, column, stretch, of, power)
+    assert found is not None
+    assert found.share == pytest.approx(np.sqrt((explained - (of - 1) * noise) / power), rel=1e-9)
 
 
 @pytest.mark.parametrize("noise_memory", [0.0, 0.8])
