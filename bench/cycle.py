@@ -22,7 +22,7 @@ RECORDED: tuple[str, ...] = (
     "enabled",
     "age_s",
 )
-"""The channels of a row, in order; all from `compensator.lab.channels`."""
+"""The channels of a row, in order; all from `compensator.lab.recordings.channels`."""
 
 OFF = Command(Mode.OFF)
 _CURRENT, _ENABLED = Mode.CURRENT, Status.ENABLED  # at hand: Python 3.11 takes 0.1 us to find a member of an Enum

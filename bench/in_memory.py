@@ -17,7 +17,7 @@ from bench.loop import RECORDED, ControlLoop
 from bench.servo import current_servo
 from bench.session import CONDITION, Session
 from bench.stop_request import StopRequest
-from compensator.lab.recording import Event, FloatArray, Recording
+from compensator.lab.recordings.recording import Event, FloatArray, Recording
 
 
 @dataclass

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 LOST = (0.002, 0.02)  # share of the rows
 JITTER = (0.02, 0.2)  # standard deviation, share of the period

@@ -18,13 +18,13 @@ from bench.challenge.owner import bench_of, rig_of
 from bench.challenge.session import record
 from bench.configuration import BenchConfiguration
 from bench.errors import ExperimentError, LimitError
-from compensator.lab.candidates import Candidates, gather
-from compensator.lab.catalogue import effect_named
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
-from compensator.lab.fit import Fit, fit_effects, widened
-from compensator.lab.recording import Recording
-from compensator.lab.validation import held_out, rms
+from compensator.lab.model.fit import Fit, fit_effects, widened
+from compensator.lab.model.validation import held_out, rms
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.screening.candidates import Candidates, gather
 
 ATTEMPTS = 10
 STEPS = 3  # effects that the lab may name where two are hidden

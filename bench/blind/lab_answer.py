@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 from bench.rig import Rig
 from bench.study.material import facts_of
-from compensator.lab.assembly import make_dataset
-from compensator.lab.catalogue import default_effects
-from compensator.lab.dataset import Dataset, Processing
-from compensator.lab.diagnose import diagnose
-from compensator.lab.fit import Fit, fit_effects, fit_model
-from compensator.lab.recording import Recording
-from compensator.lab.validation import held_out
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit, fit_effects, fit_model
+from compensator.lab.model.validation import held_out
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Dataset, Processing
 
 Classes = tuple[tuple[str, ...], ...]
 SHOWN = 3  # effects of a ranking that a reader looks at

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.candidates import Candidates
-from compensator.lab.evidence import Base, Block
-from compensator.lab.linear import orthonormal
-from compensator.lab.recording import FloatArray
+from compensator.lab.model.linear import orthonormal
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import Base, Block
 
 NEEDED = 25.6  # noncentrality that 64 candidates at 1 % need for 90 % power
 

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.stats import f as f_distribution
 
 from bench.blind import sindy
-from compensator.lab.candidates import Candidates
-from compensator.lab.evidence import Block
-from compensator.lab.linear import orthonormal
-from compensator.lab.recording import FloatArray
+from compensator.lab.model.linear import orthonormal
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import Block
 
 SIGNIFICANT = 0.05
 MOST = 3  # effects that a stepwise search may add

@@ -11,10 +11,10 @@ from bench.drives.simulated import SimulatedDriveSettings
 from bench.errors import ExperimentError, LimitError
 from bench.study.next_trial.options import choices
 from bench.study.next_trial.predict import choose
-from compensator.lab.diagnose import diagnose
-from compensator.lab.fit import Fit
-from compensator.lab.recording import Recording
-from compensator.lab.suggestion import shows_from_rest
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.model.fit import Fit
+from compensator.lab.next_trial.suggestion import shows_from_rest
+from compensator.lab.recordings.recording import Recording
 
 TRIALS = 6
 

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 OPTIMIZERS = ("STLSQ", "SR3")
 

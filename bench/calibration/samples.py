@@ -13,7 +13,7 @@ from bench.rig import Rig
 from compensator import motor
 from compensator.errors import CalibrationError
 from compensator.kinetic_friction import FloatArray
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 from compensator.motor import MotorConstants
 
 WINDOW_S = 0.2

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from bench.challenge.names import accepted
 from bench.errors import ParameterError
-from compensator.lab.catalogue import effect_named
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnknownEffectError
 
 NOTHING = "nothing"

@@ -14,7 +14,7 @@ from bench.challenge.session import protocol_of, record
 from bench.challenge.share import effort_share
 from bench.errors import BenchError, ExperimentError, LimitError
 from bench.recording_set import RecordingSet, write_recording_set
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 ATTEMPTS = 20  # a joint that cannot complete the protocol is no challenge
 

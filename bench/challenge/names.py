@@ -5,7 +5,7 @@ does not have (yet) count as outside it: for these, "none of these" is the right
 """
 
 from bench.challenge.hidden_plant import MECHANISMS
-from compensator.lab.catalogue import catalogue
+from compensator.lab.effects.catalogue import catalogue
 
 ACCEPTED: dict[str, tuple[str, ...]] = {
     "viscous_asymmetry": ("viscous_asymmetry",),

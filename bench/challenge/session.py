@@ -9,7 +9,7 @@ from bench.drive_factory import make_equipment
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.in_memory import InMemoryBench
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 Protocol = list[tuple[str, dict[str, Any]]]
 """Experiments in order: kind, parameters."""

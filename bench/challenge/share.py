@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from compensator.lab.recording import FloatArray, Recording
+from compensator.lab.recordings.recording import FloatArray, Recording
 
 SMOOTHED_S = 0.1  # slower than most of what stick and slip do, never at the same moment twice
 KIND = "excitation"  # moves alike in all, set point for set point

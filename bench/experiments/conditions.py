@@ -1,7 +1,7 @@
 """What is held constant in a trial."""
 
 from bench.configuration import BenchConfiguration
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 
 
 def conditions(configuration: BenchConfiguration, **held: Condition) -> dict[str, Condition]:

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict
 
 from bench.configuration import BenchConfiguration
 from bench.loop import OutcomeName
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 from drivers.contract import Mode
 
 AnyProcedure = Generator[Any, Any, dict[str, Any]]

@@ -5,10 +5,10 @@ import numpy as np
 from bench.friction import StudiedModel
 from bench.reflected_load import load_current_a, torque_n_m_a
 from bench.rig import Rig
-from compensator.lab.catalogue import effect_named
-from compensator.lab.dataset import Scales
-from compensator.lab.facts import Facts
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.online import OnlineFriction, OnlineTerm
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.rows.dataset import Scales
 
 
 def online_friction(studied: StudiedModel, rig: Rig) -> OnlineFriction:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from bench.recording_set.mapping import Column, Mapping
 from bench.recording_set.suggestions import suggestion
 from bench.recording_set.table import Table
-from compensator.lab.channels import CHANNELS, EVENT_COLUMN
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.channels import CHANNELS, EVENT_COLUMN
+from compensator.lab.recordings.recording import FloatArray
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ import orjson
 from bench.recording_set import events as event_cells
 from bench.recording_set.stream import Piece, RecordingStream
 from bench.recording_set.table import quoted
-from compensator.lab.channels import EVENT_COLUMN
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.channels import EVENT_COLUMN
+from compensator.lab.recordings.recording import FloatArray
 
 NEWLINE = b"\n"
 

@@ -9,7 +9,7 @@ import json
 from collections.abc import Sequence
 
 from bench.recording_set.values import shield, unshield
-from compensator.lab.recording import Event
+from compensator.lab.recordings.recording import Event
 
 BETWEEN = "; "
 BEFORE_DETAIL = ": "

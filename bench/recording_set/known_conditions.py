@@ -1,6 +1,6 @@
 """Conditions that the model lab reads as physics: a wrong one would be taken for nothing hung, or for balanced."""
 
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 
 _QUANTITIES = {"load_kg": "kg", "arm_m": "m"}
 _FLAGS = ("balanced",)

@@ -27,8 +27,8 @@ from pydantic import AfterValidator, ConfigDict, Field, model_validator
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.toml_file import parse_toml
 from bench.rig import Section
-from compensator.lab.channels import CHANNELS, EVENT_COLUMN
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.channels import CHANNELS, EVENT_COLUMN
+from compensator.lab.recordings.recording import Condition
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 
 class NoNumber(ValueError):

@@ -14,8 +14,8 @@ import numpy as np
 from bench.recording_set import events as event_cells
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.stream import Piece, RecordingStream
-from compensator.lab.channels import EVENT_COLUMN
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.channels import EVENT_COLUMN
+from compensator.lab.recordings.recording import Condition
 
 if TYPE_CHECKING:
     import pyarrow

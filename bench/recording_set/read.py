@@ -15,7 +15,7 @@ from bench.recording_set.table import Table, place
 from bench.recording_set.toml_file import MOST_BYTES, parse_toml
 from bench.recording_set.trials_csv import DEFAULT_KIND, TRIALS_FILE, TrialEntry, name_of, read_trials_csv
 from bench.rig import Rig
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 RIG_FILE = "rig.toml"
 

@@ -10,7 +10,7 @@ from bench.recording_set import numbers
 from bench.recording_set.columns import Use, plan
 from bench.recording_set.mapping import Mapping
 from bench.recording_set.table import Chunk, Row, Table
-from compensator.lab.recording import Event, FloatArray
+from compensator.lab.recordings.recording import Event, FloatArray
 
 MOST_ROWS = 50_000_000
 FEWEST_ROWS = 2

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from bench.rig import Rig
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.store import Event, Store, Trial
-from compensator.lab.recording import Condition, FloatArray, Recording
+from compensator.lab.recordings.recording import Condition, FloatArray, Recording
 
 PIECE_ROWS = 8192
 

@@ -17,7 +17,7 @@ from bench.rig import Rig
 from bench.store import Store, Trial
 from bench.store.records import OUTCOMES
 from bench.validation import problems
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 IMPORT_KIND = "import"
 FEWEST_ROWS = 2  # fewer make no recording

@@ -8,7 +8,7 @@ from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Column, Mapping
 from bench.recording_set.table import Row, Table, quoted
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 
 TRIALS_FILE = "trials.csv"
 DEFAULT_KIND = "recording"

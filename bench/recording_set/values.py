@@ -7,7 +7,7 @@ as spreadsheets do. So is text that a spreadsheet would run as a formula ("=1+1"
 import math
 import re
 
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FLAGS = {"true": True, "false": False}

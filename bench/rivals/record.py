@@ -16,7 +16,7 @@ from bench.loop import ControlLoop, Procedure
 from bench.servo import current_servo
 from bench.stop_request import StopRequest
 from compensator.kinetic_friction import FloatArray
-from compensator.lab.recording import Condition, Event
+from compensator.lab.recordings.recording import Condition, Event
 from drivers.contract import Drive
 
 

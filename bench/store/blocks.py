@@ -8,7 +8,7 @@ bound the store to some 30 MB/s.
 import numpy as np
 from numpy.typing import NDArray
 
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 STORED = np.dtype("<f8")
 SAMPLE_BYTES = STORED.itemsize

@@ -10,7 +10,7 @@ from bench.store.database import Database
 from bench.store.errors import StoreError
 from bench.store.importing import Import
 from bench.store.records import Experiment
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 
 class ExperimentStore:

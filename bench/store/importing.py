@@ -13,7 +13,7 @@ from bench.store.experiments import check_outcome, now
 from bench.store.records import IMPORTING
 from bench.store.removal import remove
 from bench.store.schema import TRIAL
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 TRANSACTION_BYTES = 16 * 2**20  # a bench that records meanwhile waits for one of these, not for the whole
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 GROUP_ROWS = 512  # 2 million rows make 3 906 groups: about twice the points that a plot asks for
 MOST_EDGES = 2  # in a group and channel; a channel that comes and goes with every row shows no gap anyway

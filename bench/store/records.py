@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from compensator.lab.recording import Condition, Event
+from compensator.lab.recordings.recording import Condition, Event
 
 __all__ = [
     "HIDDEN",
@@ -61,7 +61,7 @@ class Trial:
 
     Attributes:
         conditions: what was held constant; the keys carry units.
-        channels: names of the recorded channels (compensator.lab.channels).
+        channels: names of the recorded channels (compensator.lab.recordings.channels).
         rows: committed rows.
         outcome: one of `OUTCOMES`; `reason` says why.
     """

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tsdownsample import MinMaxLTTBDownsampler
 
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 MIN_POINTS = 4
 _REDUCE: Any = MinMaxLTTBDownsampler()  # type: ignore[no-untyped-call]

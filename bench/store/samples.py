@@ -12,7 +12,7 @@ from bench.store.errors import NotFoundError, StoreValueError
 from bench.store.overview import asked_by, asked_by_all, overview_of
 from bench.store.records import Trial
 from bench.store.schema import SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 BLOCK_ROWS = 8192  # larger appends are cut into blocks of this size; twice as fast to read as 65 536, measured
 LARGEST_BLOCK_ROWS = 65_536  # earlier versions cut so

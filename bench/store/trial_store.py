@@ -11,7 +11,7 @@ from bench.store.records import Condition, Event, Trial
 from bench.store.reduction import MIN_POINTS
 from bench.store.trial_writer import TrialWriter
 from bench.store.window import Stretch, reduced
-from compensator.lab.recording import FloatArray, Recording
+from compensator.lab.recordings.recording import FloatArray, Recording
 
 
 class TrialStore:
@@ -35,7 +35,7 @@ class TrialStore:
             name: unique within the experiment.
             kind: what is done ("steps", "load-sweep").
             conditions: what is held constant; finite numbers, text, bools.
-            channels: names from `compensator.lab.channels`, in the order of the columns of the rows.
+            channels: names from `compensator.lab.recordings.channels`, in the order of the columns of the rows.
 
         Raises:
             NotFoundError: no such experiment.

@@ -9,7 +9,7 @@ from bench.store import samples, trials
 from bench.store.database import Database
 from bench.store.errors import StoreStateError
 from bench.store.records import Event
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 
 class TrialWriter:

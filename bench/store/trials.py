@@ -12,7 +12,7 @@ from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.experiments import check_outcome, insert_row, now
 from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
-from compensator.lab.channels import CHANNELS
+from compensator.lab.recordings.channels import CHANNELS
 
 
 def add(

@@ -9,7 +9,7 @@ from bench.store import samples
 from bench.store.overview import GROUP_ROWS
 from bench.store.records import Trial
 from bench.store.reduction import rows_to_keep
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 GROUPS_PER_POINT = 1.5  # fewer, and a plot is made from all rows: MinMaxLTTB wants about two
 

@@ -7,11 +7,11 @@ from bench.store.records import ModelRow
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load, model_of
 from bench.study.models import result_of
-from compensator.lab.breakaway_comparison import held_out_both
-from compensator.lab.catalogue import effect_named
-from compensator.lab.fit import widened
-from compensator.lab.gain import Gain, held_out_gain
-from compensator.lab.validation import HeldOut, held_out
+from compensator.lab.at_rest.breakaway_comparison import held_out_both
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fit import widened
+from compensator.lab.model.gain import Gain, held_out_gain
+from compensator.lab.model.validation import HeldOut, held_out
 
 
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:

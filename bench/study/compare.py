@@ -6,16 +6,16 @@ import numpy as np
 
 from bench.store import Store
 from bench.study.material import Material, load_model
-from compensator.lab import comparison
-from compensator.lab.breakaway_comparison import breakaway_estimates
+from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
+from compensator.lab.at_rest.rest_comparison import at_rest_in_words
 from compensator.lab.chance import stated
-from compensator.lab.data_checks import data_problems
-from compensator.lab.drivers import DRIVERS
-from compensator.lab.fit import Fit
-from compensator.lab.intervals import ParameterEstimate, estimates
-from compensator.lab.recording import FloatArray
-from compensator.lab.rest_comparison import at_rest_in_words
-from compensator.lab.run_to_run import by_run_in_words, friction_by_run
+from compensator.lab.comparison import comparison
+from compensator.lab.comparison.run_to_run import by_run_in_words, friction_by_run
+from compensator.lab.diagnosis.data_checks import data_problems
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.intervals import ParameterEstimate, estimates
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.rows.drivers import DRIVERS
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 

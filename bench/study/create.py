@@ -11,11 +11,11 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models import keep_model
 from bench.study.selection import keep, split
-from compensator.lab.bandwidth import choose_cutoff_hz
-from compensator.lab.catalogue import default_effects, effect_named
-from compensator.lab.dataset import RowChoice
-from compensator.lab.effort import choose_effort
-from compensator.lab.facts import Facts
+from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.recordings.bandwidth import choose_cutoff_hz
+from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.rows.dataset import RowChoice
 
 
 def create_study(

@@ -5,13 +5,13 @@ from typing import Any
 from bench.store import Store
 from bench.study.errors import lab_errors
 from bench.study.material import load_model
-from compensator.lab import diagnosis
-from compensator.lab.catalogue import effect_named
 from compensator.lab.chance import stated
-from compensator.lab.dataset import Dataset
-from compensator.lab.diagnose import diagnose as diagnose_fit
-from compensator.lab.drivers import DRIVERS
-from compensator.lab.fit import Fit
+from compensator.lab.diagnosis import diagnosis
+from compensator.lab.diagnosis.diagnose import diagnose as diagnose_fit
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fit import Fit
+from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.drivers import DRIVERS
 
 
 def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:

@@ -10,9 +10,9 @@ from bench.store.records import ModelRow
 from bench.study.diagnose import diagnosis_of
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Definition, Material, model_of, trials_of
-from compensator.lab.assembly import make_dataset
-from compensator.lab.dataset import Processing
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 
 Shown = Callable[[int, int], None]
 """Called with (studies done, studies in all) as answers come."""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from bench.store.errors import NotFoundError
-from compensator.lab.catalogue import catalogue
+from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import UnknownEffectError
 from compensator.lab.example import example_of

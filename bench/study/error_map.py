@@ -8,8 +8,8 @@ from typing import Any
 from bench.store import Store
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import load_model
-from compensator.lab import error_map as lab
-from compensator.lab.drivers import DRIVERS
+from compensator.lab.comparison import error_map as lab
+from compensator.lab.rows.drivers import DRIVERS
 
 
 def error_map(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:

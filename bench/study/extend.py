@@ -11,7 +11,7 @@ from bench.study.errors import StudyError
 from bench.study.material import Definition, Material, facts_of, load, material_of, model_of
 from bench.study.models import keep_model
 from bench.study.selection import Criterion
-from compensator.lab.assembly import usable
+from compensator.lab.rows.assembly import usable
 
 
 def note_for(study_id: int) -> str:

@@ -10,12 +10,12 @@ from bench.rig import Rig
 from bench.store import Store
 from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
-from compensator.lab.assembly import make_dataset
-from compensator.lab.catalogue import effect_named
-from compensator.lab.dataset import Dataset, Processing, RowChoice
-from compensator.lab.facts import Facts
-from compensator.lab.fit import Fit, fit_model
-from compensator.lab.regimes import BoolArray
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Dataset, Processing, RowChoice
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,11 @@ from typing import Any
 
 from bench.store import Store
 from bench.study.material import Material
-from compensator.lab.breakaway_comparison import compare_breakaway
-from compensator.lab.comparison import repeatability_floor
-from compensator.lab.fit import Fit
-from compensator.lab.gain import error_interval
-from compensator.lab.validation import HeldOut, held_out, relative_error
+from compensator.lab.at_rest.breakaway_comparison import compare_breakaway
+from compensator.lab.comparison.comparison import repeatability_floor
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.gain import error_interval
+from compensator.lab.model.validation import HeldOut, held_out, relative_error
 
 
 def keep_model(store: Store, material: Material, parent_id: int | None, fit: Fit) -> int:

@@ -10,10 +10,10 @@ from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import facts_of, load_model
-from compensator.lab.facts import Facts
-from compensator.lab.fit import Fit
-from compensator.lab.recording import Recording
-from compensator.lab.streaming import PIECE_ROWS, fit_streamed, later_by, piece_starts
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.streaming import PIECE_ROWS, fit_streamed, later_by, piece_starts
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import Recording
 
 
 def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: int | None = None) -> dict[str, Any]:

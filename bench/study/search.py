@@ -6,8 +6,8 @@ from bench.store import Store
 from bench.study.errors import lab_errors
 from bench.study.material import load, model_of
 from bench.study.models import result_of
-from compensator.lab.search import MOST_EFFECTS, Step
-from compensator.lab.search import search as search_from
+from compensator.lab.diagnosis.search import MOST_EFFECTS, Step
+from compensator.lab.diagnosis.search import search as search_from
 
 
 def search(store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS) -> dict[str, Any]:

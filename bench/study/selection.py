@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from bench.store.records import Trial
 from bench.study.errors import StudyError
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,9 +13,9 @@ from bench.study.material import Material, facts_of, load_model
 from bench.study.next_trial.options import Choice, choices
 from bench.study.next_trial.predict import choose
 from bench.study.selection import Criterion
-from compensator.lab.catalogue import effect_named
-from compensator.lab.diagnose import diagnose
-from compensator.lab.suggestion import Pair, Pick, Suggestion, shows_from_rest
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion, shows_from_rest
 
 MOST_TRIALS = 6
 

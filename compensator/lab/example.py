@@ -10,16 +10,16 @@ from itertools import repeat
 
 import numpy as np
 
-from compensator.lab.assembly import make_dataset
-from compensator.lab.breakaway_rows import at_rest_motion
-from compensator.lab.catalogue import default_effects, effect_named
-from compensator.lab.dataset import Dataset, Processing
-from compensator.lab.drivers import DRIVERS
+from compensator.lab.at_rest.breakaway_rows import at_rest_motion
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.effects.effect import SESSION_START, Effect, Onset, Parameter
-from compensator.lab.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
-from compensator.lab.fit import Fit, fit_model
-from compensator.lab.prediction import with_own_prediction
-from compensator.lab.recording import FloatArray, Recording
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.prediction import with_own_prediction
+from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
+from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Dataset, Processing
+from compensator.lab.rows.drivers import DRIVERS
 
 SHARE = 0.3  # of the effort, RMS, that the effect makes
 RATE_HZ, DURATION_S, CUTOFF_HZ = 200.0, 10.0, 12.0

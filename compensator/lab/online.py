@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.dataset import Scales
 from compensator.lab.effects.effect import Effect, Motion, Shape
-from compensator.lab.facts import STANDARD_GRAVITY_M_S2, Facts
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, Facts
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.rows.dataset import Scales
 
 
 @dataclass(frozen=True)

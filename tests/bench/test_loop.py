@@ -12,7 +12,7 @@ from bench.limits import Guard, Limits
 from bench.loop import OFF, RECORDED, Action, ControlLoop, Outcome
 from bench.servo import CurrentServo
 from bench.stop_request import StopRequest
-from compensator.lab.channels import CHANNELS
+from compensator.lab.recordings.channels import CHANNELS
 from drivers.contract import Ages, Command, Mode, Status
 from drivers.errors import DriveFault
 from tests.bench.fake_drive import RIG, FakeDrive, ListSink

@@ -4,9 +4,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from compensator.lab.candidates import Candidates, Curves
-from compensator.lab.evidence import Base, Block
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.candidates import Candidates, Curves
+from compensator.lab.screening.evidence import Base, Block
 
 ROWS = 6000
 

@@ -11,7 +11,7 @@ from bench.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
 from bench.blind.judge import Result, judge
 from bench.blind.pool import ResultsError, run_items
 from bench.errors import ParameterError
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 
 
 def _empty(item: Item) -> Result:

@@ -15,7 +15,7 @@ from bench.challenge.share import effort_share
 from bench.errors import ParameterError
 from bench.recording_set import read_recording_set
 from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.recording import Condition, Recording
+from compensator.lab.recordings.recording import Condition, Recording
 
 SEED = 987_654_321
 

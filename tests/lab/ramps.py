@@ -6,11 +6,11 @@ from itertools import product
 
 import numpy as np
 
-from compensator.lab.assembly import make_dataset
-from compensator.lab.dataset import Processing
-from compensator.lab.facts import Facts
-from compensator.lab.fit import Fit, fit_model
-from compensator.lab.recording import Recording
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 
 RATE_HZ, COUNT_RAD = 200.0, 1e-4
 INERTIA, COULOMB, VISCOUS, STATIC = 0.02, 0.05, 0.03, 0.1

@@ -2,7 +2,7 @@
 
 Trials are recorded once by the simulated bench, through the public command, and each set is judged in a process of its
 own: import, study (read, filter, fit), comparison, diagnosis with its pictures, and the report page are timed apart.
-Rows are streamed (`compensator.lab.streaming`): time and peak memory stand beside their number.
+Rows are streamed (`compensator.lab.model.streaming`): time and peak memory stand beside their number.
 """
 
 import argparse

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from compensator.lab.facts import Facts
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import Recording
 
 Array = NDArray[np.float64]
 G_M_S2 = 9.80665

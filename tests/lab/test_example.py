@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.catalogue import catalogue
+from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.errors import UnknownEffectError
 from compensator.lab.example import SHARE, example_of
 

@@ -13,12 +13,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from compensator.lab.assembly import make_dataset
-from compensator.lab.catalogue import default_effects
-from compensator.lab.dataset import Processing
-from compensator.lab.fit import fit_model
-from compensator.lab.recording import Recording
-from compensator.lab.streaming import fit_streamed
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.streaming import fit_streamed
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Bench, Joint, recordings
 
 BENCH = Bench(duration_s=60.0)

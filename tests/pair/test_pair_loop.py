@@ -14,7 +14,7 @@ from bench.pair.joint import PairJoint
 from bench.pair.loop import PairLoop
 from bench.servo import CurrentServo
 from bench.stop_request import StopRequest
-from compensator.lab.channels import CHANNELS
+from compensator.lab.recordings.channels import CHANNELS
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError
 from tests.bench.fake_drive import RIG, FakeDrive, ListSink

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from bench.recording_set.csv_text import csv_chunks, lines
 from bench.recording_set.stream import PIECE_ROWS, stream_of
-from compensator.lab.recording import Event, Recording
+from compensator.lab.recordings.recording import Event, Recording
 
 
 def text_of(recording: Recording) -> str:

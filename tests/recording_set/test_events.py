@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench.recording_set.events import decode, encode
-from compensator.lab.recording import Event
+from compensator.lab.recordings.recording import Event
 
 TEXT = st.one_of(st.text(st.characters(codec="utf-8")), st.text("ab;: [\"',\\]", max_size=6))
 TIMES = st.floats(allow_nan=False, allow_infinity=False)

@@ -19,8 +19,8 @@ from bench.recording_set import (
 )
 from bench.rig import Arm, Effort, Gear, Motor, Rig
 from bench.store import Store
-from compensator.lab.channels import CHANNELS
-from compensator.lab.recording import Event, Recording
+from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import Event, Recording
 from tests.recording_set.test_values import CONDITIONS
 
 RIG = Rig(

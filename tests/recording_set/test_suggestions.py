@@ -5,7 +5,7 @@ import pytest
 from bench.recording_set import Mapping
 from bench.recording_set.suggestions import _UNITS, suggestion
 from bench.recording_set.toml_file import parse_toml
-from compensator.lab.channels import CHANNELS
+from compensator.lab.recordings.channels import CHANNELS
 
 
 @pytest.mark.parametrize(

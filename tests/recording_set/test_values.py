@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench.recording_set.values import parse, shield, unshield, write
-from compensator.lab.recording import Condition
+from compensator.lab.recordings.recording import Condition
 
 CONDITIONS = st.one_of(
     st.floats(allow_nan=False, allow_infinity=False),

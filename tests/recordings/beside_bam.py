@@ -89,11 +89,11 @@ def _ours(folder: Path, hold_out_kp: int) -> dict[str, Any]:
     """The base model, and that with the first effect that is named; each with the time it took up to then."""
     from bench.recording_set import read_rig
     from bench.study.material import facts_of
-    from compensator.lab.assembly import make_dataset
-    from compensator.lab.catalogue import default_effects
-    from compensator.lab.dataset import Processing
-    from compensator.lab.diagnose import diagnose
-    from compensator.lab.fit import fit_effects, fit_model
+    from compensator.lab.diagnosis.diagnose import diagnose
+    from compensator.lab.effects.catalogue import default_effects
+    from compensator.lab.model.fit import fit_effects, fit_model
+    from compensator.lab.rows.assembly import make_dataset
+    from compensator.lab.rows.dataset import Processing
 
     everything = _recordings(folder)
     facts = facts_of(read_rig(EXAMPLES / "xl330" / "rig.toml"))

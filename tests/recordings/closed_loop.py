@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
-from compensator.lab.fit import Fit
-from compensator.lab.prediction import effort_per_torque
-from compensator.lab.recording import FloatArray
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.prediction import effort_per_torque
+from compensator.lab.recordings.recording import FloatArray
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from compensator.lab.assembly import make_dataset
-from compensator.lab.dataset import Processing
-from compensator.lab.fit import fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 from tests.recordings.closed_loop import Logs, simulated
 

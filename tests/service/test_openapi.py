@@ -9,7 +9,7 @@ import pytest
 
 from bench.figures import trials as figures
 from bench.paper.measurements import Plan
-from compensator.lab.catalogue import catalogue
+from compensator.lab.effects.catalogue import catalogue
 
 
 @pytest.fixture(scope="module")

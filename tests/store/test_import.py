@@ -8,7 +8,7 @@ import pytest
 from bench.store import Event, Store
 from bench.store.errors import NotFoundError, StoreValueError
 from bench.store.importing import Import
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 from tests.store.examples import begin, begin_trial, rows
 
 

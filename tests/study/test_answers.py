@@ -260,7 +260,7 @@ def test_a_search_keeps_every_model_on_its_way(store, experiment_id):
 
 
 def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the_study_looks(store):
-    from tests.lab.test_diagnose import WITH_MEMORY
+    from tests.lab.diagnosis.test_diagnose import WITH_MEMORY
 
     joint = Joint(extra=WITH_MEMORY["pre_sliding"])
     number = create_study(store, "memory", [imported(store, plans((0.0, 0.2)), joint)], cutoff_hz=6.0)["study_id"]

@@ -19,7 +19,7 @@ from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.rig import Rig
 from bench.store import Store
-from compensator.lab.recording import Recording
+from compensator.lab.recordings.recording import Recording
 from tests.lab.synthetic import Bench, Plan, plans, recordings
 from tests.study.conftest import RIG
 

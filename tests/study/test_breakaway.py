@@ -13,8 +13,8 @@ from bench.service.study_models import Changed, Comparison, Ladder
 from bench.store import Store
 from bench.study import add_effect, compare, create_study, ladder
 from bench.study.report import report_html
+from tests.lab.at_rest.test_breakaways import falling
 from tests.lab.ramps import STATIC, ramp_recordings
-from tests.lab.test_breakaways import falling
 
 EXPECTED_STARTS = 24  # of 36: the quickest ramps come up too quickly
 

@@ -10,7 +10,7 @@ from bench.service.study_models import Ladder
 from bench.service.suggestion_models import Used
 from bench.study.errors import StudyError
 from bench.study.use import studied_model
-from compensator.lab.catalogue import effect_named
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.online import works_online
 from tests.bench.calibrated import CURVES, REST, calibrated_configuration
 from tests.study.test_suggest import run

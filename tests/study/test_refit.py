@@ -37,7 +37,7 @@ def test_more_trials_move_the_parameters_within_reason(store, study_id, experime
 
 def test_long_trials_are_read_in_pieces(store, study_id, experiment_id, monkeypatch):
     whole = refit(store, study_id, [experiment_id])
-    for module in ("compensator.lab.streaming", "bench.study.refit"):
+    for module in ("compensator.lab.model.streaming", "bench.study.refit"):
         monkeypatch.setattr(sys.modules[module], "PIECE_ROWS", 900)
     found = refit(store, study_id, [experiment_id])
     assert found["rows"] == pytest.approx(whole["rows"], rel=0.03)

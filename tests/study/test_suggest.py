@@ -17,8 +17,8 @@ from bench.study.extend import note_for
 from bench.study.material import load
 from bench.study.next_trial.options import LONGEST_S, choices
 from bench.study.next_trial.predict import predicted
-from compensator.lab.assembly import more_trials
-from compensator.lab.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.rows.assembly import more_trials
 
 SUGGEST = importlib.import_module("bench.study.suggest")  # the package has the function of that name
 MOTIONS = {

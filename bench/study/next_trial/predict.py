@@ -13,12 +13,12 @@ from bench.in_memory import InMemoryBench
 from bench.study.next_trial.dynamics import dynamics_of
 from bench.study.next_trial.options import Choice
 from bench.study.next_trial.twin import Twin
-from compensator.lab.dataset import Dataset
-from compensator.lab.diagnosis import Diagnosis
+from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.fit import Fit
-from compensator.lab.recording import Condition, Recording
-from compensator.lab.suggestion import Option, Suggestion, suggest
+from compensator.lab.model.fit import Fit
+from compensator.lab.next_trial.suggestion import Option, Suggestion, suggest
+from compensator.lab.recordings.recording import Condition, Recording
+from compensator.lab.rows.dataset import Dataset
 from drivers.errors import DriveError
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.far_side import PLAUSIBLE_SHARE, parting_in_free_play
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, parting_in_free_play
+from compensator.lab.recordings.recording import FloatArray
 
 
 def shapes(motion: Motion) -> list[Shape]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 MOTOR_ORDERS = (1, 2, 4, 6, 8, 10, 12, 14, 18, 20, 24, 28, 30, 36)  # poles, slots, and their common multiples
 

@@ -1,7 +1,7 @@
 """Coulomb friction."""
 
 from compensator.lab.effects.effect import BreakawayShare, Effect, Motion, Onset, Parameter, Shape
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:

@@ -1,7 +1,7 @@
 """Temperature-dependent Coulomb friction."""
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain Coulomb coefficient holds
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from compensator.lab.effects.effect import BreakawayShare, Effect, Motion, Onset, Parameter, Shape
-from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import REST_S
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.reversals import REST_S
 
 
 def shapes(motion: Motion) -> list[Shape]:

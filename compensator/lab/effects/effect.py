@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from compensator.lab.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
-from compensator.lab.recording import Condition, FloatArray
-from compensator.lab.reversals import Strokes, since_rest, strokes_of
+from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
+from compensator.lab.recordings.recording import Condition, FloatArray
+from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
 
 Shape = tuple[float, ...]
 MotionRows = Literal["sliding", "moving"]
@@ -160,7 +160,7 @@ class BreakawayShare:
     Attributes:
         columns: (onset, shape) -> array (k, e), one row per parameter.
         parameters: one per column.
-        driver: the variable to plot breakaway against; a key of `compensator.lab.drivers.DRIVERS`.
+        driver: the variable to plot breakaway against; a key of `compensator.lab.rows.drivers.DRIVERS`.
         shapes: nonlinear shape values to scan, given all moments of the study; `shape_names` names them.
         replaces_lag: the column that stands for seeing the motion late would absorb it, and is left out.
     """
@@ -184,7 +184,7 @@ class Effect:
         equation: TeX.
         columns: (motion, shape) -> array (k, n), one row per parameter. Full rate; filtered afterwards.
         parameters: one per column.
-        driver: the variable to plot residuals against; a key of `compensator.lab.drivers.DRIVERS`.
+        driver: the variable to plot residuals against; a key of `compensator.lab.rows.drivers.DRIVERS`.
         excited_by: what a trial must do so that the effect shows.
         source: paper or book.
         shapes: nonlinear shape values to scan, given any trial's motion; `shape_names` names them.

@@ -3,8 +3,8 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.far_side import PLAUSIBLE_SHARE, parting_on_a_spring
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, parting_on_a_spring
+from compensator.lab.recordings.recording import FloatArray
 
 # of critical: material and teeth alone; with the arm's bearings and what it drags. A column that swings more than the
 # joint does would take a share of the load that is far too small

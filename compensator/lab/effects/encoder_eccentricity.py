@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from compensator.lab.differentiation import rate_of_change
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.recording import FloatArray
 
 
 def shapes(motion: Motion) -> list[Shape]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 UNCERTAIN_SHARE = 0.05  # of the largest effort: the sign of a smaller load is uncertain
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.recording import FloatArray
-from compensator.lab.reversals import deflection
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.reversals import deflection
 
 
 def shapes(motion: Motion) -> list[Shape]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain viscous coefficient holds
 

@@ -1,7 +1,7 @@
 """Weight-dependent friction."""
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_rest
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:

@@ -1,7 +1,7 @@
 """Effort that grows with the motor's temperature."""
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain coefficients hold
 

@@ -1,0 +1,113 @@
+"""What a model says of breaking away, held against the starts from rest: errors, and its parameters with intervals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import stdtrit
+
+from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit, fit_breakaway, held_out_breakaway
+from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.effects.effect import Effect
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.intervals import CONFIDENCE, ParameterEstimate
+from compensator.lab.model.linear import solve
+from compensator.lab.model.validation import HeldOut, relative_error, rms
+from compensator.lab.recordings.recording import FloatArray
+
+FEWEST_STARTS = 12  # fewer do not carry a regression
+
+
+@dataclass(frozen=True)
+class BreakawayComparison:
+    """A model held against the starts from rest.
+
+    Attributes:
+        fit: of the breakaway effort.
+        starts: whose effort is known; training: those that were fitted.
+        relative, rms: error on the training starts, each weighted as in the fit; rms in the effort's unit.
+        held_out: on starts that the coefficients have not seen.
+    """
+
+    fit: BreakawayFit
+    starts: int
+    training: int
+    relative: float
+    rms: float
+    held_out: HeldOut
+
+
+def compare_breakaway(fit: Fit) -> BreakawayComparison | None:
+    """Hold a fitted model against its starts from rest; None where there are too few to fit anything to."""
+    rows = breakaway_rows(fit)
+    if rows is None or int(rows.training.sum()) < FEWEST_STARTS:
+        return None
+    found = fit_breakaway(rows, fit.effects)
+    inside = rows.training
+    residual = (found.weight * found.residual)[inside]
+    effort = (found.weight * rows.effort)[inside]
+    return BreakawayComparison(
+        found, len(rows), int(inside.sum()), relative_error(residual, effort), rms(residual), held_out_breakaway(found)
+    )
+
+
+def held_out_both(before: Fit, after: Fit) -> tuple[HeldOut, HeldOut] | None:
+    """Held-out error of two models of the same trials on their starts, under the weights of the first."""
+    rows = breakaway_rows(before)
+    if rows is None or int(rows.training.sum()) < FEWEST_STARTS:
+        return None
+    one, other = (fit_breakaway(rows, fit.effects) for fit in (before, after))
+    return held_out_breakaway(one), held_out_breakaway(other, one.weight)
+
+
+def breakaway_estimates(fit: BreakawayFit) -> list[ParameterEstimate]:
+    """Every coefficient and shape value of the breakaway effort, in order; intervals by leaving out whole units."""
+    facts = fit.rows.fit.dataset.facts
+    unit = fit.rows.fit.dataset.effort_definition.unit
+    half = _half_widths(fit)
+    found, index = [], 0
+    for share in fit.shares:
+        effect = catalogue().get(share.name)
+        for value, kept, parameter in zip(share.coefficients, share.kept, share.parameters, strict=True):
+            width = float(half[index])
+            found.append(
+                ParameterEstimate(
+                    effect=share.name,
+                    parameter=parameter.name,
+                    unit=parameter.unit_in(unit, facts.position_unit),
+                    value=float(value) if kept else float("nan"),
+                    low=max(float(value) - width, parameter.low) if kept else float("nan"),
+                    high=min(float(value) + width, parameter.high) if kept else float("nan"),
+                    note=_note(share.name, bool(kept)),
+                )
+            )
+            index += 1
+        for name, number in zip(_shape_names(effect), share.shape, strict=False):
+            found.append(ParameterEstimate(share.name, name, "shape", number, float("nan"), float("nan"), ""))
+    return found
+
+
+def _shape_names(effect: Effect | None) -> tuple[str, ...]:
+    return effect.breakaway.shape_names if effect is not None and effect.breakaway is not None else ()
+
+
+def _note(name: str, kept: bool) -> str:
+    if not kept:
+        return "these starts cannot tell it apart from the parameters before it"
+    return "of the measurement: a start is seen a little late" if name == LAG else ""
+
+
+def _half_widths(fit: BreakawayFit) -> FloatArray:
+    """Half widths of the intervals of all coefficients, shape (K,), by a delete-one jackknife over units."""
+    rows = fit.rows
+    inside = rows.training
+    columns = fit.weight[inside, None] * fit.columns[inside]
+    effort, unit = (fit.weight * rows.free)[inside], rows.unit[inside]
+    without = [solve(columns[unit != one], effort[unit != one], fit.bounds).coefficients for one in np.unique(unit)]
+    count = len(without)
+    if count <= 2:
+        return np.full(columns.shape[1], np.nan)
+    spread = np.array(without) - np.mean(without, axis=0)
+    error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
+    half: FloatArray = error * stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE)
+    return half

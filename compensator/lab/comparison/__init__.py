@@ -1,0 +1,1 @@
+"""Measured against predicted effort: by trial, regime, speed and load, and from run to run."""

@@ -1,0 +1,167 @@
+"""Measured against predicted effort: errors by trial and regime, residual against every driver, repeatability floor."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from compensator.lab.at_rest.breakaway_comparison import BreakawayComparison, compare_breakaway
+from compensator.lab.at_rest.rest_comparison import RestComparison, compare_at_rest
+from compensator.lab.effects.effect import SESSION_START
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.validation import HeldOut, held_out, relative_error, rms
+from compensator.lab.recordings.recording import Condition
+from compensator.lab.recordings.regimes import BoolArray, Regime
+from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.rows.drivers import available
+from compensator.lab.rows.picture import BinnedMean, binned_mean
+
+
+@dataclass(frozen=True)
+class ErrorOf:
+    """Error over some rows.
+
+    Attributes:
+        name: of the trial or regime.
+        rows: how many.
+        rms: in the effort's unit.
+        relative: ||residual|| / ||effort||.
+    """
+
+    name: str
+    rows: int
+    rms: float
+    relative: float
+
+
+@dataclass(frozen=True)
+class ResidualAgainst:
+    """Residual in bins of a driver, for one direction of motion ("forward", "backward")."""
+
+    driver: str
+    direction: str
+    bins: BinnedMean
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A model held against the measurement.
+
+    Attributes:
+        training: error over the rows it was fitted to.
+        held_out: on rows it was not fitted to.
+        floor: error that no model can beat: scatter between repeated trials; None without repeats.
+        trials: error of each trial, in the dataset's order, over its counted rows.
+        regimes: error of each regime over all rows. Of "stuck", what lies beyond the efforts between which friction
+            holds, over stretches of 0.1 s; last, of breaking away, over the starts that were fitted.
+        against: residual against every driver, by direction.
+        breakaway: the model held against its starts from rest; None where there are too few.
+        at_rest: the model held against the joint at rest; None where there is next to none.
+    """
+
+    fit: Fit
+    training: ErrorOf
+    held_out: HeldOut
+    floor: ErrorOf | None
+    trials: list[ErrorOf]
+    regimes: list[ErrorOf]
+    against: list[ResidualAgainst]
+    breakaway: BreakawayComparison | None
+    at_rest: RestComparison | None
+
+
+def compare(fit: Fit) -> Comparison:
+    """Hold a fitted model against all rows of its dataset."""
+    dataset = fit.dataset
+    trials = [
+        _error(fit, trial.signals.recording.name, dataset.counted & (dataset.trial_index == index))
+        for index, trial in enumerate(dataset.trials)
+    ]
+    in_motion = (Regime.SLIDING, Regime.TRANSIENT)
+    regimes = [_error(fit, regime.name.lower(), dataset.regime == regime) for regime in in_motion]
+    at_rest = compare_at_rest(fit)
+    if at_rest is not None:
+        regimes.append(ErrorOf("stuck", at_rest.windows, at_rest.rms, at_rest.relative))
+    breakaway = compare_breakaway(fit)
+    if breakaway is not None:
+        regimes.append(ErrorOf("breakaway", breakaway.training, breakaway.rms, breakaway.relative))
+    return Comparison(
+        fit=fit,
+        training=_error(fit, "training", fit.training & dataset.counted),
+        held_out=held_out(fit),
+        floor=repeatability_floor(fit),
+        trials=trials,
+        regimes=[error for error in regimes if error.rows],
+        against=_residual_against(fit),
+        breakaway=breakaway,
+        at_rest=at_rest,
+    )
+
+
+def repeatability_floor(fit: Fit) -> ErrorOf | None:
+    """Scatter of the residual between trials that repeat each other: no model of the motion can explain it.
+
+    Repeats share kind and every condition but `repeat` and their time, and run the same target; at equal times half
+    the power of the difference of their residuals is what one trial alone scatters.
+    """
+    dataset = fit.dataset
+    differences, efforts = [], []
+    for one, other in _repeats(dataset):
+        shared = _common_rows(dataset, one, other)
+        if shared is None:
+            continue
+        rows_one, rows_other = shared
+        differences.append((fit.residual[rows_one] - fit.residual[rows_other]) / np.sqrt(2.0))
+        efforts.append(dataset.effort[rows_one])
+    if not differences:
+        return None
+    scatter, effort = np.concatenate(differences), np.concatenate(efforts)
+    return ErrorOf("repeatability", len(scatter), rms(scatter), relative_error(scatter, effort))
+
+
+def _error(fit: Fit, name: str, rows: BoolArray) -> ErrorOf:
+    residual = fit.residual[rows]
+    return ErrorOf(name, int(rows.sum()), rms(residual), relative_error(residual, fit.dataset.effort[rows]))
+
+
+def _repeats(dataset: Dataset) -> list[tuple[int, int]]:
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for index, trial in enumerate(dataset.trials):
+        recording = trial.signals.recording
+        if "repeat" not in recording.conditions:
+            continue
+        conditions: Sequence[tuple[str, Condition]] = sorted(
+            (key, value) for key, value in recording.conditions.items() if key not in ("repeat", "rows", SESSION_START)
+        )
+        groups.setdefault((recording.kind, *conditions), []).append(index)
+    return [pair for members in groups.values() for pair in combinations(members, 2)]
+
+
+def _common_rows(dataset: Dataset, one: int, other: int) -> tuple[IntArray, IntArray] | None:
+    """Counted rows of two trials at the same times, as index arrays; None where there are too few."""
+    step = 1.0 / (2.0 * dataset.cutoff_hz)
+    slots = []
+    for index in (one, other):
+        rows = np.flatnonzero((dataset.trial_index == index) & dataset.counted)
+        inside = dataset.counted[dataset.trial_index == index]
+        time = dataset.time_of(dataset.trials[index])[inside]
+        slots.append((np.round(time / step).astype(np.int64), rows))
+    _, at_one, at_other = np.intersect1d(slots[0][0], slots[1][0], return_indices=True)
+    if len(at_one) < 10:
+        return None
+    return slots[0][1][at_one], slots[1][1][at_other]
+
+
+def _residual_against(fit: Fit) -> list[ResidualAgainst]:
+    dataset, rows = fit.dataset, fit.dataset.counted
+    motion = dataset.rows_of([trial.motion.direction for trial in dataset.trials])
+    found = []
+    for name, values in available(dataset).items():
+        if name == "direction":
+            continue
+        for direction, side in (("forward", rows & (motion > 0)), ("backward", rows & (motion < 0))):
+            if side.any():
+                bins = binned_mean(values[side], fit.residual[side], dataset.block_index[side])
+                found.append(ResidualAgainst(name, direction, bins))
+    return found

@@ -1,0 +1,192 @@
+"""What breakaway events have to say: which effect is missing in the effort of breaking away from rest."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
+from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit, fit_breakaway, held_out_breakaway, lag_column
+from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
+from compensator.lab.chance import chance_in_words
+from compensator.lab.diagnosis.breakaway_picture import picture_of_breakaway
+from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
+from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE, SIGNIFICANT, is_confirmed
+from compensator.lab.diagnosis.families import EXAMINED, Answer
+from compensator.lab.effects.catalogue import candidates
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.errors import NotApplicableError
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.gain import chance_not_worse, held_out_gain
+from compensator.lab.model.validation import HeldOut
+from compensator.lab.screening.evidence import (
+    Base,
+    Block,
+    Evidence,
+    Screening,
+    among_all,
+    kept_evidence,
+    least_p_value,
+    screen_events,
+)
+
+SPREAD = 3.0  # longest over shortest rest, or quickest over slowest rate, that shows an effect of it
+SHOWS = 0.01  # p in steady sliding, of one effect, from which it is seen there
+WITH_LAG, WITHOUT_LAG = 0, 1  # bases that effects are judged on top of
+RANGES = {"rest": "rests", "effort_rate": "rates of the effort"}
+
+
+@dataclass(frozen=True)
+class _Judged:
+    effect: Effect
+    item: Evidence
+    after: HeldOut
+    fit: BreakawayFit
+
+
+def breakaway_answer(
+    fit: Fit, rows: BreakawayRows | None, sliding: Mapping[str, float] | None = None
+) -> tuple[Answer | None, dict[str, str]]:
+    """Judge the family on breakaway events; None where there are too few, and why effects cannot be judged.
+
+    Args:
+        fit: of the model.
+        rows: its starts from rest.
+        sliding: p-value in steady sliding of every effect that shows there. A joint whose friction depends on load or
+            warmth shows that a hundred times in sliding for once in a start: where sliding says no, starts are not
+            enough to name it.
+    """
+    wanted = [effect for effect, _ in shares_of(candidates(fit.names, fit.dataset.facts))]
+    count = 0 if rows is None else int(rows.training.sum())
+    if rows is None or count < FEWEST_STARTS:
+        why = f"{count} starts from rest whose effort is known, wanted {FEWEST_STARTS}; record breakaway ramps: "
+        only = [effect for effect in wanted if effect.rows == "breakaway"]
+        return None, {effect.name: f"{effect.name} needs more: {why}{effect.excited_by}" for effect in only}
+    base = fit_breakaway(rows, fit.effects)
+    blocks, bases, left_out = _blocks(base, wanted)
+    unit = rows.unit[rows.training]
+    lag = base.coefficients_of(LAG)
+    late = lag is not None and bool(lag[0] > 0.0)  # no start is seen before it happens
+    screening = screen_events(bases, blocks, unit, model=WITH_LAG if late else WITHOUT_LAG)
+    judged = _judge(base, screening, {effect.name: effect for effect in wanted})
+    if not judged:
+        return Answer("nothing", "", 1.0, [], None, []), left_out
+    before = held_out_breakaway(base)
+    ranked = sorted(
+        (_candidate(one, before, judged, bases, blocks) for one in judged),
+        key=lambda one: not (is_confirmed(one) and _shows_where_due(one, sliding)),
+    )
+    p_value = among_all(screening.p_value)
+    found = p_value <= SIGNIFICANT and is_confirmed(ranked[0]) and _shows_where_due(ranked[0], sliding)
+    stretches = len(np.unique(unit))
+    sentence = _sentence(ranked[0], p_value, count, stretches) if found else ""
+    notes = [] if found else _too_few(stretches)
+    best = next(one.item for one in judged if one.effect is ranked[0].effect)
+    verdict: Verdict = "missing" if found else "nothing"
+    return Answer(verdict, sentence, p_value, ranked, None, notes, best.noncentrality), left_out
+
+
+def _shows_where_due(candidate: Candidate, sliding: Mapping[str, float] | None) -> bool:
+    """Whether steady sliding does not speak against an effect that shows there, too."""
+    due = sliding is not None and candidate.effect.rows == "sliding"
+    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SHOWS
+
+
+def _blocks(base: BreakawayFit, wanted: list[Effect]) -> tuple[list[Block], list[Base], dict[str, str]]:
+    """Candidates' columns on the training rows, and the two bases: with the column of the late onset, and without."""
+    rows = base.rows
+    inside, weight = rows.training, base.weight[rows.training]
+    model = base.columns[:, :-1]
+    effort = weight * rows.free[inside]
+    with_lag = np.column_stack([model, lag_column(rows)])
+    bases = [Base.of(weight[:, None] * columns[inside], effort) for columns in (with_lag, model)]
+    blocks, left_out = [], {}
+    for effect, share in shares_of(wanted):
+        try:
+            rows.fit.dataset.check_applicable(effect)
+        except NotApplicableError as reason:
+            left_out[effect.name] = str(reason)
+            continue
+        values = rows.driver(share.driver)
+        if share.driver in RANGES and values is not None and values.max() < SPREAD * values.min():
+            left_out[effect.name] = (
+                f"{effect.name} needs {RANGES[share.driver]} that differ, and all are within {values.min():.2g} .. "
+                f"{values.max():.2g}; record {effect.excited_by}"
+            )
+            continue
+        shapes = rows.shapes(share)
+        for shape in shapes:
+            columns = rows.columns(share, shape)
+            if np.isfinite(columns).all():
+                weighted = weight[:, None] * columns[inside]
+                blocks.append(
+                    Block(effect.name, weighted, WITHOUT_LAG if share.replaces_lag else WITH_LAG, len(shapes), shape)
+                )
+    return blocks, bases, left_out
+
+
+def _judge(base: BreakawayFit, screening: Screening, known: dict[str, Effect]) -> list[_Judged]:
+    """The best shape of every effect, best effect first, refitted."""
+    found: dict[str, Evidence] = {}
+    for item in screening.evidence:
+        found.setdefault(item.block.name, item)
+    shapes = {share.name: share.shape for share in base.shares}
+    judged = []
+    for item in list(found.values())[:EXAMINED]:
+        effect = known[item.block.name]
+        fit = fit_breakaway(base.rows, [*base.rows.fit.effects, effect], {**shapes, effect.name: _shape(item)})
+        judged.append(_Judged(effect, item, held_out_breakaway(fit, base.weight), fit))
+    return judged
+
+
+def _shape(item: Evidence) -> Shape:
+    return item.block.key if isinstance(item.block.key, tuple) else ()
+
+
+def _candidate(
+    one: _Judged, before: HeldOut, judged: list[_Judged], bases: list[Base], blocks: list[Block]
+) -> Candidate:
+    left = kept_evidence([given.extended(one.item.block.columns) for given in bases], blocks)
+    rivals = {
+        other.effect.name: abs(float(one.item.direction @ other.item.direction))
+        for other in judged
+        if other is not one
+        and left.get(other.effect.name, 0.0) < EXPLAINED_BY_RIVAL * other.item.noncentrality
+        and chance_not_worse(other.after, one.after) > NOT_WORSE
+    }
+    nearest = max(rivals.values(), default=0.0)
+    coefficients = one.fit.coefficients_of(one.effect.name)
+    return Candidate(
+        effect=one.effect,
+        shape=_shape(one.item),
+        score=one.item.score,
+        p_value=one.item.p_value,
+        detectability=float(np.sqrt(one.item.noncentrality * max(0.0, 1.0 - nearest**2))),
+        rivals=tuple(sorted(rivals)),
+        before=before.relative,
+        after=one.after.relative,
+        gain=held_out_gain(before, one.after),
+        physical=coefficients is not None and bool(np.any(coefficients != 0.0)),
+        picture=picture_of_breakaway(one.fit, one.effect),
+        rows="breakaway",
+    )
+
+
+def _sentence(best: Candidate, p_value: float, starts: int, units: int) -> str:
+    also = f"; these starts cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
+    return (
+        f"{best.effect.title} is missing{also}: over {starts} starts from rest ({units} of them independent), adding "
+        f"it changes the held-out error of the breakaway effort from {best.before:.2%} to {best.after:.2%} "
+        f"(gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
+        f"{chance_in_words(p_value)})."
+    )
+
+
+def _too_few(units: int) -> list[str]:
+    least = least_p_value(units)
+    if least <= SIGNIFICANT:
+        return []
+    return [
+        f"Breakaway: only {units} independent starts: at best p = {least:.2g}, and {SIGNIFICANT:g} is needed; record "
+        "breakaway ramps, at three rates and after three rests."
+    ]

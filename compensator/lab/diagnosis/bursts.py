@@ -1,0 +1,67 @@
+"""Whether a few stretches leave far more than the others: something that comes and goes, whatever the motion.
+
+What is missing from a model comes back with the motion that drives it. A clutch that slips, a tooth that skips or a
+cable that catches does not: it leaves most stretches alone, and others not. No column over a driver can hold that.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.dataset import Dataset
+
+FEWEST_ROWS = 8  # of a stretch
+FEWEST_STRETCHES = 10
+LARGER = 4.0  # of a stretch's scatter over the median one's; noise gives less than 2, weighted by its motion
+MOST = 0.4  # share of the stretches: more are not a few
+
+
+@dataclass(frozen=True, slots=True)
+class Bursts:
+    """Stretches of a residual that scatter far more than most.
+
+    Attributes:
+        largest: scatter of the worst stretch over the median one's; NaN where there are too few stretches.
+        stretches: that scatter LARGER times as much as the median one, and more; of: how many there are.
+        trials: indices of their trials.
+        share: of the residual's power that is theirs.
+    """
+
+    largest: float
+    stretches: int
+    of: int
+    trials: tuple[int, ...]
+    share: float = 0.0
+
+    @property
+    def are_there(self) -> bool:
+        """Whether a few stretches hold what is left."""
+        return 0 < self.stretches <= MOST * self.of
+
+
+def bursts_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Bursts:
+    """Look for bursts.
+
+    Args:
+        dataset: of the rows.
+        residual: weighted to like variance in like motion, of the chosen rows, shape (rows.sum(),).
+        rows: chosen, shape (N,).
+    """
+    labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
+    count = np.bincount(stretch, minlength=len(labels))
+    power = np.bincount(stretch, weights=residual**2, minlength=len(labels))
+    enough = count >= FEWEST_ROWS
+    if int(enough.sum()) < FEWEST_STRETCHES:
+        return Bursts(float("nan"), 0, int(enough.sum()), ())
+    scatter = np.sqrt(power / np.maximum(count, 1))
+    usual = float(np.median(scatter[enough]))
+    if usual == 0.0:
+        return Bursts(float("nan"), 0, int(enough.sum()), ())
+    wild = enough & (scatter >= LARGER * usual)
+    _, first = np.unique(stretch, return_index=True)
+    trials = np.unique(dataset.trial_index[rows][first[wild]])
+    share = float(power[wild].sum() / power.sum())
+    largest = float(scatter[enough].max() / usual)
+    return Bursts(largest, int(wild.sum()), int(enough.sum()), tuple(map(int, trials)), share)

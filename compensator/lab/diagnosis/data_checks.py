@@ -1,0 +1,231 @@
+"""Problems of the data themselves, looked for before any effect is: a wrong sign or one odd trial mimics physics."""
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.linear import solve, solve_without
+from compensator.lab.model.validation import relative_error, rms
+from compensator.lab.recordings.stuck_sensor import stuck_positions
+
+ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
+FEWEST_TRIALS_TO_COMPARE = 5
+SATURATED_SHARE = 0.2
+UNEXPLAINED = 0.8  # of the effort: a rigid joint with friction explains more, whatever it lacks
+DISSIPATIVE = ("inertia", "coulomb", "viscous")
+BETTER = 0.9  # of the error: what turning the sign of the effort must bring
+POOR = 0.4  # of the effort: what is left where inertia and friction would be negative, and that is no accident
+MIRRORED = 0.5  # of the error of one trial: the same
+SUSPECT = 0.2  # of the effort: an error from which clocks are tried
+MOST_LAG_S, LAG_STEP_S = 2.0, 0.1
+LEAST_LAG_S = 0.3  # less may be a delay of the chain, which is an effect of its own
+MOVED = 0.6  # of the error: what moving the effort in time must leave at most
+FEWEST_ROWS = 20  # of a trial whose sign is judged
+FEWEST_ROWS_OF_ODD = 5  # of a trial: an error of four times the others' is no chance in so many
+TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
+WORSE = 1.5  # times the error that the loads as told leave, for that to be sure
+ORDERED = 0.95  # rank correlation of two conditions over the trials
+WARMER_K = 2.0
+
+
+def fatal_problems(fit: Fit) -> list[str]:
+    """Problems that make any ranking of effects one of noise: stuck sensors, wrong signs, units and clocks."""
+    stuck = stuck_positions([trial.signals.recording for trial in fit.dataset.trials], fit.dataset.facts)
+    found = [*_late(fit), *_wrong_sign(fit)][:1]  # what is late looks turned, too
+    return [*stuck, *found, *_mirrored_trials(fit), *_load_units(fit)]
+
+
+def data_problems(fit: Fit) -> list[str]:
+    """Sentences, each naming the trial or channel, what was found, and what to do; those that are fatal first."""
+    return [
+        *fatal_problems(fit),
+        *unexplained(fit),
+        *_ordered_conditions(fit),
+        *_odd_trials(fit),
+        *_few_usable(fit),
+        *_unused(fit),
+        *_same_samples(fit),
+    ]
+
+
+def _wrong_sign(fit: Fit) -> list[str]:
+    held = [
+        term.effect.name
+        for term in fit.terms
+        if term.effect.name in DISSIPATIVE and term.kept[0] and term.at_bound[0] and term.coefficients[0] <= 0.0
+    ]
+    if "inertia" not in held or len(held) < 2:
+        return []
+    columns, effort = fit.training_equations
+    error = relative_error(effort - columns @ fit.coefficients, effort)
+    turned = relative_error(-effort - columns @ solve(columns, -effort, fit.bounds).coefficients, effort)
+    would = f"{' and '.join(held)} would be negative"
+    if turned < BETTER * error:
+        return [
+            f"{would}: effort and motion have opposite signs (turned, the effort leaves {turned:.0%} instead of "
+            f"{error:.0%}); turn the sign of {' or '.join(fit.dataset.effort_definition.channels)}, or of position"
+        ]
+    if error < POOR:
+        return []
+    return [
+        f"{would}, and {error:.0%} of the effort is left: effort and motion have opposite signs, or one lags far "
+        "behind the other; check the sign and the time of the effort channel and of position"
+    ]
+
+
+def unexplained(fit: Fit) -> list[str]:
+    """An effort that has next to nothing to do with the motion, unless an effect is named that explains most of it."""
+    error = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
+    if error < UNEXPLAINED or not set(DISSIPATIVE) <= set(fit.names):
+        return []
+    return [
+        f"inertia and friction explain next to nothing: the error is {error:.0%} of the effort; check that effort and "
+        "position are of the same joint and time, and their units"
+    ]
+
+
+def _late(fit: Fit) -> list[str]:
+    """Effort and motion apart in time by more than any chain delays: clocks that were never laid over each other."""
+    dataset, rows = fit.dataset, fit.training
+    error = relative_error(fit.residual[rows], dataset.effort[rows])
+    if error < SUSPECT:
+        return []
+    weight = fit.weight[rows]
+    columns, errors = weight[:, None] * fit.columns[rows], {}
+    for lag_s in np.arange(-MOST_LAG_S, MOST_LAG_S + 0.5 * LAG_STEP_S, LAG_STEP_S):
+        moved = [np.interp(t.signals.time_s + lag_s, t.signals.time_s, t.signals.effort)[None] for t in dataset.trials]
+        effort = weight * dataset.stack(moved)[rows, 0]
+        errors[float(lag_s)] = relative_error(
+            effort - columns @ solve(columns, effort, fit.bounds).coefficients, effort
+        )
+    best = min(errors, key=lambda lag_s: errors[lag_s])
+    effort = weight * dataset.effort[rows]
+    turned = relative_error(-effort - columns @ solve(columns, -effort, fit.bounds).coefficients, effort)
+    if abs(best) < LEAST_LAG_S or errors[best] > min(MOVED * error, turned):  # a sine that is turned seems late, too
+        return []
+    which = "behind" if best > 0.0 else "ahead of"
+    return [
+        f"the effort is about {abs(best):.1f} s {which} the motion (moved by that, it leaves {errors[best]:.0%} "
+        f"instead of {error:.0%}); lay the clocks of {' and '.join(dataset.effort_definition.channels)} and of "
+        "position over each other"
+    ]
+
+
+def _mirrored_trials(fit: Fit) -> list[str]:
+    """Trials that the model, fitted to all others, explains far better with their effort turned."""
+    dataset, found = fit.dataset, []
+    kept = np.concatenate([term.kept for term in fit.terms])
+    bounds, columns, effort = fit.bounds.of(kept), fit.columns[:, kept], dataset.effort
+    trained = columns[fit.training]
+    whole = trained.T @ trained, trained.T @ effort[fit.training]
+    for index, trial in enumerate(dataset.trials):
+        rows = dataset.counted & (dataset.trial_index == index)
+        own, own_effort = columns[rows & fit.training], effort[rows & fit.training]
+        predicted = columns[rows] @ solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
+        as_is, turned = (rms(sign * effort[rows] - predicted) for sign in (1.0, -1.0))
+        if int(rows.sum()) >= FEWEST_ROWS and turned < MIRRORED * as_is:
+            found.append(
+                f"trial '{trial.signals.recording.name}' has the other sign: its effort leaves {as_is:.3g} "
+                f"{dataset.effort_definition.unit}, turned {turned:.3g}; turn it, or leave the trial out"
+            )
+    return found
+
+
+def _load_units(fit: Fit) -> list[str]:
+    """Loads that seem to weigh far more, or less, than they are said to, where the effort is known in N m."""
+    gravity = next((term for term in fit.terms if term.effect.name == "gravity"), None)
+    if gravity is None or not gravity.kept[1] or fit.dataset.effort_definition.unit != "N m":
+        return []
+    scale = float(gravity.coefficients[1])
+    if 1.0 / TENFOLD < scale < TENFOLD:
+        return []
+    columns, effort = fit.training_equations
+    place = sum(len(term.coefficients) for term in fit.terms[: fit.terms.index(gravity)]) + 1
+    kept = np.arange(columns.shape[1]) != place
+    given = effort - columns[:, place]  # the loads as told
+    left = given - columns[:, kept] @ solve(columns[:, kept], given, fit.bounds.of(kept)).coefficients
+    if rms(left) < WORSE * rms(effort - columns @ fit.coefficients):
+        return []
+    channels = " or ".join(fit.dataset.effort_definition.channels)
+    seems = "nothing" if scale <= 0.0 else f"{scale:.3g} times what load_kg and arm_m say"
+    return [
+        f"the loads seem to weigh {seems}: check the units of {channels} (mA for A makes 1000), of load_kg (g for kg "
+        "makes 0.001), of arm_m and of position (degrees), and which trial had which load"
+    ]
+
+
+def _ordered_conditions(fit: Fit) -> list[str]:
+    """Load and warmth in step over the trials: what one does, the other could do."""
+    trials = fit.dataset.trials
+    loads = np.array([trial.motion.load_kg for trial in trials])
+    warmth = np.array([float(np.mean(trial.motion.temperature_c)) for trial in trials])
+    if len(trials) < FEWEST_TRIALS_TO_COMPARE or not np.ptp(loads) > 0.0 or not np.ptp(warmth) >= WARMER_K:
+        return []
+    together = float(spearmanr(loads, warmth).statistic)
+    if abs(together) < ORDERED:
+        return []
+    which = "heavier" if together > 0.0 else "lighter"
+    return [
+        f"the {which} the load, the warmer the joint, over all trials: effects of load and of temperature cannot be "
+        "told apart; repeat the first load at the end, or the last one cold"
+    ]
+
+
+def _odd_trials(fit: Fit) -> list[str]:
+    dataset, found = fit.dataset, []
+    errors = {}
+    for index in np.unique(dataset.trial_index[fit.training]):
+        rows = fit.training & (dataset.trial_index == index)
+        if int(rows.sum()) >= FEWEST_ROWS_OF_ODD:
+            errors[int(index)] = rms(fit.residual[rows])
+    if len(errors) < FEWEST_TRIALS_TO_COMPARE:
+        return []
+    median = float(np.median(list(errors.values())))
+    for index, error in errors.items():
+        if error > ODD_TRIAL_FACTOR * median:
+            name = dataset.trials[index].signals.recording.name
+            found.append(
+                f"trial '{name}' is unlike the others: its error is {error:.3g} {dataset.effort_definition.unit}, the "
+                f"median trial's is {median:.3g}; look at it, and leave it out if it was disturbed"
+            )
+    return found
+
+
+def _few_usable(fit: Fit) -> list[str]:
+    found = []
+    for trial in fit.dataset.trials:
+        share = 1.0 - float(np.mean(trial.signals.usable))
+        saturated = trial.signals.recording.channels.get("duty")
+        at_limit = 0.0 if saturated is None else float(np.mean(np.abs(saturated) >= 0.98))
+        if at_limit > SATURATED_SHARE:
+            found.append(
+                f"trial '{trial.signals.recording.name}': the duty is at its limit for {at_limit:.0%} of the time and "
+                f"{share:.0%} of the rows are left out; record it with a lighter load or slower"
+            )
+    return found
+
+
+def _unused(fit: Fit) -> list[str]:
+    """Trials of no use to any effect. Those that only reverse still tell of effects with memory."""
+    dataset = fit.dataset
+    used = set(np.unique(dataset.trial_index[dataset.in_regimes("moving")]).tolist())
+    idle = [f"'{t.signals.recording.name}'" for index, t in enumerate(dataset.trials) if index not in used]
+    if not idle:
+        return []
+    return [
+        f"not used, since the joint does not move in any usable row of theirs: {', '.join(idle)}; record motion, or "
+        "leave them out"
+    ]
+
+
+def _same_samples(fit: Fit) -> list[str]:
+    """Copies are not independent: a trial that judges its own copy proves nothing."""
+    names: dict[bytes, list[str]] = {}
+    for trial in fit.dataset.trials:
+        names.setdefault(trial.signals.effort.tobytes(), []).append(f"'{trial.signals.recording.name}'")
+    return [
+        f"trials {', '.join(same)} hold the same samples: held-out errors and intervals look better than they are; "
+        "keep one of them"
+        for same in names.values()
+        if len(same) > 1
+    ]

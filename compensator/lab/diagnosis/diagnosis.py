@@ -1,0 +1,89 @@
+"""What a diagnosis says. Plain data; how it is found is in `diagnose`."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from compensator.lab.effects.effect import Effect, EffectRows, Shape
+from compensator.lab.model.gain import Gain
+from compensator.lab.rows.picture import BinnedMean
+
+Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Why: what the effect has to explain against its driving variable, and the effect's own curve over it.
+
+    Attributes:
+        driver: key of `DRIVERS`.
+        against_motion: values are counted positive against the motion, as friction is.
+        residual: partial residual: what the model with the effect leaves, plus the effect.
+        curve: the effect alone, in the same bins.
+    """
+
+    driver: str
+    against_motion: bool
+    residual: BinnedMean
+    curve: BinnedMean
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect that may be missing.
+
+    Attributes:
+        effect: which; shape: its best nonlinear shape.
+        score: evidence for naming, in units of 2 ln L after the price of parameters and shapes.
+        p_value: of this effect alone, robust against autocorrelation.
+        detectability: d', how far the data can tell it from its nearest rival.
+        rivals: effects whose evidence mostly vanishes once this one is in the model.
+        before, after: relative held-out error without and with it.
+        gain: relative fall of that error.
+        physical: all its coefficients lie within their physical bounds when fitted freely.
+        picture: why.
+        rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
+    """
+
+    effect: Effect
+    shape: Shape
+    score: float
+    p_value: float
+    detectability: float
+    rivals: tuple[str, ...]
+    before: float
+    after: float
+    gain: Gain
+    physical: bool
+    picture: Picture | None
+    rows: EffectRows = "sliding"
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The answer.
+
+    Attributes:
+        verdict: what kind of answer it is; "data-problem": the data are wrong, and nothing is ranked.
+        sentence: the answer in words.
+        p_value: chance of evidence as strong as the best one's if nothing were missing; NaN where nothing was judged.
+        classes: effects that these trials cannot tell apart, best first; the first is the answer.
+        candidates: ranked.
+        driver: for "unknown-effect", what the residual varies with.
+        data_problems: sentences.
+        notes: sentences.
+        left_out: effect -> why it could not be judged.
+        too_short: there are too few independent stretches for anything to be sure, so that ranks mean nothing.
+        remains: something is left that nothing named explains: a curve that no effect follows, or more than noise.
+    """
+
+    verdict: Verdict
+    sentence: str
+    p_value: float
+    classes: list[tuple[str, ...]]
+    candidates: list[Candidate]
+    driver: str | None = None
+    data_problems: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)
+    too_short: bool = False
+    remains: bool = False

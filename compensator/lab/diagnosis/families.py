@@ -1,0 +1,196 @@
+"""What one family of effects has to say: its best effect, confirmed or not, or a curve that none of them follows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.diagnosis.bursts import Bursts, bursts_of
+from compensator.lab.diagnosis.constancy import change_of
+from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
+from compensator.lab.diagnosis.examination import (
+    SIGNIFICANT,
+    examine,
+    is_confirmed,
+    is_past_scan,
+    is_possible,
+    is_sure,
+    is_too_small,
+    is_within_bounds,
+)
+from compensator.lab.diagnosis.remainder import LEAST_SHARE, remainder_of
+from compensator.lab.diagnosis.wording import (
+    answer_in_words,
+    bending_in_words,
+    bursts_in_words,
+    changing_in_words,
+    unexplained_in_words,
+)
+from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.model.fit import Fit, with_columns
+from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.validation import held_out
+from compensator.lab.model.weights import row_weights
+from compensator.lab.rows.drivers import DRIVERS
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen
+
+EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
+FEWEST_SHOWN = 2
+TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
+ALIKE = 0.95  # correlation of what two effects explain
+FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
+SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one family of effects has to say.
+
+    Attributes:
+        strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
+        remains: more than noise is left that nothing named here explains.
+        Others as in `Diagnosis`.
+    """
+
+    verdict: Verdict
+    sentence: str
+    p_value: float
+    candidates: list[Candidate]
+    driver: str | None
+    notes: list[str]
+    strength: float = 0.0
+    remains: bool = False
+
+
+def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
+    """Judge a family.
+
+    Args:
+        fit: the model, fitted to the rows where the family shows.
+        gathered: what it may be missing.
+        named: evidence for the family's effects.
+        generic: evidence for free curves; None where a formula need not be held against one.
+    """
+    best_of_each = _best_shapes(gathered, named)
+    if not best_of_each:
+        return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
+    shown = [item for item in best_of_each if item.score > 0.0][:EXAMINED]
+    examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else best_of_each[:FEWEST_SHOWN])
+    best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
+    curve = _curve(fit, gathered, generic)
+    followed = curve is None or (examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality)
+    if curve is not None and generic is not None and not followed:
+        driver, p_value = curve.block.name, among_all(generic.p_value)
+        sentence = answer_in_words("unknown-effect", p_value, examined, driver)
+        return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
+    p_value = among_all(named.p_value)
+    # what explains much less than an effect that cannot be it is the shadow of something else
+    share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
+    enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
+    if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
+        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
+        return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
+    found = _bends(gathered, examined, best_of_each)
+    if p_value <= SIGNIFICANT and found is not None:
+        bends, too_far = found
+        others = [one for one in examined if one is not bends]
+        sentence = bending_in_words(bends, too_far, fit.dataset.facts, p_value)
+        driver, strength = bends.effect.driver, max(item.noncentrality for item in best_of_each)
+        return Answer("unknown-effect", sentence, p_value, [bends, *others], driver, [], strength, remains=True)
+    stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
+    sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
+    if generic is not None:
+        left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
+        bursts = _bursts(gathered)
+        change = change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights)
+        if bursts.are_there and left.share * np.sqrt(bursts.share) > LEAST_SHARE:
+            names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
+            sentence, remains = bursts_in_words(bursts, names, left.share, p_value), True
+        elif left.is_more_than_noise or change is not None:
+            sentence, remains = unexplained_in_words(left, change, _nearest_driver(generic), p_value), True
+    return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+
+
+def _bends(
+    gathered: Candidates, examined: list[Candidate], best_of_each: list[Evidence]
+) -> tuple[Candidate, bool] | None:
+    """What explains most, for sure, but cannot be the friction it stands in the place of: a part of it, or too far."""
+    most = max(best_of_each, key=lambda item: item.noncentrality)
+    candidate = next((one for one in examined if one.effect.name == most.block.name), None)
+    if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
+        return None
+    too_far = candidate.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
+    return (candidate, too_far) if too_far or is_too_small(gathered, most) else None
+
+
+def _best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
+    """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
+    of_each: dict[str, list[Evidence]] = {}
+    for evidence in screening.evidence:
+        of_each.setdefault(evidence.block.name, []).append(evidence)
+    found = [_best_shape(gathered, shapes) for shapes in of_each.values()]
+    ranked = sorted(found, key=lambda item: -item.score)
+    order = list(catalogue())
+    tied = [item for item in ranked if _ties(item, ranked[0])]
+    plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
+    return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
+
+
+def _best_shape(gathered: Candidates, shapes: list[Evidence]) -> Evidence:
+    """The best one; near reversals, of those whose size can be: what swings too little, or too much, makes up by it."""
+    if gathered.show_in != "moving":
+        return shapes[0]
+    return next((item for item in shapes if item.score > 0.0 and is_possible(gathered, item)), shapes[0])
+
+
+def _ties(item: Evidence, best: Evidence) -> bool:
+    """Whether two effects explain the same, and about as well: then the rows cannot choose between them."""
+    alike = abs(float(item.direction @ best.direction)) >= ALIKE
+    return alike and item.score >= best.score - TIE
+
+
+def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
+    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
+    if generic is None or among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
+        return None
+    best = generic.evidence[0]
+    if best.score <= 0.0 or best.p_value > SIGNIFICANT:
+        return None
+    with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
+    return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
+
+
+def _bursts(gathered: Candidates) -> Bursts:
+    """Stretches that leave far more than others of like motion."""
+    dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
+    return bursts_of(dataset, residual[rows] * row_weights(dataset, residual, rows), rows)
+
+
+def _nearest_driver(generic: Screening) -> str | None:
+    """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
+    best = generic.evidence[0] if generic.evidence else None
+    return best.block.name if best is not None and best.score > 0.0 else None
+
+
+def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
+    """What remains once the best effect is in the model."""
+    left = gathered.with_block(best.block)
+    dataset, rows = gathered.fit.dataset, gathered.rows
+    base = left.bases[best.block.base]
+    remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
+    steady = gathered.show_in == "sliding"  # a formula of memory that is nearly right leaves some in every stretch
+    change = change_of(dataset, rows, base, gathered.weights) if steady else None
+    if change is None and not remainder.is_more_than_noise:
+        return []
+    rest = screen(left.bases, left.curves.blocks, dataset.block_index[rows])
+    if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
+        name = rest.evidence[0].block.name
+        driver = DRIVERS[name.removesuffix(" against motion")]
+        how = " against the motion" if name.endswith("against motion") else ""
+        return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
+    if change is not None:
+        return [f"After {best.block.name}, {changing_in_words(change)}; repeat a trial to see whether it comes again."]
+    return [
+        f"After {best.block.name}, what is left is still more than noise, {remainder.share:.1%} of the effort, and "
+        "has structure over no variable that is measured; add it and diagnose again."
+    ]

@@ -1,0 +1,119 @@
+"""Several effects at once: forward, swap, backward.
+
+The first name is given while the others are still missing, and may be a mixture of them. So after every effect that is
+added, each earlier one is taken out again and its place is judged anew, given all the others; and what no longer helps
+on held-out rows is dropped (Efroymson 1960, with held-out error in place of F).
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from compensator.lab.diagnosis.diagnose import best_named, diagnose
+from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fit import Fit, fit_effects
+from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.validation import HeldOut, held_out
+
+MOST_EFFECTS = 4
+
+Change = Literal["add", "swap", "drop"]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One change of the model.
+
+    Attributes:
+        change: what was done; effect: to which effect; instead_of: for a swap, which one gave way.
+        fit: the model after it.
+        held_out: its error, on the study's rows.
+    """
+
+    change: Change
+    effect: str
+    instead_of: str | None
+    fit: Fit
+    held_out: HeldOut
+
+
+@dataclass(frozen=True)
+class Search:
+    """The way from a model to one that lacks nothing that these trials can show.
+
+    Attributes:
+        start: the model that was searched from.
+        steps: in order; empty where nothing is missing.
+        last: diagnosis of the final model.
+    """
+
+    start: Fit
+    steps: tuple[Step, ...]
+    last: Diagnosis
+
+    @property
+    def fit(self) -> Fit:
+        """The final model."""
+        return self.steps[-1].fit if self.steps else self.start
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """Effects that the final model has and the first one had not."""
+        return tuple(name for name in self.fit.names if name not in self.start.names)
+
+
+def search(fit: Fit, most: int = MOST_EFFECTS) -> Search:
+    """Add effects while a diagnosis names one, and keep the earlier ones honest.
+
+    Args:
+        fit: the model to begin with; its own effects stay.
+        most: effects that are added at most.
+
+    Raises:
+        UnusableDataError: as `diagnose`.
+    """
+    start, steps = fit, []
+    diagnosis = diagnose(fit)
+    while diagnosis.verdict == "missing" and len(fit.names) < len(start.names) + most:
+        name = diagnosis.classes[0][0]
+        steps.append(_step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training)))
+        steps += _swaps(start, steps[-1].fit)
+        steps += _drops(start, steps[-1].fit)
+        if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
+            break  # the same model again: the trials do not decide
+        fit = steps[-1].fit
+        diagnosis = diagnose(fit)
+    return Search(start, tuple(steps), diagnosis)
+
+
+def _step(change: Change, effect: str, instead_of: str | None, fit: Fit) -> Step:
+    return Step(change, effect, instead_of, fit, held_out(fit))
+
+
+def _swaps(start: Fit, fit: Fit) -> list[Step]:
+    """Exchange added effects, oldest first, for what the rows speak for more now that the others are in the model."""
+    steps: list[Step] = []
+    for name in [name for name in fit.names if name not in start.names][:-1]:
+        without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
+        rows = effect_named(name).rows
+        better = None if rows == "breakaway" else best_named(without, rows)
+        if better not in (None, name) and better not in fit.names:
+            swapped = fit_effects(
+                fit.dataset, [better if other == name else other for other in fit.names], fit.training
+            )
+            if held_out(swapped).rms < held_out(fit).rms:
+                fit = swapped
+                steps.append(_step("swap", str(better), name, fit))
+    return steps
+
+
+def _drops(start: Fit, fit: Fit) -> list[Step]:
+    """Drop added effects that no longer lower the held-out error for sure."""
+    steps: list[Step] = []
+    for name in [name for name in fit.names if name not in start.names][:-1]:
+        without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
+        rows = fit.dataset.choice_for([effect_named(name)])
+        if held_out_gain(held_out(without, rows), held_out(fit, rows)).low <= 0.0:
+            fit = without
+            steps.append(_step("drop", name, None, fit))
+    return steps

@@ -1,0 +1,118 @@
+"""What a diagnosis says in words."""
+
+from collections.abc import Sequence
+from math import isfinite
+
+from compensator.lab.chance import chance_in_words
+from compensator.lab.diagnosis.bursts import Bursts
+from compensator.lab.diagnosis.constancy import Change
+from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
+from compensator.lab.diagnosis.examination import SIGNIFICANT
+from compensator.lab.diagnosis.remainder import Remainder
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.rows.dataset import BLOCK_S
+from compensator.lab.screening.evidence import least_p_value
+
+MOST_NAMES = 3
+
+
+def answer_in_words(
+    verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None, stretches: int | None = None
+) -> str:
+    """The answer in one sentence, with its numbers.
+
+    Args:
+        verdict: as in a diagnosis.
+        p_value: as in a diagnosis.
+        candidates: as in a diagnosis.
+        driver: as in a diagnosis.
+        stretches: independent stretches of BLOCK_S that it rests on; None where that is no limit.
+    """
+    if verdict == "nothing" and stretches is not None and least_p_value(stretches) > SIGNIFICANT:
+        return _too_few(stretches)
+    if verdict == "nothing":
+        return _nothing(p_value)
+    best = candidates[0]
+    if verdict == "unknown-effect":
+        why = "does not follow its curve" if best.physical else "would need a sign or size that is not physical"
+        return (
+            f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
+            f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)})."
+        )
+    title = best.effect.title
+    also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
+    return (
+        f"{title} is missing{also}: adding it changes the held-out error from {best.before:.2%} to "
+        f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
+        f"{chance_in_words(p_value)})."
+    )
+
+
+def problem_in_words(problem: str) -> str:
+    """The answer where the data themselves are wrong."""
+    return f"The data have a problem that no effect could be told from: {problem}."
+
+
+def _too_few(stretches: int) -> str:
+    enough = next(count for count in range(1, 99) if least_p_value(count) <= SIGNIFICANT)
+    return (
+        f"These trials are too short to tell whether anything is missing: only {stretches} independent stretches of "
+        f"{BLOCK_S:g} s, at best {chance_in_words(least_p_value(stretches))}, and {SIGNIFICANT:g} is needed; record "
+        f"{BLOCK_S * (enough - stretches):g} more seconds of motion at least; other loads and speeds tell most."
+    )
+
+
+def _nothing(p_value: float) -> str:
+    if p_value > SIGNIFICANT:
+        chance = f"{chance_in_words(p_value)}; {SIGNIFICANT:g} or less would tell"
+        return f"Nothing is missing that these trials can show ({chance})."
+    return (
+        f"No effect of the catalogue is confirmed: the residual is not mere noise ({chance_in_words(p_value)}), but "
+        "none lowers the held-out error for sure."
+    )
+
+
+def unexplained_in_words(remainder: Remainder, change: Change | None, driver: str | None, p_value: float) -> str:
+    """The answer where much is left that no effect and no curve explains."""
+    if isfinite(remainder.frequency_hz):
+        how = f"it swings at about {remainder.frequency_hz:.2g} Hz in most trials: look at the supply and at what turns"
+    elif change is not None:
+        how = changing_in_words(change)
+    elif driver is not None:
+        how = f"it varies with {driver}, most of all that is measured"
+    else:
+        how = "it varies with nothing that is measured"
+    return (
+        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
+        f"{remainder.share:.1%} of the effort, is more than noise; {how}. Repeat a trial: what comes again is the "
+        "joint's, what does not has changed since."
+    )
+
+
+def changing_in_words(change: Change) -> str:
+    """What is not as constant as the model takes it for."""
+    return f"{change.what} changes from one stretch of {BLOCK_S:g} s to the next, by {change.share:.1%} of the effort"
+
+
+def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: float) -> str:
+    """The answer where something comes up over a distance after a reversal that is not the friction itself."""
+    least = " or more" if too_far else ""
+    why = "is too far" if too_far else "is too small a part of the dry friction"
+    return (
+        "Something is missing, and it is none of the catalogue: it varies with the travel since the last reversal, "
+        f"over some {bends.shape[0]:.2g} {facts.position_unit}{least}, and {why} for "
+        f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
+        f"fall from {bends.before:.2%} to {bends.after:.2%}). Look at hoses, cables and seals that bend with the joint."
+    )
+
+
+def bursts_in_words(bursts: Bursts, trials: Sequence[str], share: float, p_value: float) -> str:
+    """The answer where a few stretches leave far more than the others."""
+    more = f" and {len(trials) - MOST_NAMES} more" if len(trials) > MOST_NAMES else ""
+    return (
+        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, {share:.1%} of the "
+        f"effort, comes in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to "
+        f"{bursts.largest:.1f} times as much as the others, in {', '.join(trials[:MOST_NAMES])}{more}. Something "
+        "slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these trials with less "
+        "load."
+    )

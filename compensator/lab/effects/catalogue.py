@@ -1,0 +1,116 @@
+"""The catalogue of effects: ours, and those that other packages offer as entry points."""
+
+import difflib
+from collections.abc import Sequence
+from functools import cache
+from importlib.metadata import entry_points
+
+from compensator.lab.effects import (
+    back_driving_friction,
+    backlash,
+    centre_of_mass_angle,
+    cogging,
+    coulomb,
+    coulomb_asymmetry,
+    coulomb_temperature,
+    current_gain_asymmetry,
+    dead_time,
+    dwell_strengthening,
+    elasticity,
+    encoder_eccentricity,
+    frictional_lag,
+    gravity,
+    inertia,
+    load_friction,
+    load_friction_quadratic,
+    measurement_delay,
+    offset,
+    position_periodic_friction,
+    pre_sliding,
+    rate_dependent_breakaway,
+    spring,
+    stribeck,
+    torque_constant_saturation,
+    viscous,
+    viscous_asymmetry,
+    viscous_quadratic,
+    viscous_temperature,
+    warm_up,
+    weight_friction,
+    winding_temperature,
+)
+from compensator.lab.effects.effect import Effect
+from compensator.lab.errors import UnknownEffectError
+from compensator.lab.recordings.facts import Facts
+
+ENTRY_POINT_GROUP = "friction_bench.effects"
+
+_OURS = (
+    inertia,
+    gravity,
+    offset,
+    coulomb,
+    viscous,
+    stribeck,
+    coulomb_asymmetry,
+    viscous_asymmetry,
+    viscous_quadratic,
+    load_friction,
+    load_friction_quadratic,
+    weight_friction,
+    back_driving_friction,
+    coulomb_temperature,
+    viscous_temperature,
+    warm_up,
+    position_periodic_friction,
+    cogging,
+    spring,
+    centre_of_mass_angle,
+    torque_constant_saturation,
+    winding_temperature,
+    pre_sliding,
+    backlash,
+    frictional_lag,
+    dwell_strengthening,
+    rate_dependent_breakaway,
+    elasticity,
+    measurement_delay,
+    encoder_eccentricity,
+    current_gain_asymmetry,
+    dead_time,
+)
+
+
+@cache
+def catalogue() -> dict[str, Effect]:
+    """Every known effect by name; ours first, then those of installed packages."""
+    effects = {module.EFFECT.name: module.EFFECT for module in _OURS}
+    for point in entry_points(group=ENTRY_POINT_GROUP):
+        effect: Effect = point.load()
+        effects.setdefault(effect.name, effect)
+    return effects
+
+
+def effect_named(name: str) -> Effect:
+    """The effect of this name.
+
+    Raises:
+        UnknownEffectError: there is none; the message lists near names.
+    """
+    known = catalogue()
+    if name in known:
+        return known[name]
+    near = difflib.get_close_matches(name, known, n=3) or list(known)
+    raise UnknownEffectError(f"effect '{name}' is not in the catalogue; known are for instance: {', '.join(near)}")
+
+
+def default_effects(facts: Facts) -> tuple[str, ...]:
+    """The model a study starts from: rigid joint with the General Kinetic Friction of eq. (2)."""
+    gravity_names = () if facts.horizontal or facts.joint == "linear" else ("gravity",)
+    return ("inertia", *gravity_names, "offset", "coulomb", "viscous", "stribeck")
+
+
+def candidates(present: Sequence[str], facts: Facts) -> list[Effect]:
+    """Effects of the catalogue that a model does not have yet and that this joint can have."""
+    impossible = {"gravity", "centre_of_mass_angle"} if facts.horizontal or facts.joint == "linear" else set()
+    return [effect for name, effect in catalogue().items() if name not in present and name not in impossible]

@@ -1,0 +1,1 @@
+"""A model fitted to rows, and how wrong it is on others."""

@@ -1,0 +1,262 @@
+"""Fit a model (a list of effects) to the rows of a study: bounded least squares, shapes by variable projection."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.model.linear import Bounds, Solution, solve
+from compensator.lab.model.prediction import with_own_prediction
+from compensator.lab.model.shape_search import find_shapes, first_shapes
+from compensator.lab.model.weights import regime_weights
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray, Regime
+from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
+
+MOST_PASSES = 20  # each shrinks the change of the predicted load several times
+DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
+SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
+
+
+@dataclass(frozen=True)
+class Term:
+    """One fitted effect.
+
+    Attributes:
+        effect: which.
+        shape: its nonlinear shape values.
+        coefficients: one per parameter of the effect, shape (k,).
+        kept: which of them the data determine.
+        at_bound: which of them a physical bound holds.
+    """
+
+    effect: Effect
+    shape: Shape
+    coefficients: FloatArray
+    kept: BoolArray
+    at_bound: BoolArray
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model fitted to counted training rows.
+
+    Attributes:
+        dataset: with the model's own prediction in its motions.
+        training: rows used, shape (N,).
+        terms: the fitted effects, in the model's order.
+        columns: of all terms, shape (N, K).
+        weight: of each row in the fit, shape (N,).
+    """
+
+    dataset: Dataset
+    training: BoolArray
+    terms: tuple[Term, ...]
+    columns: FloatArray
+    weight: FloatArray
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of all terms, shape (K,)."""
+        return np.concatenate([term.coefficients for term in self.terms])
+
+    @property
+    def bounds(self) -> Bounds:
+        """Physical bounds of all coefficients."""
+        return bounds_of(self.effects, self.dataset)
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects themselves."""
+        return tuple(term.effect for term in self.terms)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(term.effect.name for term in self.terms)
+
+    @property
+    def shapes(self) -> dict[str, Shape]:
+        """Shape of each effect by name."""
+        return {term.effect.name: term.shape for term in self.terms}
+
+    @property
+    def dry_friction(self) -> float:
+        """What the model takes off the effort, or adds to it, at the slowest, by the direction of motion alone."""
+        return sum(float(term.coefficients[0]) for term in self.terms if term.effect.name in DRY)
+
+    @property
+    def training_equations(self) -> tuple[FloatArray, FloatArray]:
+        """Weighted columns (n, K) and effort (n,) of the training rows."""
+        weight = self.weight[self.training]
+        return weight[:, None] * self.columns[self.training], weight * self.dataset.effort[self.training]
+
+    @property
+    def predicted(self) -> FloatArray:
+        """Predicted effort of every row, shape (N,)."""
+        return self.columns @ self.coefficients
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus predicted effort of every row, shape (N,)."""
+        return self.dataset.effort - self.predicted
+
+
+def fit_model(
+    dataset: Dataset,
+    effects: Sequence[str],
+    training: BoolArray | None = None,
+    shapes: Mapping[str, Shape] | None = None,
+) -> Fit:
+    """Fit the named effects, every coefficient within its physical bounds.
+
+    Args:
+        dataset: rows of all trials.
+        effects: names, in order; of columns that the data cannot tell apart, the later is dropped.
+        training: rows to fit to, shape (N,); all counted rows if None.
+        shapes: nonlinear shapes to keep as they are; those not given are searched.
+
+    Raises:
+        UnusableDataError: no effects, or fewer rows than columns.
+        UnknownEffectError, NotApplicableError: see `catalogue` and `Dataset.columns`.
+    """
+    if not effects:
+        raise UnusableDataError("the model has no effects; add at least one, for instance 'coulomb'")
+    rows = dataset.counted if training is None else training
+    chosen = [effect_named(name) for name in effects]
+    if not (rows & (dataset.regime != Regime.SLIDING)).any() or dataset.rows != "sliding":
+        return _fit(dataset, chosen, rows, shapes or {}, np.ones(len(rows)))
+    # rows near reversals were asked for by an effect that lives there: they must not outvote the others
+    steady = [effect for effect in chosen if effect.rows == "sliding"] or chosen
+    sliding = rows & (dataset.regime == Regime.SLIDING)
+    first = _fit(dataset, steady, sliding, shapes or {}, np.ones(len(rows)))
+    kept = {**{name: first.shapes[name] for name in first.names}, **(shapes or {})}
+    return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows))
+
+
+def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
+    """Which trials a model may be fitted to: those of its training rows, and those that nobody held out.
+
+    A trial of reversals or starts alone has no sliding row, and so no training row of a model of sliding; it is not
+    held out by that. Where other trials are held out on purpose, it stays out of either.
+
+    Args:
+        dataset: of the rows.
+        training: rows of the study's choice that the model is fitted to, shape (N,).
+    """
+    trained = np.unique(dataset.trial_index[training])
+    counted = np.unique(dataset.trial_index[dataset.counted])
+    every = np.arange(len(dataset.trials), dtype=np.int64)
+    return every if np.isin(counted, trained).all() else trained
+
+
+def widened(fit: Fit, rows: RowChoice) -> Fit:
+    """The same model on another choice of rows of the same trials, its shapes kept."""
+    trials = fit.dataset.trial_index
+    chosen = fit.dataset.in_regimes(rows) & np.isin(trials, trained_trials(fit.dataset, fit.training))
+    if (chosen == fit.training).all():
+        return fit
+    return fit_model(fit.dataset, fit.names, chosen, fit.shapes)
+
+
+def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -> Fit:
+    """Fit the named effects to the trials of some training rows: to the study's rows, wider where an effect needs it.
+
+    Arguments and errors as `fit_model`; `training` tells which trials.
+    """
+    trials = dataset.trial_index
+    rows = dataset.in_regimes(dataset.choice_for([effect_named(name) for name in effects]))
+    return fit_model(dataset, effects, rows & np.isin(trials, trained_trials(dataset, training)))
+
+
+def _fit(
+    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
+) -> Fit:
+    plain = [effect for effect in effects if not effect.uses_prediction]
+    shapes = find_shapes(dataset, plain or effects, rows, kept, weight)
+    fit = fit_linear(dataset, plain or effects, rows, shapes, weight)
+    if len(plain) == len(effects):
+        return fit
+    fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept})
+    return _settle(fit, effects, find_shapes(with_own_prediction(fit), effects, rows, kept, weight, fit.shapes))
+
+
+def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> Fit:
+    """Refit until the load that the model predicts is the load that its own terms are built from.
+
+    Teeth that meet a little sooner or later leave a rest that does not shrink any more: there, too, it ends.
+    """
+    last = np.inf
+    for _ in range(MOST_PASSES):
+        before = fit.predicted
+        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes, fit.weight)
+        change = float(np.linalg.norm(fit.predicted - before))
+        if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or change >= last:
+            break
+        last = change
+    return fit
+
+
+def fit_linear(
+    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape], weight: FloatArray
+) -> Fit:
+    """Fit the coefficients of effects of given shapes to the given rows, weighted (N,)."""
+    columns = dataset.columns_of_model(effects, shapes)
+    if int(rows.sum()) < 2 * columns.shape[1]:
+        raise UnusableDataError(
+            f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
+        )
+    inside = weight[rows]
+    solution = solve(inside[:, None] * columns[rows], inside * dataset.effort[rows], bounds_of(effects, dataset))
+    return Fit(dataset, rows, _terms(effects, shapes, solution), columns, weight)
+
+
+def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Solution) -> tuple[Term, ...]:
+    """Share a solution out among the effects."""
+    ends = np.cumsum([0, *(len(effect.parameters) for effect in effects)])
+    return tuple(
+        Term(
+            effect,
+            shapes.get(effect.name, ()),
+            solution.coefficients[a:b],
+            solution.kept[a:b],
+            solution.at_bound[a:b],
+        )
+        for effect, (a, b) in zip(effects, pairwise(ends), strict=True)
+    )
+
+
+def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
+    """The fit refitted with more columns (N, k) that no formula of the catalogue stands for, as a free curve.
+
+    Args:
+        fit: to be extended; its shapes are kept.
+        name: of the new term.
+        columns: over all rows.
+    """
+    unit = "{effort}"
+    parameters = tuple(Parameter(f"knot {index + 1}", unit) for index in range(columns.shape[1]))
+    curve = Effect(name, name, "", "", _no_columns, parameters, "time", "", "")
+    wide = np.column_stack([fit.columns, columns])
+    effects = [*(term.effect for term in fit.terms), curve]
+    inside = fit.weight[fit.training]
+    effort = inside * fit.dataset.effort[fit.training]
+    solution = solve(inside[:, None] * wide[fit.training], effort, bounds_of(effects, fit.dataset))
+    shapes = {**fit.shapes, name: ()}
+    return replace(fit, terms=_terms(effects, shapes, solution), columns=wide)
+
+
+def _no_columns(motion: Motion, _: Shape) -> FloatArray:
+    raise NotImplementedError(f"a free curve knows its columns over rows, not over {len(motion.time_s)} samples")
+
+
+def bounds_of(effects: Sequence[Effect], dataset: Dataset) -> Bounds:
+    """Physical bounds of all parameters of the effects, in order, in the effort of a dataset."""
+    quantity = dataset.effort_definition.quantity
+    ranges = [range_ for effect in effects for range_ in effect.ranges_in(quantity)]
+    low, high = np.array(ranges).reshape(-1, 2).T
+    return Bounds(low, high)

@@ -1,0 +1,54 @@
+"""Held-out errors and gains with intervals, from whole trials drawn again."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.model.validation import HeldOut
+from compensator.lab.recordings.recording import FloatArray
+
+RESAMPLES = 999
+CONFIDENCE = 0.90
+
+
+@dataclass(frozen=True, slots=True)
+class Gain:
+    """Relative fall of the held-out error, 1 - after / before, with a 90 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+def held_out_gain(before: HeldOut, after: HeldOut, seed: int = 0) -> Gain:
+    """The gain of `after` over `before`, both on the same rows; independent units (trials) are resampled in pairs."""
+    powers = np.array([before.power_by_unit(), after.power_by_unit()])
+    ratios = np.sqrt(_drawn(powers, seed))
+    gains = 1.0 - ratios[1] / np.maximum(ratios[0], np.finfo(float).tiny)
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low, high = np.quantile(gains[1:], [tail, 1.0 - tail])
+    return Gain(float(gains[0]), float(low), float(high))
+
+
+def chance_not_worse(one: HeldOut, other: HeldOut, seed: int = 0) -> float:
+    """Share of resamples in which `one` has no larger held-out error than `other`, both on the same rows."""
+    powers = _drawn(np.array([one.power_by_unit(), other.power_by_unit()]), seed)
+    return float(np.mean(powers[0, 1:] <= powers[1, 1:]))
+
+
+def error_interval(error: HeldOut, seed: int = 0) -> tuple[float, float]:
+    """90 % interval of a relative held-out error, from independent units drawn again."""
+    powers = np.vstack([error.power_by_unit(), error.effort_power_by_unit()])
+    totals = _drawn(powers, seed)[:, 1:]
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low, high = np.quantile(np.sqrt(totals[0] / np.maximum(totals[1], np.finfo(float).tiny)), [tail, 1.0 - tail])
+    return float(low), float(high)
+
+
+def _drawn(powers: FloatArray, seed: int) -> FloatArray:
+    """Totals (2, 1 + RESAMPLES) of powers (2, units): first as measured, then with units drawn with replacement."""
+    generator = np.random.default_rng(seed)
+    units = powers.shape[1]
+    counts = generator.multinomial(units, np.full(units, 1.0 / units), size=RESAMPLES)
+    totals: FloatArray = powers @ np.vstack([np.ones(units), counts]).T
+    return totals

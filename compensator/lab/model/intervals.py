@@ -1,0 +1,97 @@
+"""Intervals of a fitted model's parameters, by leaving out whole trials (delete-one jackknife)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import stdtrit
+
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.linear import solve_without
+from compensator.lab.model.validation import independent_units
+from compensator.lab.recordings.recording import FloatArray
+
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterEstimate:
+    """One coefficient with its 95 % interval.
+
+    Attributes:
+        effect: name; parameter: name.
+        value, low, high: in `unit`; NaN where the data do not determine it.
+        note: "" or why the value is to be read with care.
+    """
+
+    effect: str
+    parameter: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    note: str
+
+
+def estimates(fit: Fit) -> list[ParameterEstimate]:
+    """Every coefficient and every shape value of the model, in order."""
+    half = _half_widths(fit)
+    excited = np.any(fit.columns != 0.0, axis=0)
+    unit = fit.dataset.effort_definition.unit
+    found, index = [], 0
+    for term in fit.terms:
+        ranges = term.effect.ranges_in(fit.dataset.effort_definition.quantity)
+        for position, (parameter, (lowest, highest)) in enumerate(zip(term.effect.parameters, ranges, strict=True)):
+            if not excited[index]:
+                index += 1
+                continue  # a term for loads, say, where none is hung
+            value = float(term.coefficients[position])
+            kept, bound = bool(term.kept[position]), bool(term.at_bound[position])
+            width = half[index]
+            found.append(
+                ParameterEstimate(
+                    effect=term.effect.name,
+                    parameter=parameter.name,
+                    unit=parameter.unit_in(unit, fit.dataset.facts.position_unit),
+                    value=value if kept else float("nan"),
+                    low=max(value - width, lowest) if kept else float("nan"),
+                    high=min(value + width, highest) if kept else float("nan"),
+                    note=_note(kept, bound),
+                )
+            )
+            index += 1
+        for name, number in zip(term.effect.shape_names, term.shape, strict=True):
+            found.append(ParameterEstimate(term.effect.name, name, "shape", number, float("nan"), float("nan"), ""))
+    return found
+
+
+def _note(kept: bool, bound: bool) -> str:
+    if not kept:
+        return "these trials cannot tell it apart from the parameters before it"
+    return "held by its physical bound" if bound else ""
+
+
+def _half_widths(fit: Fit) -> FloatArray:
+    """Half widths of the intervals of all coefficients, shape (K,); NaN where there are too few units."""
+    without, half = without_each(fit), np.full(fit.columns.shape[1], np.nan)
+    count = len(without)
+    if count > 2:
+        spread = without - np.mean(without, axis=0)
+        error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
+        kept = np.concatenate([term.kept for term in fit.terms])
+        half[kept] = (error * stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE))[kept]
+    return half
+
+
+def without_each(fit: Fit) -> FloatArray:
+    """Coefficients with each independent unit left out in turn, shape (units, K); 0 where not kept."""
+    kept = np.concatenate([term.kept for term in fit.terms])
+    columns, effort = fit.training_equations
+    columns, unit = columns[:, kept], independent_units(fit, fit.training)
+    bounds = fit.bounds.of(kept)
+    gram, moment = columns.T @ columns, columns.T @ effort
+    labels = np.unique(unit)
+    without = np.zeros((len(labels), len(kept)))
+    for row, label in enumerate(labels):
+        inside, own = columns[unit == label], effort[unit == label]
+        without[row, kept] = solve_without((gram, moment), (inside.T @ inside, inside.T @ own), bounds)
+    return without

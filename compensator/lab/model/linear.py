@@ -1,0 +1,104 @@
+"""Bounded least squares that says which columns the data cannot tell apart, instead of dividing by nearly nothing."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+
+DEPENDENT = 1e-4  # share of a column's norm left after projection below which it is no new direction
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Lowest and highest allowed coefficient of each column, shape (k,); infinite where there is none."""
+
+    low: FloatArray
+    high: FloatArray
+
+    def of(self, chosen: BoolArray) -> "Bounds":
+        """The bounds of some columns."""
+        return Bounds(self.low[chosen], self.high[chosen])
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Result of a least-squares fit.
+
+    Attributes:
+        coefficients: shape (k,); 0 where not kept.
+        kept: columns that are independent of those before them, shape (k,).
+        at_bound: coefficients that a bound holds, shape (k,).
+    """
+
+    coefficients: FloatArray
+    kept: BoolArray
+    at_bound: BoolArray
+
+
+def independent(columns: FloatArray) -> BoolArray:
+    """Which columns of (N, k) are not combinations of those before them; modified Gram-Schmidt."""
+    kept = np.zeros(columns.shape[1], dtype=bool)
+    basis = np.empty((columns.shape[0], 0))
+    for index, column in enumerate(columns.T):
+        norm = float(np.linalg.norm(column))
+        rest = column - basis @ (basis.T @ column)
+        rest -= basis @ (basis.T @ rest)  # twice is enough (Kahan, Parlett)
+        left = float(np.linalg.norm(rest))
+        if norm > 0.0 and left > DEPENDENT * norm:
+            kept[index] = True
+            basis = np.column_stack([basis, rest / left])
+    return kept
+
+
+def orthonormal(columns: FloatArray) -> FloatArray:
+    """Orthonormal basis of the span of (N, k); shape (N, rank)."""
+    kept = independent(columns)
+    if not kept.any():
+        return np.empty((len(columns), 0))
+    basis: FloatArray = np.linalg.qr(columns[:, kept])[0]
+    return basis
+
+
+def solve(columns: FloatArray, effort: FloatArray, bounds: Bounds) -> Solution:
+    """Bounded least squares of effort (N,) on columns (N, k), dropping dependent columns in order."""
+    kept = independent(columns)
+    coefficients = np.zeros(columns.shape[1])
+    if kept.any():
+        used = columns[:, kept]
+        coefficients[kept] = solve_normal(used.T @ used, used.T @ effort, bounds.of(kept))
+    at_bound = kept & ((coefficients <= bounds.low) | (coefficients >= bounds.high))
+    return Solution(coefficients, kept, at_bound)
+
+
+def solve_normal(gram: FloatArray, moment: FloatArray, bounds: Bounds) -> FloatArray:
+    """Coefficients from normal equations gram (k, k), moment (k,), within bounds (Stark, Parker 1995: BVLS)."""
+    scale = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
+    solid = values > 1e-12 * values[-1]
+    root = vectors[:, solid] * np.sqrt(values[solid])  # gram = root root'
+    wanted = (vectors[:, solid].T @ (moment / scale)) / np.sqrt(values[solid])
+    free: FloatArray = np.linalg.lstsq(root.T, wanted, rcond=None)[0] / scale
+    if np.all(free >= bounds.low) and np.all(free <= bounds.high):
+        return free
+    found = lsq_linear(root.T, wanted, (bounds.low * scale, bounds.high * scale), method="bvls")
+    bounded: FloatArray = np.clip(found.x / scale, bounds.low, bounds.high)
+    return bounded
+
+
+def solve_without(
+    whole: tuple[FloatArray, FloatArray], part: tuple[FloatArray, FloatArray], bounds: Bounds
+) -> FloatArray:
+    """Coefficients from normal equations (gram, moment) once a part of the rows is taken out of them.
+
+    A column that only these rows excite is undetermined without them, and gets the coefficient nearest to 0: what
+    rounding leaves of its power would give it any other.
+    """
+    gram, moment = whole[0] - part[0], whole[1] - part[1]
+    left = np.diag(gram) > DEPENDENT**2 * np.diag(whole[0])
+    coefficients = np.clip(np.zeros(len(moment)), bounds.low, bounds.high)
+    if left.any():
+        coefficients[left] = solve_normal(gram[np.ix_(left, left)], moment[left], bounds.of(left))
+    return coefficients

@@ -1,0 +1,68 @@
+"""What a fitted model says of the load and of the effort's rate of change: input of load-dependent and delay terms.
+
+The load that the gear transmits is gravity, springs, and the inertia of what hangs beyond the gear; the rotor's own
+inertia is accelerated before the teeth. It is always the model's prediction, never the measured effort: built from the
+measurement, a load-dependent term would explain the effort with itself.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from compensator.lab.effects.effect import Motion
+
+if TYPE_CHECKING:
+    from compensator.lab.model.fit import Fit
+    from compensator.lab.rows.dataset import Dataset
+
+
+def with_own_prediction(fit: "Fit") -> "Dataset":
+    """The fit's rows, with its own predicted load and effort in every motion."""
+    per_torque = effort_per_torque(fit)
+    loads, totals, beyond, wholes = [], [], [], []
+    for trial in fit.dataset.trials:
+        load = np.zeros(len(trial.motion.time_s))
+        total = np.zeros(len(trial.motion.time_s))
+        for term in fit.terms:
+            if term.effect.builds_on == "effort":
+                continue  # its column is made of the rest
+            part = term.coefficients @ term.effect.columns(trial.motion, term.shape)
+            total += part
+            if term.effect.carried:
+                load += part
+        known = _inertia_beyond(fit, trial.motion, per_torque)
+        whole = _whole_inertia(fit, trial.motion)
+        inertia = known if trial.motion.facts.arm_inertia_kg_m2 else whole
+        beyond.append((inertia, (load + inertia * trial.motion.acceleration) / (inertia or np.inf)))
+        loads.append(load + known * trial.motion.acceleration)
+        totals.append(total)
+        wholes.append(whole)
+    return fit.dataset.with_prediction(loads, totals, beyond, wholes)
+
+
+def effort_per_torque(fit: "Fit") -> float | None:
+    """Effort per N m of load: 1 where the effort is a torque, else by the load's known weight, if any."""
+    if fit.dataset.effort_definition.unit in ("N m", "N"):
+        return 1.0
+    gravity = next((term for term in fit.terms if term.effect.name == "gravity"), None)
+    if gravity is None:
+        return None
+    arm, scale = gravity.coefficients
+    if scale > 0.0:
+        return float(scale)
+    moments = [trial.motion.load_moment_n_m for trial in fit.dataset.trials]
+    return float(arm / max(moments)) if max(moments) > 0.0 and arm > 0.0 else None
+
+
+def _inertia_beyond(fit: "Fit", motion: Motion, per_torque: float | None) -> float:
+    """Effort per acceleration of what hangs beyond the gear, as far as that is known; of a linear joint, all of it."""
+    beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
+    if beyond_kg_m2 > 0.0 and per_torque is not None:
+        return per_torque * beyond_kg_m2
+    return 0.0 if motion.facts.joint == "rotary" else _whole_inertia(fit, motion)
+
+
+def _whole_inertia(fit: "Fit", motion: Motion) -> float:
+    """Effort per acceleration of everything, rotor and all: the best guess where no drawing tells."""
+    inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)
+    return 0.0 if inertia is None else float(inertia.coefficients @ (1.0, motion.load_inertia_kg_m2))

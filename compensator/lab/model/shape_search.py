@@ -1,0 +1,104 @@
+"""Nonlinear shape values by variable projection.
+
+Linear coefficients are eliminated for every shape tried (Golub, Pereyra 1973), so that only the few shape values are
+searched: over the effect's grid first, then, where the shape is continuous, between its values.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.optimize import minimize
+
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.model.linear import orthonormal
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.dataset import Dataset
+
+SWEEPS = 2  # the first shape is found while the others' are guesses
+REFINEMENTS = 24  # evaluations between the grid's values
+
+
+def first_shapes(dataset: Dataset, effects: Sequence[Effect]) -> dict[str, Shape]:
+    """The middle of every effect's grid."""
+    grids = {effect.name: effect.shapes(dataset.trials[0].motion) for effect in effects if effect.shape_names}
+    return {name: grid[len(grid) // 2] for name, grid in grids.items()}
+
+
+def find_shapes(
+    dataset: Dataset,
+    effects: Sequence[Effect],
+    rows: BoolArray,
+    kept: Mapping[str, Shape],
+    weight: FloatArray,
+    start: Mapping[str, Shape] | None = None,
+) -> dict[str, Shape]:
+    """The shape of every effect that has one, each searched with the others held; twice, where there are others.
+
+    Args:
+        dataset: of the rows.
+        effects: of the model, in order.
+        rows: to fit to, shape (N,).
+        kept: shapes that are not searched but taken as they are.
+        weight: of each row, shape (N,).
+        start: shapes that the others have until they are searched; else the middle of their grids.
+    """
+    shapes = {**first_shapes(dataset, effects), **(start or {}), **kept}
+    searched = [effect for effect in effects if effect.shape_names and effect.name not in kept]
+    for _ in range(min(len(searched), SWEEPS)):
+        for effect in searched:
+            others = [dataset.columns(other, shapes.get(other.name, ())) for other in effects if other is not effect]
+            fixed = np.concatenate(others, axis=1)[rows] if others else np.empty((int(rows.sum()), 0))
+            search = _Search(dataset, effect, rows, fixed, weight[rows])
+            best = search.scan()
+            shapes[effect.name] = search.refine(best) if effect.smooth_shape else best
+    return shapes
+
+
+class _Search:
+    """Explained power of one effect's shapes, on top of fixed columns."""
+
+    def __init__(
+        self, dataset: Dataset, effect: Effect, rows: BoolArray, fixed: FloatArray, weight: FloatArray
+    ) -> None:
+        self._dataset, self._effect, self._rows, self._weight = dataset, effect, rows, weight[:, None]
+        self._basis = orthonormal(self._weight * fixed)
+        effort = weight * dataset.effort[rows]
+        self._rest = effort - self._basis @ (self._basis.T @ effort)
+        self._grid = effect.shapes(dataset.trials[0].motion)
+        parameters = effect.parameters
+        self._signs = [1 if p.low >= 0.0 else -1 if p.high <= 0.0 else 0 for p in parameters]
+
+    def explained(self, columns: FloatArray) -> float:
+        """Power that columns (N, k) explain of what the fixed ones leave; 0 where the sign is not physical."""
+        inside = self._weight * columns[self._rows]
+        inside = inside - self._basis @ (self._basis.T @ inside)
+        basis = orthonormal(inside)
+        share = basis.T @ self._rest
+        if len(self._signs) == 1 and self._signs[0] * float(inside[:, 0] @ self._rest) < 0.0:
+            return 0.0
+        return float(share @ share)
+
+    def scan(self) -> Shape:
+        """The best shape of the effect's grid."""
+        powers = [self.explained(columns) for columns in self._dataset.columns_of_shapes(self._effect, self._grid)]
+        return self._grid[int(np.argmax(powers))]
+
+    def refine(self, start: Shape) -> Shape:
+        """The best shape between the grid's values, from a start, on a logarithmic scale."""
+        low, high = np.log(np.min(self._grid, axis=0)), np.log(np.max(self._grid, axis=0))
+
+        def shape_of(logs: FloatArray) -> Shape:
+            return tuple(float(x) for x in np.exp(np.clip(logs, low, high)))
+
+        def loss(logs: FloatArray) -> float:
+            motions = [self._effect.columns(trial.motion, shape_of(logs)) for trial in self._dataset.trials]
+            return -self.explained(self._dataset.stack(motions))
+
+        centre = np.log(np.array(start))
+        simplex = np.clip(centre + np.vstack([np.zeros(len(start)), 0.2 * np.eye(len(start))]), low, high)
+        simplex[1:] += np.where(np.abs(simplex[1:] - centre).max(axis=1) < 1e-6, -0.2, 0.0)[:, None] * np.eye(
+            len(start)
+        )
+        options = {"maxfev": REFINEMENTS, "xatol": 0.01, "fatol": 0.0, "initial_simplex": simplex}
+        return shape_of(minimize(loss, centre, method="Nelder-Mead", options=options).x)

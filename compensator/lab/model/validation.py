@@ -1,0 +1,115 @@
+"""How wrong a model is on trials that it was not fitted to.
+
+Held-out trials where the study names some; else each training trial is left out in turn. Normal equations are kept
+per trial, so leaving one out costs one small solve. Nonlinear shapes stay those of the whole training set.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from compensator.lab.model.fit import Fit, trained_trials
+from compensator.lab.model.linear import solve_without
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.dataset import IntArray, RowChoice
+
+FEWEST_TRIALS = 4  # fewer cannot be resampled or left out one by one
+
+HeldOutKind = Literal["hold-out", "leave-one-trial-out", "leave-one-block-out"]
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Residuals on rows that the coefficients have not seen.
+
+    Attributes:
+        kind: how rows were held out.
+        rows: which rows, shape (N,).
+        residual: of those rows, shape (rows.sum(),).
+        effort: measured, of those rows.
+        unit: which independent unit (trial or block) each of these rows belongs to.
+        relative: root of residual power over effort power.
+        rms: root mean square residual, in the effort's unit.
+    """
+
+    kind: HeldOutKind
+    rows: BoolArray
+    residual: FloatArray
+    effort: FloatArray
+    unit: IntArray
+    relative: float
+    rms: float
+
+    def power_by_unit(self) -> FloatArray:
+        """Sum of squared residuals of each independent unit, in order of its label."""
+        return self._by_unit(self.residual)
+
+    def effort_power_by_unit(self) -> FloatArray:
+        """Sum of squared efforts of each independent unit, in order of its label."""
+        return self._by_unit(self.effort)
+
+    def _by_unit(self, values: FloatArray) -> FloatArray:
+        _, dense = np.unique(self.unit, return_inverse=True)
+        return np.bincount(dense, weights=values**2).astype(float)
+
+
+def relative_error(residual: FloatArray, effort: FloatArray) -> float:
+    """||residual|| / ||effort||."""
+    power = float(effort @ effort)
+    return float(np.sqrt((residual @ residual) / power)) if power > 0 else float("nan")
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")
+
+
+def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
+    """The held-out error of a fit: on the trials it was not trained on, or by leaving one out in turn.
+
+    With fewer than four training trials and none held out, stretches of BLOCK_S are left out instead: an optimistic
+    stand-in, since a trial's stretches share its conditions; `kind` says so.
+
+    Args:
+        fit: to be judged.
+        rows: that are judged; None takes the study's.
+    """
+    judged = fit.dataset.in_regimes(rows or fit.dataset.rows)
+    trials = fit.dataset.trial_index
+    trained = trained_trials(fit.dataset, fit.training)
+    outside = judged & ~np.isin(trials, trained)
+    if outside.any():
+        return _result(fit, "hold-out", outside, fit.residual[outside], independent_units(fit, outside))
+    if len(np.unique(trials[fit.training & judged])) >= FEWEST_TRIALS:
+        return _leave_out(fit, "leave-one-trial-out", trials, judged)
+    return _leave_out(fit, "leave-one-block-out", fit.dataset.block_index, judged)
+
+
+def independent_units(fit: Fit, rows: BoolArray) -> IntArray:
+    """Labels of what is resampled: trials, or stretches of BLOCK_S where there are too few trials."""
+    trials = fit.dataset.trial_index[rows]
+    return trials if len(np.unique(trials)) >= FEWEST_TRIALS else fit.dataset.block_index[rows]
+
+
+def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) -> HeldOut:
+    rows = fit.training & judged
+    kept = np.concatenate([term.kept for term in fit.terms])
+    columns, effort = fit.training_equations
+    columns, unit = columns[:, kept], units[fit.training]
+    bounds = fit.bounds.of(kept)
+    gram, moment = columns.T @ columns, columns.T @ effort
+    residual = np.zeros(len(units))
+    for label in np.unique(unit):
+        own = unit == label
+        inside = columns[own]
+        rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
+        seen = rows & (units == label)
+        residual[seen] = fit.dataset.effort[seen] - fit.columns[seen][:, kept] @ rest
+    return _result(fit, kind, rows, residual[rows], units[rows])
+
+
+def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:
+    effort = fit.dataset.effort[rows]
+    return HeldOut(kind, rows, residual, effort, unit, relative_error(residual, effort), rms(residual))

@@ -1,0 +1,1 @@
+"""The trials that would tell the rivals apart."""

@@ -1,0 +1,260 @@
+"""How well trials tell two effects apart, and would if others were added: predicted d'.
+
+Each of two rivals is fitted to the effort that the other predicts; what remains, over the noise, is d'^2:
+
+    d'^2 = |M_k z_j|^2 / (v s^2)
+
+z_j is what effect j adds to the effort, as fitted; M_k takes out what the model, the measuring chain and effect k at
+its best shape can make of it; s^2 is the weighted residual's power, v its rows per independent row.
+All of it follows from the normal equations, which add up over trials: what a trial would bring costs one small solve.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.model.fit import Fit
+from compensator.lab.model.prediction import with_own_prediction
+from compensator.lab.model.weights import RowWeights
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.discrepancy import model_columns
+from compensator.lab.screening.evidence import Block, inflation_of
+from compensator.lab.screening.nuisance import nuisance_columns
+
+NEGLIGIBLE = 1e-9  # share of the largest eigenvalue below which normal equations say nothing
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An effect that may be the missing one.
+
+    Attributes:
+        effect: which.
+        shape: its best shape; coefficients: as fitted freely at that shape, shape (k,).
+        shapes: those that it may take to imitate another.
+    """
+
+    effect: Effect
+    shape: Shape
+    coefficients: FloatArray
+    shapes: tuple[Shape, ...]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Normal equations of some rows: they add up.
+
+    Attributes:
+        rows: how many.
+        gram: of all columns, shape (K, K).
+    """
+
+    rows: int
+    gram: FloatArray
+
+    def __add__(self, other: "Equations") -> "Equations":
+        return Equations(self.rows + other.rows, self.gram + other.gram)
+
+
+class Rivalry(ABC):
+    """Predicted d' between rivals from normal equations, whatever the rows are.
+
+    Columns stand in this order: the model's, the measuring chain's, every shape of every rival's.
+
+    Attributes:
+        rivals: effects that may be the missing one.
+        noise_power: of the weighted residual once the first of them is in the model.
+        measured: what the rows of the diagnosis say.
+    """
+
+    rivals: list[Rival]
+    noise_power: float
+    measured: Equations
+    _inflation: list[float]  # rows per independent row, for each rival
+    _nuisance: tuple[str, ...]
+    _model: int  # columns
+
+    @property
+    @abstractmethod
+    def dataset(self) -> Dataset:
+        """Of the diagnosed model."""
+
+    @abstractmethod
+    def of_trials(self, dataset: Dataset) -> Equations:
+        """Normal equations that trials to come would add, by the model's own prediction."""
+
+    @staticmethod
+    @abstractmethod
+    def _stands_in(rival: Rival) -> frozenset[str]:
+        """Columns of the measuring chain that stand for this rival, and are left out beside it."""
+
+    def d_prime(self, equations: Equations, true: int, rival: int | None) -> float:
+        """d' of one rival if it is the truth, against another by its index; None: against nothing being missing."""
+        remains = self._remains(equations.gram, true, rival)
+        return float(np.sqrt(remains / (self._inflation[true] * self.noise_power)))
+
+    def difference(self, known: Equations, brings: Equations, true: int, rival: int | None) -> float:
+        """What a trial adds to what remains when the rival is fitted to the effort that the truth predicts.
+
+        Fitted to that trial alone, the model would take up nearly all of it: what is known holds the model in place.
+
+        Args:
+            known: without the trial.
+            brings: what the trial adds.
+            true: index of the rival taken for the truth.
+            rival: of the one that is fitted; None: nothing being missing.
+
+        Returns:
+            Root mean square over the rows of the trial, in the effort's unit.
+        """
+        after = self._remains((known + brings).gram, true, rival)
+        return float(np.sqrt(max(after - self._remains(known.gram, true, rival), 0.0) / max(brings.rows, 1)))
+
+    def _remains(self, gram: FloatArray, true: int, rival: int | None) -> float:
+        """The least power that the model and the rival, at any of its shapes, leave of the truth's part."""
+        own = self._own[true]
+        amplitudes = self.rivals[true].coefficients
+        power = float(amplitudes @ gram[np.ix_(own, own)] @ amplitudes)
+        base = self._base(true, rival)
+        if rival is None:
+            return max(power - _absorbed(gram, base, own, amplitudes), 0.0)
+        absorbed = [
+            _absorbed(gram, np.concatenate([base, columns]), own, amplitudes) for columns in self._shaped[rival]
+        ]
+        return max(power - max(absorbed), 0.0)
+
+    def _base(self, true: int, rival: int | None) -> IntArray:
+        """Columns of the model and of the measuring chain, less those that stand in for the one or the other."""
+        standing_in = self._stands_in(self.rivals[true])
+        if rival is not None:
+            standing_in = standing_in | self._stands_in(self.rivals[rival])
+        kept = [i for i, name in enumerate(self._nuisance) if name not in standing_in]
+        return np.concatenate([np.arange(self._model), self._model + np.array(kept, dtype=np.int64)])
+
+    @cached_property
+    def _shaped(self) -> list[list[IntArray]]:
+        """Indices of the columns of each rival's shapes."""
+        found, start = [], self._model + len(self._nuisance)
+        for one in self.rivals:
+            width = len(one.coefficients)
+            found.append([start + width * number + np.arange(width) for number in range(len(one.shapes))])
+            start += width * len(one.shapes)
+        return found
+
+    @cached_property
+    def _own(self) -> list[IntArray]:
+        """Indices of the columns of each rival at its best shape."""
+        return [columns[one.shapes.index(one.shape)] for one, columns in zip(self.rivals, self._shaped, strict=True)]
+
+
+class Separation(Rivalry):
+    """Predicted d' between rivals, on the rows of a diagnosis and on those of trials to come.
+
+    Args:
+        gathered: what the diagnosed model may be missing, on the rows where the rivals show.
+        candidates: the rivals, as the diagnosis found them.
+    """
+
+    def __init__(self, gathered: Candidates, candidates: Sequence[Candidate]) -> None:
+        self._fit, self._show_in = gathered.fit, gathered.show_in
+        self._weights = RowWeights.learnt(gathered.fit.dataset, gathered.fit.residual, gathered.rows)
+        self.rivals = [_rival(gathered, candidate) for candidate in candidates]
+        left = _left_by_best(gathered, candidates[0])
+        self.noise_power = float(np.mean(left**2))
+        stretch = gathered.fit.dataset.block_index[gathered.rows]
+        inflation = inflation_of(left)
+        self._inflation = [max(inflation, _between_stretches(gathered, one, left, stretch)) for one in candidates]
+        self._nuisance = tuple(nuisance_columns(gathered.fit.dataset, gathered.show_in))
+        self._model = model_columns(gathered.fit).shape[1]
+        stacked = self._columns(gathered.fit, gathered.weights, gathered.rows)
+        self.measured = Equations(len(stacked), stacked.T @ stacked)
+
+    @property
+    def dataset(self) -> Dataset:
+        """Of the diagnosed model."""
+        return self._fit.dataset
+
+    def of_trials(self, dataset: Dataset) -> Equations:
+        """Normal equations that trials to come would add, by the model's own prediction."""
+        planned = replace(self._fit, dataset=dataset)
+        dataset = with_own_prediction(planned)
+        columns = [dataset.unchecked_columns(term.effect, [term.shape])[0] for term in self._fit.terms]
+        counted = dataset.in_regimes(self._show_in)
+        fit = replace(planned, dataset=dataset, columns=np.concatenate(columns, axis=1))
+        stacked = self._columns(fit, self._weights.of(dataset, counted), counted)
+        return Equations(len(stacked), stacked.T @ stacked)
+
+    def _columns(self, fit: Fit, weights: FloatArray, rows: BoolArray) -> FloatArray:
+        """Weighted columns of the model, of the measuring chain, and of every shape of every rival; shape (n, K)."""
+        model = model_columns(fit)
+        nuisance = nuisance_columns(fit.dataset, self._show_in)
+        blocks = [block for one in self.rivals for block in fit.dataset.unchecked_columns(one.effect, [*one.shapes])]
+        stacked: FloatArray = np.column_stack([model, *nuisance.values(), *blocks])[rows] * weights[:, None]
+        return stacked
+
+    @staticmethod
+    def _stands_in(rival: Rival) -> frozenset[str]:
+        return frozenset(rival.effect.standing_in)
+
+
+def _absorbed(
+    gram: FloatArray,
+    base: IntArray,
+    own: IntArray,
+    amplitudes: FloatArray,
+) -> float:
+    """Power of `own @ amplitudes` that the base columns explain."""
+    inside = gram[np.ix_(base, base)]
+    scale = np.sqrt(np.maximum(np.diag(inside), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(inside / np.outer(scale, scale))
+    solid = values > NEGLIGIBLE * values[-1]
+    share = vectors[:, solid].T @ (gram[np.ix_(base, own)] @ amplitudes / scale)
+    return float(np.sum(share**2 / values[solid]))
+
+
+def _rival(gathered: Candidates, candidate: Candidate) -> Rival:
+    effect = effect_named(candidate.effect.name)
+    shapes = tuple(effect.shapes(gathered.fit.dataset.trials[0].motion))
+    shape = candidate.shape
+    block = _block(gathered, candidate)
+    base = gathered.bases[block.base]
+    projected = block.columns - base.basis @ (base.basis.T @ block.columns)
+    coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0].astype(np.float64)
+    return Rival(effect, shape, coefficients, shapes if shape in shapes else (*shapes, shape))
+
+
+def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatArray, stretch: IntArray) -> float:
+    """Rows per independent row for an effect, from how its share of the residual differs between stretches.
+
+    What neighbouring rows have in common does not see slow scatter: friction that is another one each time, a mean that
+    drifts. Sums over whole stretches do (Liang, Zeger 1986).
+    """
+    block = _block(gathered, candidate)
+    base = gathered.bases[block.base]
+    projected = block.columns - base.basis @ (base.basis.T @ block.columns)
+    coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
+    own = projected @ coefficients
+    _, labels = np.unique(stretch, return_inverse=True)
+    sums = np.bincount(labels, weights=own * left)
+    count = len(sums)
+    expected = float(np.mean(left**2) * np.sum(own**2))
+    return float(np.sum(sums**2)) * count / max(count - 1, 1) / expected if expected > 0.0 else 1.0
+
+
+def _block(gathered: Candidates, candidate: Candidate) -> Block:
+    return next(one for one in gathered.named if one.name == candidate.effect.name and one.key == candidate.shape)
+
+
+def _left_by_best(gathered: Candidates, candidate: Candidate) -> FloatArray:
+    """Weighted residual once the first rival is in the model: what counts as noise."""
+    block = _block(gathered, candidate)
+    return gathered.bases[block.base].extended(block.columns).residual

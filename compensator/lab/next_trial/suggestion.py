@@ -1,0 +1,242 @@
+"""The trials that would separate the rivals of a diagnosis most, chosen one by one by predicted d' per minute."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.model.fit import Fit, widened
+from compensator.lab.model.validation import rms
+from compensator.lab.next_trial.breakaway_separation import BreakawaySeparation
+from compensator.lab.next_trial.separation import Equations, Rivalry, Separation
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import more_trials, usable
+from compensator.lab.screening.candidates import gather
+
+SURE = 7.0  # d' from which a name is right every time; from 6 on nearly every time
+MOST_RIVALS = 4
+RUNNERS_UP = 3  # that are looked at where no class of several is named
+LEAST_RISE = 0.05  # of d': less is not worth a trial
+DRAWS = 12  # of random trials, to hold the suggested ones against
+HOPELESS = 2.0  # d' that even all options together do not reach: no trial of this bench tells the two apart
+
+
+@dataclass(frozen=True)
+class Option:
+    """A trial that the bench could run.
+
+    Attributes:
+        name: unique among the options.
+        minutes: of bench time.
+        recordings: what it would show, by the model fitted so far: motion, conditions, effort.
+    """
+
+    name: str
+    minutes: float
+    recordings: tuple[Recording, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two rivals, the first taken for the truth; the second None where nothing being missing is the rival.
+
+    Attributes:
+        before, after: predicted d' on the trials measured, and with all that are suggested.
+        reachable: predicted d' with every option together.
+        by_chance: root mean square of the predicted d' with as many options drawn at random.
+    """
+
+    true: str
+    rival: str | None
+    before: float
+    after: float
+    reachable: float
+    by_chance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Pick:
+    """One suggested trial.
+
+    Attributes:
+        name: of the option; minutes: of bench time.
+        before, after: smallest predicted d' of the pairs without it and with it, the earlier picks included.
+        pair: the one that it separates most: truth and rival.
+        difference: root mean square of what the two predict differently in it, in the effort's unit.
+    """
+
+    name: str
+    minutes: float
+    before: float
+    after: float
+    pair: tuple[str, str | None]
+    difference: float
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """What to record next.
+
+    Attributes:
+        pairs: rivals that are to be separated; hopeless: those that no option separates.
+        picks: trials, in the order they were chosen.
+        noise: root mean square of the noise that they are predicted against, in the effort's unit, weighted.
+    """
+
+    pairs: tuple[Pair, ...]
+    hopeless: tuple[Pair, ...]
+    picks: tuple[Pick, ...]
+    noise: float
+
+
+def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int = 6) -> Suggestion:
+    """Choose trials that raise the smallest predicted d' of the leading rivals most, per minute of bench time.
+
+    Args:
+        fit: the diagnosed model.
+        diagnosis: of it.
+        options: trials that could be run.
+        most: how many are chosen at most; fewer where something is named and d' reaches `SURE`.
+
+    Raises:
+        UnusableDataError: the diagnosis ranks no effect.
+    """
+    rivals = rivals_of(diagnosis)
+    if not rivals:
+        raise UnusableDataError("the diagnosis ranks no effect: there is nothing to separate; record any motion first")
+    enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
+    separation = _separation(fit, rivals)
+    return _Choice(separation, options, _pairs(separation, diagnosis)).made(most, enough)
+
+
+def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
+    """Of the rivals, on the rows where they show: in motion, or at starts from rest."""
+    show_in = rivals[0].rows
+    if show_in == "breakaway":
+        return BreakawaySeparation(fit, rivals)
+    wide = fit.dataset.choice_for([one.effect for one in rivals])
+    gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
+    known = {(block.name, block.key) for block in gathered.named}
+    return Separation(gathered, [one for one in rivals if (one.effect.name, one.shape) in known])
+
+
+def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
+    """The class that is named; where it has one member, or nothing is named, the next in rank too. One family alone."""
+    named = set(diagnosis.classes[0]) if diagnosis.verdict == "missing" else set()
+    first = diagnosis.candidates[:1]
+    family = [one for one in diagnosis.candidates if _of_one_kind(one, first[0])] if first else []
+    members = [one for one in family if one.effect.name in named]
+    return members[:MOST_RIVALS] if len(members) > 1 else family[:RUNNERS_UP]
+
+
+def shows_from_rest(diagnosis: Diagnosis) -> bool:
+    """Whether the rivals of a diagnosis are told apart by starts from rest."""
+    return any(one.rows == "breakaway" for one in rivals_of(diagnosis)[:1])
+
+
+def _of_one_kind(candidate: Candidate, first: Candidate) -> bool:
+    return (candidate.rows, candidate.effect.pipeline) == (first.rows, first.effect.pipeline)
+
+
+def _pairs(separation: Rivalry, diagnosis: Diagnosis) -> list[tuple[int, int | None]]:
+    """Within a class each against each; a name that stands alone against the next; what is not sure against nothing."""
+    count = len(separation.rivals)
+    if diagnosis.verdict == "missing" and len(diagnosis.classes[0]) == 1:
+        return [(0, rival) for rival in range(1, count)]
+    pairs: list[tuple[int, int | None]] = [(i, k) for i in range(count) for k in range(count) if i != k]
+    return [(i, None) for i in range(count)] if diagnosis.verdict == "nothing" else pairs
+
+
+class _Choice:
+    """Greedy choice among options."""
+
+    def __init__(self, separation: Rivalry, options: Sequence[Option], pairs: list[tuple[int, int | None]]) -> None:
+        self._separation = separation
+        dataset = separation.dataset
+        found = [(option, usable(dataset, option.recordings)) for option in options]
+        self._options = [option for option, recordings in found if recordings]
+        self._brings = [separation.of_trials(more_trials(dataset, recordings)) for _, recordings in found if recordings]
+        everything = sum(self._brings, separation.measured)
+        self._reachable = {pair: separation.d_prime(everything, *pair) for pair in pairs}
+        self._hopeless = [pair for pair in pairs if self._reachable[pair] < HOPELESS]
+        self._pairs = [pair for pair in pairs if pair not in self._hopeless]
+
+    def made(self, most: int, enough: float) -> Suggestion:
+        """Pick until enough is separated, or nothing helps."""
+        measured = known = self._separation.measured
+        picks: list[Pick] = []
+        while self._pairs and len(picks) < most and self._smallest(known) < enough:
+            best = self._best(known)
+            if best is None:
+                break
+            picks.append(self._pick(best, known))
+            known = known + self._brings[best]
+        drawn = self._drawn(len(picks))
+        return Suggestion(
+            pairs=tuple(self._pair(pair, measured, known, drawn) for pair in self._pairs),
+            hopeless=tuple(self._pair(pair, measured, known, drawn) for pair in self._hopeless),
+            picks=tuple(picks),
+            noise=float(np.sqrt(self._separation.noise_power)),
+        )
+
+    def _drawn(self, count: int) -> list[Equations]:
+        """What is known with so many options drawn at random instead, a few times over; one may come again."""
+        if count == 0:
+            return [self._separation.measured]
+        generator = np.random.default_rng(0)
+        draws = [generator.integers(len(self._brings), size=count).tolist() for _ in range(DRAWS)]
+        return [sum((self._brings[index] for index in drawn), self._separation.measured) for drawn in draws]
+
+    def _all(self, equations: Equations) -> list[float]:
+        return [self._separation.d_prime(equations, *pair) for pair in self._pairs]
+
+    def _smallest(self, equations: Equations) -> float:
+        return min(self._all(equations))
+
+    def _best(self, known: Equations) -> int | None:
+        """The option that raises the smallest d' most per minute; where it stays, all of them together."""
+        before, short = self._smallest(known), self._short(known)
+        rises = [
+            (self._smallest(after) - before, short - self._short(after)) for after in map(known.__add__, self._brings)
+        ]
+        useful = [index for index, rise in enumerate(rises) if max(rise) > LEAST_RISE]
+
+        def rate(index: int) -> tuple[float, float]:
+            smallest, together = rises[index]
+            minutes = self._options[index].minutes
+            return (smallest / minutes if smallest > LEAST_RISE else 0.0, together / minutes)
+
+        return max(useful, key=rate, default=None)
+
+    def _short(self, equations: Equations) -> float:
+        """What the pairs together lack to be sure."""
+        return -sum(min(d_prime, SURE) for d_prime in self._all(equations))
+
+    def _pick(self, index: int, known: Equations) -> Pick:
+        option, brings = self._options[index], self._brings[index]
+        after = known + brings
+        d_prime = self._separation.d_prime
+        most = max(self._pairs, key=lambda pair: d_prime(after, *pair) - d_prime(known, *pair))
+        return Pick(
+            name=option.name,
+            minutes=option.minutes,
+            before=self._smallest(known),
+            after=self._smallest(after),
+            pair=self._names(most),
+            difference=self._separation.difference(known, brings, *most),
+        )
+
+    def _pair(
+        self, pair: tuple[int, int | None], before: Equations, after: Equations, drawn: Sequence[Equations]
+    ) -> Pair:
+        true, rival = self._names(pair)
+        now, then = (self._separation.d_prime(equations, *pair) for equations in (before, after))
+        by_chance = rms(np.array([self._separation.d_prime(equations, *pair) for equations in drawn]))
+        return Pair(true, rival, now, then, self._reachable[pair], by_chance)
+
+    def _names(self, pair: tuple[int, int | None]) -> tuple[str, str | None]:
+        rivals = self._separation.rivals
+        return rivals[pair[0]].effect.name, None if pair[1] is None else rivals[pair[1]].effect.name

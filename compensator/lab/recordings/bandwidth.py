@@ -1,0 +1,121 @@
+"""The cut-off of the final filter: four times the bandwidth of the motion, but never where there is mostly noise.
+
+Effort and the plainest columns (acceleration, velocity, its sign, position, sin q, and those that grow with the load)
+are split into bands; in each the share of the effort that the columns explain is a multiple coherence. Beyond the
+band where it falls below one half there is mostly noise, of the encoder after differentiation or of the effort itself.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt, welch
+
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.recordings.effort import Effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import Signals, low_pass, make_signals, sample_rate_hz, shortest_samples
+from compensator.lab.recordings.recording import FloatArray, Recording
+
+COHERENT = 0.5
+LOWEST_HZ = 2.0
+MOTION_SHARE = 0.99
+SEGMENT_S = 4.0
+HARMONICS = 4.0
+BANDS_PER_OCTAVE = 2
+MOST_RECORDINGS = 24  # enough to see a corner; keeps the cost bounded
+
+
+def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> float:
+    """The final low-pass cut-off [Hz].
+
+    Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the noise
+    corner, and within 2 Hz and a fifth of the sample rate.
+
+    Raises:
+        UnusableDataError: a recording with fewer than four samples a second, or one that `make_signals` refuses.
+    """
+    slowest_hz, slowest = min((sample_rate_hz(r), r.name) for r in recordings)
+    if slowest_hz < 2.0 * LOWEST_HZ:
+        raise UnusableDataError(
+            f"recording '{slowest}' has {slowest_hz:.3g} samples a second; at least {2.0 * LOWEST_HZ:g} are needed "
+            "to see motion: check that time_s is in seconds, or record faster"
+        )
+    some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
+    highest_hz = 0.2 * slowest_hz
+    wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)
+    return max(noise_corner_hz(some, effort, facts, wanted_hz), LOWEST_HZ)
+
+
+def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
+    """The frequency below which lies 99 % of the velocity's power, over all recordings [Hz]."""
+    frequencies = np.linspace(0.0, 3.0 * highest_hz, 1024)
+    power = np.zeros(len(frequencies))
+    for recording in recordings:
+        signals = make_signals(recording, effort, facts, highest_hz)
+        segment = min(len(signals.velocity), int(SEGMENT_S * signals.rate_hz))
+        at, density = welch(signals.velocity, signals.rate_hz, nperseg=segment)
+        power += np.interp(frequencies, at, density, right=0.0)
+    share = np.cumsum(power) / max(float(power.sum()), np.finfo(float).tiny)
+    return float(frequencies[min(int(np.searchsorted(share, MOTION_SHARE)), len(frequencies) - 1)])
+
+
+def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
+    """The frequency above which the motion explains less than half of the effort's power [Hz]."""
+    edges = LOWEST_HZ * 2.0 ** (np.arange(64) / BANDS_PER_OCTAVE)
+    edges = np.append(edges[edges < 0.99 * highest_hz], max(highest_hz, LOWEST_HZ))
+    for low, high in pairwise(edges):
+        signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, float(high))]
+        if _explained_share(signals, low, high) < COHERENT:
+            return float(low)
+    return float(highest_hz)
+
+
+def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[Recording]:
+    """Those that can be filtered so low; all, if none can, for the error to be raised.
+
+    A quick start from rest is over in two seconds: beside longer motion it has no say in what is noise.
+    """
+    kept = []
+    for recording in recordings:
+        rate_hz, time_s = sample_rate_hz(recording), recording.channels["time_s"]
+        if rate_hz * float(time_s[-1] - time_s[0]) >= shortest_samples(rate_hz, cutoff_hz):
+            kept.append(recording)
+    return kept or recordings
+
+
+def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -> float:
+    stacks = [_band(trial, low_hz, high_hz) for trial in trials]
+    columns = np.concatenate([stack[:-1] for stack in stacks], axis=1).T
+    effort = np.concatenate([stack[-1] for stack in stacks])
+    if len(effort) <= columns.shape[1]:
+        return 0.0
+    scale = np.linalg.norm(columns, axis=0)
+    columns = columns / np.where(scale > 0, scale, 1.0)
+    coefficients = np.linalg.lstsq(columns, effort, rcond=1e-9)[0]
+    rest = effort - columns @ coefficients
+    power = float(effort @ effort)
+    return 1.0 - float(rest @ rest) / power if power > 0 else 0.0
+
+
+def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:
+    position = low_pass(trial.position, high_hz, trial.rate_hz)
+    speed = max(1e-12, 0.02 * float(np.quantile(np.abs(trial.velocity), 0.95)))
+    load = trial.recording.conditions.get("load_kg", 0.0)
+    load_kg = float(load) if isinstance(load, int | float) else 0.0
+    direction, sine = np.tanh(trial.velocity / speed), np.sin(position)
+    plain = [trial.acceleration, trial.velocity, direction, position, sine]
+    with_load = [load_kg * column for column in (trial.acceleration, direction, sine)]
+    stack = np.array([*plain, *with_load, trial.effort])
+    top = min(high_hz, 0.45 * trial.rate_hz)
+    sections = _band_pass(low_hz, top, trial.rate_hz)
+    filtered: FloatArray = sosfiltfilt(sections, np.nan_to_num(stack), axis=-1)
+    moving = np.abs(trial.velocity) > speed
+    return filtered[:, trial.usable & moving]
+
+
+@lru_cache(maxsize=256)  # trials of one bench have one rate, and the design takes longer than the filtering
+def _band_pass(low_hz: float, high_hz: float, rate_hz: float) -> FloatArray:
+    sections: FloatArray = butter(2, (low_hz, high_hz), btype="bandpass", fs=rate_hz, output="sos")
+    return sections

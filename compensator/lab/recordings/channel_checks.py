@@ -1,0 +1,140 @@
+"""Channels that cannot be what their names say, looked for before anything is filtered: wraps, units, signs."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.recordings.effort import Effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS
+from compensator.lab.recordings.recording import FloatArray, Recording
+
+MOST_DUTY = 1.05  # rounding included
+JUMP = 0.5  # of the span of position, from one sample to the next
+QUICK = 10.0  # times the step that 19 in 20 samples stay below
+ENDS = 0.1  # of its largest value: where the values of a channel lie that wraps
+FEW, MOST_BETWEEN = 0.02, 0.1  # shares of the samples at either end, at least, and between, at most
+NARROW = 0.05  # of the largest value: standard deviation at either end
+TOLD = 0.8  # squared correlation from which one channel tells another's scale
+FACTOR = 3.0  # between two channels of one quantity: more is another unit
+POOR_SERVO = 1.0 / 20.0  # of its set point: a weak servo under load follows by little
+BLOCK = 20  # samples over which speed is averaged
+FEWEST_BLOCKS = 10
+DEGREES = 180.0 / np.pi
+
+
+def check_channels(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> None:
+    """Look at every recording.
+
+    Raises:
+        UnusableDataError: a channel wraps, has another unit or the other sign; the message names recording and channel,
+            and says what to do.
+    """
+    for recording in recordings:
+        found = (
+            _too_much_duty(recording)
+            or _unsigned(recording, effort)
+            or _wrapped_position(recording, facts.position_unit)
+            or _scale(recording, facts.position_unit)
+        )
+        if found:
+            raise UnusableDataError(f"recording '{recording.name}': {found}")
+
+
+def _too_much_duty(recording: Recording) -> str:
+    duty = recording.channels.get("duty")
+    largest = 0.0 if duty is None or not np.isfinite(duty).any() else float(np.nanmax(np.abs(duty)))
+    if largest <= MOST_DUTY:
+        return ""
+    return (
+        f"duty goes up to {largest:.4g}, wanted is -1 .. 1; map it with its scale (0.01 for per cent), and where "
+        "values above half of the range stand for negative ones, subtract the range from them before the import"
+    )
+
+
+def _unsigned(recording: Recording, effort: Effort) -> str:
+    """Signed counts read as unsigned: two narrow heaps at the ends of the range, none of them negative."""
+    for name in effort.channels:
+        values = recording.channels[name]
+        values = values[np.isfinite(values)]
+        largest = float(values.max(initial=0.0))
+        if name == "supply_v" or largest <= 0.0 or values.min() < 0.0:
+            continue
+        low, high = values[values < ENDS * largest], values[values > (1.0 - ENDS) * largest]
+        heaps = all(
+            len(one) > FEW * len(values) and np.ptp(one) > 0.0 and one.std() < NARROW * largest for one in (low, high)
+        )
+        if heaps and len(values) - len(low) - len(high) < MOST_BETWEEN * len(values):
+            return (
+                f"{name} is never negative and jumps between {low.min():.4g} .. {low.max():.4g} and {high.min():.4g} "
+                f".. {largest:.4g}: signed values were read as unsigned ones; subtract the range (65536 counts of 16 "
+                "bits) from those in its upper half, before anything is interpolated, and import again"
+            )
+    return ""
+
+
+def _wrapped_position(recording: Recording, unit: str) -> str:
+    """A jump against the motion before and after it."""
+    time_s, position = recording.channels["time_s"], recording.channels.get(f"position_{unit}")
+    if position is None or len(position) < 4:
+        return ""
+    step, period_s = np.diff(position), float(np.median(np.diff(time_s)))
+    step[~(np.diff(time_s) <= LONGEST_GAP_PERIODS * period_s)] = np.nan
+    if not np.isfinite(step).any():
+        return ""
+    size = np.abs(step)
+    large = max(JUMP * float(np.nanmax(position) - np.nanmin(position)), QUICK * float(np.nanquantile(size, 0.95)))
+    before, jump, after = step[:-2], step[1:-1], step[2:]
+    against = (before * jump < 0.0) & (after * jump < 0.0) & (size[:-2] < large) & (size[2:] < large)
+    jumps = np.flatnonzero((size[1:-1] >= large) & against)
+    if not len(jumps):
+        return ""
+    return (
+        f"position_{unit} jumps by {jump[jumps[0]]:.4g} {unit} against the motion at {time_s[jumps[0] + 2]:.4g} s, and "
+        f"{len(jumps)} times in all: it wraps, once a turn; unwrap it (numpy.unwrap) and import again"
+    )
+
+
+def _scale(recording: Recording, unit: str) -> str:
+    """Position against the speed that the drive tells, and against the set point: one unit, one sign."""
+    channels = recording.channels
+    position = channels.get(f"position_{unit}")
+    if position is None:
+        return ""
+    time_s = channels["time_s"][::BLOCK]
+    speed, target = channels.get(f"velocity_{unit}_s"), channels.get(f"target_{unit}")
+    pairs = []
+    if speed is not None and len(time_s) > FEWEST_BLOCKS:
+        # the mean speed of a block is what position gains in it
+        means = speed[: (len(time_s) - 1) * BLOCK].reshape(-1, BLOCK).mean(axis=1)
+        pairs.append((f"velocity_{unit}_s", np.diff(position[::BLOCK]) / np.diff(time_s), means, 1.0 / FACTOR))
+    if target is not None:
+        pairs.append((f"target_{unit}", position, target, POOR_SERVO))
+    for name, own, other, least in pairs:
+        factor = _factor(own, other)
+        if factor is not None and not least < factor < FACTOR:
+            return f"position_{unit} and {name} {_unlike(factor)}"
+    return ""
+
+
+def _unlike(factor: float) -> str:
+    if abs(abs(factor) - 1.0) < 0.5:
+        return (
+            "have opposite signs; turn the sign of one of them, so that they agree with the effort's, and import again"
+        )
+    hint = " (degrees?)" if abs(np.log(abs(factor) / DEGREES)) < 0.1 else ""
+    return (
+        f"differ by a factor of {factor:.3g}{hint}; map the one that is wrong with its scale to rad, m or their rates"
+    )
+
+
+def _factor(own: FloatArray, other: FloatArray) -> float | None:
+    """What one quantity is of another, by least squares; None where they have little to do with each other."""
+    known = np.isfinite(own) & np.isfinite(other)
+    own, other = own[known] - np.mean(own[known]), other[known] - np.mean(other[known])
+    powers = float(own @ own), float(other @ other)
+    if len(own) < FEWEST_BLOCKS or min(powers) == 0.0:
+        return None
+    both = float(own @ other)
+    return both / powers[1] if both**2 > TOLD * powers[0] * powers[1] else None

@@ -1,0 +1,208 @@
+"""From a recording to uniform, filtered signals: the same zero-phase filters on both sides of the equation.
+
+Position is filtered with a cut-off well above the one finally applied to every column and to the effort, so
+that differentiation does not shape the columns; nonlinear columns are computed at the full rate, then filtered,
+then thinned to the Nyquist rate (Janot, Gautier, Brunot 2019; "parallel decimation").
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.signal import butter, sosfilt, sosfilt_zi
+
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.effort import Effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.recordings.regimes import BoolArray
+
+FILTER_ORDER = 4
+DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
+LONGEST_GAP_PERIODS = 5.0
+PADDING = 3  # times the filter's length, continued at both ends
+REGULAR_SHARE = 0.05  # of the period: jitter that counts as regular sampling
+SATURATED_DUTY = 0.98
+EDGE_PERIODS = 3.0  # of the final cut-off, dropped at both ends of a trial, where the filter starts from nothing
+MASK_PERIODS = 1.0  # of the final cut-off, dropped on both sides of an unusable sample, which the filter spreads
+
+
+@dataclass(frozen=True, slots=True)
+class Signals:
+    """One recording on a uniform time grid; arrays have shape (n,).
+
+    Attributes:
+        recording: where they come from.
+        time_s: uniform.
+        rate_hz: of the grid.
+        position, velocity, acceleration, jerk: differentiated after the wide filter.
+        effort: raw, on the grid.
+        temperature_c, supply_v: NaN where not measured.
+        usable: False in gaps, with the power stage off, in saturation, and at the ends.
+    """
+
+    recording: Recording
+    time_s: FloatArray
+    rate_hz: float
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+    effort: FloatArray
+    temperature_c: FloatArray
+    supply_v: FloatArray
+    usable: BoolArray
+
+
+def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray:
+    """Zero-phase Butterworth low-pass along the last axis; unchanged where the cut-off is beyond Nyquist."""
+    if cutoff_hz >= 0.49 * rate_hz:
+        return values
+    sections, steady = filter_sections(cutoff_hz, rate_hz)
+    # scipy's sosfiltfilt, less the design of the filter's steady state, which takes longer than one trial's filtering
+    padded = _odd_extension(values, PADDING * (2 * len(sections) + 1))
+    forward = _filtered_from_rest(sections, steady, padded)
+    backward = _filtered_from_rest(sections, steady, forward[..., ::-1])[..., ::-1]
+    edge = (padded.shape[-1] - values.shape[-1]) // 2
+    return backward[..., edge : backward.shape[-1] - edge]
+
+
+def _filtered_from_rest(sections: FloatArray, steady: FloatArray, values: FloatArray) -> FloatArray:
+    """Filter along the last axis, beginning in the steady state of the first value."""
+    shape = (len(sections), *(1,) * (values.ndim - 1), 2)
+    filtered: FloatArray = sosfilt(sections, values, axis=-1, zi=steady.reshape(shape) * values[..., :1])[0]
+    return filtered
+
+
+def _odd_extension(values: FloatArray, count: int) -> FloatArray:
+    """Values continued at both ends by their own mirror image through the end points."""
+    before = 2.0 * values[..., :1] - values[..., count:0:-1]
+    after = 2.0 * values[..., -1:] - values[..., -2 : -count - 2 : -1]
+    return np.concatenate([before, values, after], axis=-1)
+
+
+@lru_cache(maxsize=256)
+def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, FloatArray]:
+    """Second-order sections of the low-pass, and the state of each that a constant 1 settles to."""
+    sections: FloatArray = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
+    return sections, sosfilt_zi(sections)
+
+
+def sample_rate_hz(recording: Recording) -> float:
+    """Median rate of a recording.
+
+    Raises:
+        UnusableDataError: it has fewer than two samples.
+    """
+    time = recording.channels["time_s"]
+    if len(time) < 2:
+        raise UnusableDataError(
+            f"recording '{recording.name}' has {len(time)} sample(s); record longer, or leave it out"
+        )
+    return 1.0 / float(np.median(np.diff(time)))
+
+
+def shortest_samples(rate_hz: float, cutoff_hz: float) -> int:
+    """How many samples a recording must have to be filtered: less is all edge."""
+    return int(np.ceil(2 * EDGE_PERIODS * rate_hz / cutoff_hz)) + 6 * FILTER_ORDER
+
+
+def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: float) -> Signals:
+    """Resample, filter and differentiate one recording.
+
+    Raises:
+        UnusableDataError: no position, or too short for the filter.
+    """
+    raw_time = recording.channels["time_s"]
+    position_name = f"position_{facts.position_unit}"
+    if position_name not in recording.channels:
+        raise UnusableDataError(
+            f"recording '{recording.name}': channel {position_name} is missing, found "
+            f"{', '.join(sorted(recording.channels))}; a {facts.joint} joint needs its position"
+        )
+    if not np.isfinite(recording.channels[position_name]).any():
+        raise UnusableDataError(
+            f"recording '{recording.name}': {position_name} has no finite sample; leave the trial out"
+        )
+    rate = sample_rate_hz(recording)
+    period = 1.0 / rate
+    time = _uniform(raw_time, period)
+    shortest = shortest_samples(rate, cutoff_hz)
+    if len(time) < shortest:
+        raise UnusableDataError(
+            f"recording '{recording.name}' has {len(time)} samples; at least {shortest} are needed "
+            f"to filter at {cutoff_hz:.3g} Hz; record longer, choose a higher cut-off, or leave the trial out"
+        )
+    raw_position = recording.channels[position_name]
+    position = low_pass(_resample(time, raw_time, raw_position), DIFFERENTIATION_FACTOR * cutoff_hz, rate)
+    velocity = rate_of_change(position, rate)
+    acceleration = rate_of_change(velocity, rate)
+    raw_effort = effort.of(recording)
+    return Signals(
+        recording=recording,
+        time_s=time,
+        rate_hz=rate,
+        position=position,
+        velocity=velocity,
+        acceleration=acceleration,
+        jerk=rate_of_change(acceleration, rate),
+        effort=_resample(time, raw_time, raw_effort),
+        temperature_c=_optional(recording, "temperature_c", time),
+        supply_v=_optional(recording, "supply_v", time),
+        usable=_usable(recording, raw_time, raw_position, raw_effort, time, cutoff_hz),
+    )
+
+
+def _uniform(raw_time: FloatArray, period: float) -> FloatArray:
+    """The recording's own time stamps where they are regular: interpolation between them would smooth unevenly."""
+    if len(raw_time) > 1 and np.abs(np.diff(raw_time) - period).max() <= REGULAR_SHARE * period:
+        return raw_time
+    return np.arange(raw_time[0], raw_time[-1], period)
+
+
+def _resample(time: FloatArray, raw_time: FloatArray, raw: FloatArray) -> FloatArray:
+    finite = np.isfinite(raw)
+    if not finite.any():
+        return np.full(len(time), np.nan)
+    return np.interp(time, raw_time[finite], raw[finite])
+
+
+def _optional(recording: Recording, name: str, time: FloatArray) -> FloatArray:
+    if name not in recording.channels:
+        return np.full(len(time), np.nan)
+    return _resample(time, recording.channels["time_s"], recording.channels[name])
+
+
+def _usable(
+    recording: Recording,
+    raw_time: FloatArray,
+    position: FloatArray,
+    effort: FloatArray,
+    time: FloatArray,
+    cutoff_hz: float,
+) -> BoolArray:
+    """Rows whose position and effort were measured in closed loop, away from gaps, saturation and ends."""
+    good: BoolArray = np.isfinite(position) & np.isfinite(effort)
+    if "enabled" in recording.channels:
+        good &= recording.channels["enabled"] > 0.5
+    if "duty" in recording.channels:
+        good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
+    steps = np.diff(raw_time)
+    before_gap = np.append(steps > LONGEST_GAP_PERIODS * float(np.median(steps)), False)
+    after_gap = np.roll(before_gap, 1)
+    in_gap = before_gap[np.searchsorted(raw_time, time, side="right") - 1]
+    edge_s = EDGE_PERIODS / cutoff_hz
+    usable: BoolArray = (time >= time[0] + edge_s) & (time <= time[-1] - edge_s) & ~in_gap
+    return usable & (distance_to_nearest(time, raw_time[~good | before_gap | after_gap]) > MASK_PERIODS / cutoff_hz)
+
+
+def distance_to_nearest(values: FloatArray, marks: FloatArray) -> FloatArray:
+    """Distance of each value to the nearest of the sorted marks; inf where there are none."""
+    if len(marks) == 0:
+        return np.full(len(values), np.inf)
+    right = np.searchsorted(marks, values)
+    after = np.where(right < len(marks), marks[np.minimum(right, len(marks) - 1)], np.inf)
+    before = np.where(right > 0, marks[np.maximum(right - 1, 0)], -np.inf)
+    nearest: FloatArray = np.minimum(after - values, values - before)
+    return nearest

@@ -1,0 +1,86 @@
+"""A position that stands still while the joint moves on: a sensor that is stuck, which looks like friction or cogging.
+
+Friction and end stops hold a joint, too, and the position does not change either. Two things tell the sensor: the
+drive's speed goes on, or the position comes back in one leap, which no joint does that starts from rest.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS
+from compensator.lab.recordings.recording import FloatArray, Recording
+
+SHORTEST_S = 0.1  # less is a sample or two that were lost and filled up with the last one
+FEWEST_SAMPLES = 10
+LATE_S = 0.1  # by which the drive's speed may lag behind its position, or precede it
+MISSED = 10.0  # times the step that 19 in 20 samples in motion stay below: what the speed covers meanwhile
+LEAP = 10.0  # times the step that 19 in 20 samples in motion stay below
+ALONE = 3.0  # times the steps after it: a joint that starts goes on
+AFTER = 3  # steps that are looked at after a leap
+LEAST_SHARE = (
+    0.1  # of the speed that 19 in 20 samples in motion stay below: less may be where the drive's speed has its zero
+)
+
+
+def stuck_positions(recordings: Sequence[Recording], facts: Facts) -> list[str]:
+    """One sentence, of all trials in which it shows: where it does, and what to do."""
+    unit = facts.position_unit
+    found = [(one.name, next(_stuck(one, unit), None)) for one in recordings]
+    stuck = [(name, span) for name, span in found if span is not None]
+    if not stuck:
+        return []
+    name, (start_s, end_s, why) = stuck[0]
+    others = f" (and so in {', '.join(repr(other) for other, _ in stuck[1:])})" if stuck[1:] else ""
+    return [
+        f"trial '{name}': position_{unit} stands still from {start_s:.4g} to {end_s:.4g} s, though {why}: the sensor "
+        f"is stuck{others}; leave the trial out, or leave position_{unit} empty there and import again"
+    ]
+
+
+def _stuck(recording: Recording, unit: str) -> Iterator[tuple[float, float, str]]:
+    """Start [s], end [s] and sign of each stretch in which the sensor is stuck."""
+    channels = recording.channels
+    time_s, position = channels["time_s"], channels.get(f"position_{unit}")
+    if position is None:
+        return
+    speed = channels.get(f"velocity_{unit}_s")
+    step, period_s = np.diff(position), np.diff(time_s)
+    gap = ~(period_s <= LONGEST_GAP_PERIODS * float(np.median(period_s))) if len(period_s) else np.zeros(0, dtype=bool)
+    moving = np.abs(step[(step != 0.0) & np.isfinite(step) & ~gap])
+    if not len(moving):
+        return
+    typical = float(np.quantile(moving, 0.95))
+    for first, last in _standing(step, gap):
+        if last - first < FEWEST_SAMPLES or time_s[last] - time_s[first] < SHORTEST_S:
+            continue
+        missed, fast = (0.0, 0.0) if speed is None else _covered(time_s[first : last + 1], speed[first : last + 1])
+        if missed > MISSED * typical and fast > LEAST_SHARE * typical / float(np.median(period_s)):
+            yield time_s[first], time_s[last], f"velocity_{unit}_s covers {missed:.3g} {unit} meanwhile"
+        elif last < len(step) and not gap[last] and _is_leap(step[last:], typical):
+            yield time_s[first], time_s[last], f"it goes on with a leap of {step[last]:.3g} {unit}"
+
+
+def _standing(step: FloatArray, gap: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> Iterator[tuple[int, int]]:
+    """First and last sample of each stretch of one and the same position without a gap."""
+    same = np.concatenate([[False], (step == 0.0) & ~gap, [False]]).astype(np.int8)
+    change = np.diff(same)
+    for first, last in zip(np.flatnonzero(change == 1), np.flatnonzero(change == -1), strict=True):
+        yield int(first), int(last)
+
+
+def _covered(time_s: FloatArray, speed: FloatArray) -> tuple[float, float]:
+    """How far the speed goes one way and how fast, less what it may be late by at either end."""
+    within = (time_s >= time_s[0] + LATE_S) & (time_s <= time_s[-1] - LATE_S) & np.isfinite(speed)
+    if int(within.sum()) < 2:
+        return 0.0, 0.0
+    time_s, speed = time_s[within], speed[within]
+    way = np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time_s))
+    return float(np.ptp(np.append(0.0, way))), float(np.quantile(np.abs(speed), 0.95))
+
+
+def _is_leap(step: FloatArray, typical: float) -> bool:
+    """Whether the first step is far larger than any motion's, and stands alone."""
+    leap, after = float(abs(step[0])), np.abs(step[1 : 1 + AFTER])
+    return leap > LEAP * typical and leap > ALONE * float(np.nanmax(after, initial=0.0))

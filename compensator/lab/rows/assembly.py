@@ -1,0 +1,207 @@
+"""From recordings to a dataset: one effort, one cut-off, and which of every trial's samples are rows."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from compensator.lab.effects.effect import SESSION_START, Motion
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.recordings.bandwidth import choose_cutoff_hz
+from compensator.lab.recordings.channel_checks import check_channels
+from compensator.lab.recordings.effort import Effort, choose_effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, SATURATED_DUTY, Signals, make_signals
+from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.recordings.regimes import Regime, classify, near_flank_change
+from compensator.lab.rows.dataset import Dataset, Processing, Scales, Trial
+
+SLOW_SHARE = 0.02  # of the 95 % quantile of speed: below, the direction of motion is uncertain
+NOISE_FACTOR = 3.0  # slow is at least this many standard deviations of the velocity noise
+TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so that it stays differentiable
+ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
+NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
+FEWEST_ROWS = 40
+CONSTANT = 1e-9  # of its largest value: what changes less does not change
+WANTED_MOTION = "record trials with motion in both directions: sines or triangles of several speeds"
+FLANK_SHARE = 0.1  # of the sliding rows that must be left when those near a crossing of the free play are dropped
+
+
+def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Processing) -> Dataset:
+    """Filter every recording and pick its rows.
+
+    Raises:
+        UnusableDataError: no common effort, no position, no motion, or too few rows; the message says which
+            trial would supply what is missing.
+    """
+    if not recordings:
+        raise UnusableDataError("no recordings: choose at least one trial")
+    _check_conditions(recordings)
+    effort = choose_effort(recordings, facts)
+    check_channels(recordings, effort, facts)
+    cutoff = processing.cutoff_hz or choose_cutoff_hz(recordings, effort, facts)
+    signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
+    usable = np.concatenate([s.usable for s in signals])
+    if not usable.any():
+        raise UnusableDataError(_no_usable(recordings, effort, facts))
+    speed = np.abs(np.concatenate([s.velocity for s in signals]))[usable]
+    position = np.concatenate([s.position for s in signals])[usable]
+    fast, span = float(np.quantile(speed, 0.95)), float(np.ptp(position))
+    if not span > CONSTANT * float(np.abs(position).max()):
+        raise UnusableDataError(f"the joint does not move in any trial; {WANTED_MOTION}")
+    measured = np.concatenate([s.effort for s in signals])[usable]
+    if not float(np.ptp(measured)) > CONSTANT * float(np.abs(measured).max()):
+        raise UnusableDataError(
+            f"{' x '.join(effort.channels)} is {measured[0]:.3g} {effort.unit} all the time; check the channel's "
+            "mapping, or choose trials in which it is measured"
+        )
+    noise = max(_velocity_noise(s, facts, cutoff) for s in signals)
+    slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
+    scales = Scales(noise, slow, fast, span, _session_span_s(signals))
+    trials = tuple(_make_trial(s, facts, cutoff, scales) for s in signals)
+    plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
+    settled = replace(plain, trials=_on_one_flank(trials), cache={})
+    enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
+    dataset = settled if int(settled.counted.sum()) >= enough else replace(plain, crosses_free_play=True)
+    found = int(dataset.counted.sum())
+    if found < FEWEST_ROWS:
+        raise UnusableDataError(
+            f"{found} rows where the joint moves faster than {slow:.3g} {facts.position_unit}/s; at least "
+            f"{FEWEST_ROWS} are needed: {WANTED_MOTION}"
+        )
+    return dataset
+
+
+def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
+    """Rows of other trials of the same joint, made with the very cut-off and scales of a dataset; none of its own.
+
+    Raises:
+        UnusableDataError: as `make_signals`.
+    """
+    effort, facts, cutoff = dataset.effort_definition, dataset.facts, dataset.cutoff_hz
+    signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
+    trials = tuple(_make_trial(s, facts, cutoff, dataset.scales) for s in signals)
+    return replace(dataset, trials=trials if dataset.crosses_free_play else _on_one_flank(trials), cache={})
+
+
+def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]:
+    """Those recordings that the dataset could be given: others are too short for its filter, or lack a channel."""
+    found = []
+    for recording in recordings:
+        try:
+            make_signals(recording, dataset.effort_definition, dataset.facts, dataset.cutoff_hz)
+        except UnusableDataError:
+            continue
+        found.append(recording)
+    return found
+
+
+def _no_usable(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> str:
+    """Why no row of any recording is left, and what to record instead: the reason that takes most samples."""
+    names = (f"position_{facts.position_unit}", *effort.channels)
+    unknown, off, saturated = (
+        float(np.mean(np.concatenate([of(recording) for recording in recordings])))
+        for of in (
+            lambda one: ~np.isfinite([one.channels[name] for name in names]).all(axis=0),
+            lambda one: ~(one.channels.get("enabled", np.ones(len(one))) > 0.5),
+            lambda one: np.abs(one.channels.get("duty", np.zeros(len(one)))) >= SATURATED_DUTY,
+        )
+    )
+    if saturated > max(unknown, off):
+        return (
+            f"no usable rows: the duty is at its limit in {saturated:.0%} of the samples, where it tells nothing "
+            "of the load; record with a lighter load or slower"
+        )
+    if off > unknown:
+        return f"no usable rows: the power stage is off in {off:.0%} of the samples; record with it on"
+    if unknown > 0.0:
+        return (
+            f"no usable rows: {' or '.join(names)} is missing in {unknown:.0%} of the samples, and no stretch without "
+            "a gap is long enough to be filtered; leave out the lines that do not hold all of them (time may be "
+            "irregular), or record all channels at every sample"
+        )
+    return "no usable rows: the trials are too short, or all gaps; record longer ones"
+
+
+def _session_span_s(signals: Sequence[Signals]) -> float:
+    """From the start of the first trial to the end of the last, as far as the trials tell when they began."""
+    starts = [float(s.recording.conditions.get(SESSION_START, 0.0)) for s in signals]
+    ends = [start + float(s.time_s[-1] - s.time_s[0]) for start, s in zip(starts, signals, strict=True)]
+    return max(ends) - min(starts)
+
+
+def _check_conditions(recordings: Sequence[Recording]) -> None:
+    """Raise where a load or a length is told, but not as a number: it would count as none."""
+    for recording in recordings:
+        for name in NUMERIC_CONDITIONS:
+            value = recording.conditions.get(name, 0.0)
+            if not isinstance(value, int | float) or not np.isfinite(value):
+                raise UnusableDataError(
+                    f"recording '{recording.name}': condition {name} is '{value}', wanted is a number; "
+                    "correct it, or leave it out where it is not known"
+                )
+
+
+def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales) -> Trial:
+    nothing = np.zeros(len(signals.time_s))
+    motion = Motion(
+        facts=facts,
+        conditions=signals.recording.conditions,
+        time_s=signals.time_s - signals.time_s[0],
+        position=signals.position,
+        velocity=signals.velocity,
+        acceleration=signals.acceleration,
+        jerk=signals.jerk,
+        direction=np.tanh(signals.velocity / max(scales.noise, TINY_SHARE * scales.slow)),
+        load_effort=nothing,
+        inertia_beyond=0.0,
+        inertia=0.0,
+        parting=nothing,
+        predicted=nothing,
+        effort_rate=nothing,
+        largest_effort=0.0,
+        temperature_c=signals.temperature_c,
+        supply_v=signals.supply_v,
+        position_span=scales.position_span,
+        session_span_s=scales.session_span_s,
+        slow=scales.slow,
+        fast=scales.fast,
+    )
+    step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
+    picked = np.arange(step // 2, len(signals.time_s), step)
+    picked = picked[signals.usable[picked]]
+    return Trial(signals, motion, picked, classify(signals.velocity, scales.slow, signals.rate_hz)[picked])
+
+
+def _on_one_flank(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
+    """The trials with rows near a crossing of the free play no longer counted as sliding."""
+    made = []
+    for trial in trials:
+        crossing = near_flank_change(_carried(trial.motion), trial.signals.rate_hz)[trial.picked]
+        sliding = trial.regime == Regime.SLIDING
+        regime = np.where(sliding & crossing, Regime.TRANSIENT, trial.regime).astype(np.uint8)
+        made.append(replace(trial, regime=regime))
+    return tuple(made)
+
+
+def _carried(motion: Motion) -> FloatArray:
+    """Torque [N m] that the gear is known to carry: weight and inertia beyond it. All zero without known free play."""
+    facts = motion.facts
+    if not facts.backlash_rad or facts.joint == "linear":
+        return np.zeros(len(motion.time_s))
+    moment = 0.0 if facts.horizontal else motion.load_moment_n_m
+    inertia = motion.load_inertia_kg_m2 + (facts.arm_inertia_kg_m2 or 0.0)
+    return moment * np.sin(motion.position) + inertia * motion.acceleration
+
+
+def _velocity_noise(signals: Signals, facts: Facts, cutoff_hz: float) -> float:
+    """Standard deviation of the velocity from the position's quantisation, after the differentiation filter."""
+    raw = signals.recording.channels[f"position_{facts.position_unit}"]
+    steps = np.abs(np.diff(raw))
+    steps = steps[steps > 0]
+    if len(steps) == 0:
+        return 0.0
+    quantum = float(np.quantile(steps, 0.01))
+    wide_hz = min(DIFFERENTIATION_FACTOR * cutoff_hz, 0.5 * signals.rate_hz)
+    in_band = np.sqrt(wide_hz / (0.5 * signals.rate_hz))
+    return float(quantum / np.sqrt(12.0) * in_band * 2.0 * np.pi * wide_hz / np.sqrt(3.0))

@@ -1,0 +1,278 @@
+"""The rows of a study: every trial's signals, and columns of any effect filtered and thinned like the effort."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compensator.lab.effects.effect import Effect, Motion, Shape
+from compensator.lab.errors import NotApplicableError
+from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.effort import Effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import Signals, low_pass
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray, Regime
+
+RowChoice = Literal["sliding", "moving", "all"]
+IntArray = NDArray[np.int64]
+ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds the one before
+
+MOST_VALUES = 2**20  # of one trial, at the full rate, that are filtered at once
+BLOCK_S = 2.0  # rows closer than this are not independent
+
+
+@dataclass(frozen=True, slots=True)
+class Processing:
+    """How recordings become rows.
+
+    Attributes:
+        cutoff_hz: of the final low-pass; None lets the data choose (see `bandwidth`).
+        rows: which rows a model is fitted to and judged on.
+    """
+
+    cutoff_hz: float | None = None
+    rows: RowChoice = "sliding"
+
+
+@dataclass(frozen=True, slots=True)
+class Scales:
+    """What all trials of a dataset are measured by, so that the columns of any two of them are alike.
+
+    Attributes:
+        noise: standard deviation of the velocity's noise.
+        slow: speed below which direction is uncertain; fast: 95 % quantile of speed.
+        position_span: range of position.
+        session_span_s: from the first trial's start to the last one's end.
+    """
+
+    noise: float
+    slow: float
+    fast: float
+    position_span: float
+    session_span_s: float
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One recording, ready: its motion at the full rate and which of its samples are rows."""
+
+    signals: Signals
+    motion: Motion
+    picked: IntArray  # indices into the full-rate signals, thinned to the Nyquist rate
+    regime: NDArray[np.uint8]  # of the picked samples
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """All rows of a study's trials. N rows in all.
+
+    Attributes:
+        trials: in the order given.
+        effort_definition: what `effort` holds, with its unit.
+        facts: of the joint.
+        cutoff_hz: of the final low-pass.
+        rows: which regimes count.
+        scales: of all trials.
+        crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
+    """
+
+    trials: tuple[Trial, ...]
+    effort_definition: Effort
+    facts: Facts
+    cutoff_hz: float
+    rows: RowChoice
+    scales: Scales
+    crosses_free_play: bool = False
+    cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def effort(self) -> FloatArray:
+        """Filtered effort, shape (N,)."""
+        kept = ("the effort itself", ())  # the same whatever is predicted, so it outlives `with_prediction`
+        if kept not in self.cache:
+            self.cache[kept] = self.stack([trial.signals.effort[None] for trial in self.trials])[:, 0]
+        return self.cache[kept]
+
+    @cached_property
+    def trial_index(self) -> IntArray:
+        """Which trial each row belongs to, shape (N,)."""
+        return np.concatenate([np.full(len(t.picked), i, dtype=np.int64) for i, t in enumerate(self.trials)])
+
+    @cached_property
+    def block_index(self) -> IntArray:
+        """Which stretch of BLOCK_S each row belongs to, shape (N,); stretches never cross trials."""
+        labels, start = [], 0
+        for trial in self.trials:
+            block = (self.time_of(trial) // BLOCK_S).astype(np.int64)
+            _, dense = np.unique(block, return_inverse=True)
+            labels.append(dense + start)
+            start += int(dense.max()) + 1 if len(dense) else 0
+        return np.concatenate(labels)
+
+    @cached_property
+    def regime(self) -> NDArray[np.uint8]:
+        """`Regime` of each row, shape (N,)."""
+        return np.concatenate([trial.regime for trial in self.trials])
+
+    @cached_property
+    def counted(self) -> BoolArray:
+        """Rows that a model is fitted to and judged on, shape (N,)."""
+        return self.in_regimes(self.rows)
+
+    def in_regimes(self, choice: RowChoice) -> BoolArray:
+        """Rows of these regimes, shape (N,)."""
+        if choice == "all":
+            return np.ones(len(self.regime), dtype=bool)
+        chosen: BoolArray = self.regime == Regime.SLIDING if choice == "sliding" else self.regime != Regime.STUCK
+        return chosen
+
+    def choice_for(self, effects: Sequence[Effect]) -> RowChoice:
+        """The rows that a model of these effects is fitted to: wider than the study's where an effect needs it."""
+        wanted: RowChoice = "moving" if any(effect.rows == "moving" for effect in effects) else "sliding"
+        return max(self.rows, wanted, key=ROW_CHOICES.index)
+
+    @staticmethod
+    def time_of(trial: Trial) -> FloatArray:
+        """Time of the trial's rows since its start [s]."""
+        time: FloatArray = trial.signals.time_s[trial.picked] - trial.signals.time_s[0]
+        return time
+
+    def columns(self, effect: Effect, shape: Shape) -> FloatArray:
+        """The effect's columns over all rows, filtered like the effort; shape (N, k).
+
+        Raises:
+            NotApplicableError: a channel or a varying condition that the effect needs is not there.
+        """
+        return self.columns_of_shapes(effect, [shape])[0]
+
+    def columns_of_shapes(self, effect: Effect, shapes: Sequence[Shape]) -> list[FloatArray]:
+        """The effect's columns for each shape, (N, k) each; all shapes are filtered in one pass per trial.
+
+        Columns that do not depend on the predicted load are kept: shape searches ask for them again and again.
+
+        Raises:
+            NotApplicableError: as `columns`.
+        """
+        self.check_applicable(effect)
+        return self.unchecked_columns(effect, shapes)
+
+    def unchecked_columns(self, effect: Effect, shapes: Sequence[Shape]) -> list[FloatArray]:
+        """As `columns_of_shapes`, where it is known that the effect can be judged, or other trials decide that."""
+        return self.columns_of_effects([(effect, shapes)])[0]
+
+    def columns_of_model(self, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> FloatArray:
+        """The columns of a model's effects, each of its shape, beside each other; shape (N, K).
+
+        Raises:
+            NotApplicableError: as `columns`.
+        """
+        for effect in effects:
+            self.check_applicable(effect)
+        made = self.columns_of_effects([(effect, [shapes.get(effect.name, ())]) for effect in effects])
+        return np.concatenate([block for (block,) in made], axis=1)
+
+    def columns_of_effects(self, wanted: Sequence[tuple[Effect, Sequence[Shape]]]) -> list[list[FloatArray]]:
+        """The columns of many effects, for each of their shapes, (N, k) each: all are filtered in one pass per trial.
+
+        A filter's call costs more than its work on a short trial, so that many columns cost little more than one.
+        Unchecked: see `unchecked_columns`.
+        """
+        missing = [(e, shape) for e, shapes in wanted for shape in shapes if (e.name, shape) not in self.cache]
+        made: dict[tuple[str, Shape], FloatArray] = {}
+        for some in self._portions(missing):
+            ends = np.cumsum([len(effect.parameters) for effect, _ in some])[:-1]
+            full_rate = (np.concatenate([e.columns(t.motion, shape) for e, shape in some]) for t in self.trials)
+            blocks = np.split(self.stack(full_rate), ends, axis=1)
+            made.update({(effect.name, shape): block for (effect, shape), block in zip(some, blocks, strict=True)})
+            self.cache.update({(e.name, shape): made[e.name, shape] for e, shape in some if not e.uses_prediction})
+        return [
+            [made[e.name, shape] if (e.name, shape) in made else self.cache[e.name, shape] for shape in shapes]
+            for e, shapes in wanted
+        ]
+
+    def _portions(self, wanted: Sequence[tuple[Effect, Shape]]) -> Iterator[Sequence[tuple[Effect, Shape]]]:
+        """So many at a time that their columns at the full rate stay small beside the recordings themselves."""
+        longest = max((len(trial.motion.time_s) for trial in self.trials), default=1)
+        at_once = max(1, MOST_VALUES // longest)
+        for start in range(0, len(wanted), at_once):
+            yield wanted[start : start + at_once]
+
+    def stack(self, full_rate: Iterable[FloatArray]) -> FloatArray:
+        """Filter and thin arrays (k, n) given per trial, one after the other; shape (N, k)."""
+        parts = [self._filtered(trial, rows) for trial, rows in zip(self.trials, full_rate, strict=True)]
+        return np.concatenate(parts, axis=1).T
+
+    def rows_of(self, full_rate: Sequence[FloatArray]) -> FloatArray:
+        """Thin arrays (n,) given per trial, without filtering; shape (N,)."""
+        return np.concatenate([rows[trial.picked] for trial, rows in zip(self.trials, full_rate, strict=True)])
+
+    def with_prediction(
+        self,
+        load_effort: Sequence[FloatArray],
+        predicted: Sequence[FloatArray],
+        beyond: Sequence[tuple[float, FloatArray]],
+        inertia: Sequence[float],
+    ) -> "Dataset":
+        """The same rows, with the predicted load and effort in every trial's motion (n,) each.
+
+        Args:
+            load_effort: of each trial's motion.
+            predicted: of each trial's motion.
+            beyond: `inertia_beyond` and `parting` of each trial's motion.
+            inertia: of each trial's motion.
+        """
+        largest = max(float(np.abs(total).max(initial=0.0)) for total in predicted)
+        trials = tuple(
+            replace(
+                trial,
+                motion=replace(
+                    trial.motion,
+                    load_effort=load,
+                    inertia_beyond=part,
+                    inertia=whole,
+                    parting=parting,
+                    predicted=total,
+                    effort_rate=rate_of_change(total, trial.signals.rate_hz),
+                    largest_effort=largest,
+                ),
+            )
+            for trial, load, total, (part, parting), whole in zip(
+                self.trials, load_effort, predicted, beyond, inertia, strict=True
+            )
+        )
+        return replace(self, trials=trials)
+
+    def check_applicable(self, effect: Effect) -> None:
+        """Raise NotApplicableError, in words, where the recordings lack what the effect needs."""
+        quantity = self.effort_definition.quantity
+        if effect.efforts and quantity not in effect.efforts:
+            raise NotApplicableError(
+                f"{effect.name} does not show in {self.effort_definition.title}; it does in {', '.join(effect.efforts)}"
+            )
+        for fact in effect.facts:
+            if getattr(self.facts, fact) is None:
+                raise NotApplicableError(
+                    f"{effect.name} needs {fact}, which the rig does not tell; put it into rig.toml"
+                )
+        for channel in effect.channels:
+            if not all(channel in trial.signals.recording.channels for trial in self.trials):
+                raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")
+        if effect.varies_with and not self._varies(effect.varies_with):
+            raise NotApplicableError(
+                f"{effect.name} needs {effect.varies_with} to differ over the data, and it does not; "
+                f"record {effect.excited_by}"
+            )
+
+    def _varies(self, quantity: str) -> bool:
+        if quantity == "temperature_c":
+            values = self.rows_of([trial.motion.temperature_c for trial in self.trials])
+            return bool(np.isfinite(values).all() and np.ptp(values) >= 1.0)
+        values = np.array([trial.motion.condition(quantity, 0.0) for trial in self.trials])
+        return bool(np.ptp(values) > 0.0)
+
+    def _filtered(self, trial: Trial, full_rate: FloatArray) -> FloatArray:
+        return low_pass(full_rate, self.cutoff_hz, trial.signals.rate_hz)[:, trial.picked]

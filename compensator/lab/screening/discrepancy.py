@@ -1,0 +1,80 @@
+"""What the formulas of a model's effects leave open, so that none of it is mistaken for one more effect.
+
+A formula that is in the model is nearly right. What it misses is small beside the effect itself, but it can be large
+beside noise, and then whatever effect of the catalogue is most like it would be named (Kennedy, O'Hagan 2001: model
+discrepancy). So candidates are judged on top of
+
+- the tangent of every fitted shape,
+- columns that an effect itself says its truth may differ by (`Effect.discrepancy`), and
+- the product of every two shares of dry friction, and of one with the other's tangents: what changes friction changes
+  all of it, be it the weight, the angle or the grease, and an interaction of effects that are there is likelier than
+  one more effect (Hamada, Wu 1992: effect heredity).
+"""
+
+from itertools import chain, combinations
+
+import numpy as np
+
+from compensator.lab.effects.effect import Motion, Shape
+from compensator.lab.model.fit import Fit, Term
+from compensator.lab.recordings.recording import FloatArray
+
+TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
+
+
+def model_columns(fit: Fit) -> FloatArray:
+    """The model's columns that no bound holds, and what its formulas leave open; shape (N, k)."""
+    free = np.concatenate([term.kept & ~term.at_bound for term in fit.terms])
+    return np.column_stack([fit.columns[:, free], *_tangents(fit), discrepancy_columns(fit)])
+
+
+def discrepancy_columns(fit: Fit) -> FloatArray:
+    """What formulas leave open beside their shapes, over all rows, shape (N, k)."""
+    dataset = fit.dataset
+    terms = [term for term in fit.terms if np.any(term.coefficients)]
+    full_rate = (np.array([*_own(terms, trial.motion), *_products(terms, trial.motion)]) for trial in dataset.trials)
+    first = next(full_rate)  # the others one by one: all of them at the full rate would need much memory
+    return dataset.stack(chain([first], full_rate)) if len(first) else np.empty((len(dataset.effort), 0))
+
+
+def _tangents(fit: Fit) -> list[FloatArray]:
+    """The tangent of every fitted shape, (N,) each."""
+    found = []
+    for term in fit.terms:
+        for moved in _moved(term):
+            here, there = fit.dataset.unchecked_columns(term.effect, [term.shape, moved])
+            found.append((there - here) @ term.coefficients)
+    return found
+
+
+def _own(terms: list[Term], motion: Motion) -> list[FloatArray]:
+    """What effects say of themselves, (n,) each."""
+    found = [term.effect.discrepancy(motion, term.shape) for term in terms if term.effect.discrepancy is not None]
+    return [column for columns in found for column in columns]
+
+
+def _products(terms: list[Term], motion: Motion) -> list[FloatArray]:
+    """Of shares of dry friction, each of which may be a factor of all the others; (n,) each."""
+    shares = [(_share(term, motion, term.shape), term) for term in terms if term.effect.dry_friction]
+    found = []
+    for (one, first), (other, second) in combinations(shares, 2):
+        found.append(one * other)
+        found += [one * (_share(second, motion, moved) - other) for moved in _moved(second)]
+        found += [other * (_share(first, motion, moved) - one) for moved in _moved(first)]
+    return [product * motion.direction for product in found]
+
+
+def _share(term: Term, motion: Motion, shape: Shape) -> FloatArray:
+    """What the term adds to the effort of a trial, at a shape."""
+    share: FloatArray = term.coefficients @ term.effect.columns(motion, shape)
+    return share
+
+
+def _moved(term: Term) -> list[Shape]:
+    """The term's shape with one value after the other moved a little; none where it is held."""
+    if not term.effect.smooth_shape or term.at_bound.any():
+        return []
+    return [
+        tuple(x * (1.0 + TANGENT_STEP * (i == index)) for i, x in enumerate(term.shape))
+        for index in range(len(term.shape))
+    ]

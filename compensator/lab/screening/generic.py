@@ -1,0 +1,59 @@
+"""Driver splines: what a missing effect looks like when no formula of the catalogue fits.
+
+A seven-knot linear spline of each driving variable, once plain and once against the motion: a model-error model in
+Ljung's sense. It names the variable, not the mechanism.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.rows.dataset import Dataset, Trial
+from compensator.lab.rows.drivers import DRIVERS, available
+
+KNOTS = 7
+KNOT_SHARES = np.linspace(0.0, 1.0, KNOTS)
+SPLINED = ("position", "velocity", "acceleration", "load", "load_kg", "temperature", "time")
+
+
+@dataclass(frozen=True)
+class DriverBlock:
+    """One driver's spline over all rows.
+
+    Attributes:
+        driver: key of `DRIVERS`.
+        against_motion: multiplied by the direction of motion (friction-like), or plain (force-like).
+        columns: filtered like the effort, shape (N, k).
+        knots: of the spline, in the driver's unit, shape (k,).
+    """
+
+    driver: str
+    against_motion: bool
+    columns: FloatArray
+    knots: FloatArray
+
+
+def driver_blocks(dataset: Dataset) -> list[DriverBlock]:
+    """The splines of every driver that varies over the rows."""
+    values = available(dataset)
+    knots = {name: np.unique(np.quantile(values[name], KNOT_SHARES)) for name in SPLINED if name in values}
+    stacked = dataset.stack(_all_hats(trial, knots) for trial in dataset.trials)
+    ways = [(name, against) for name in knots for against in (False, True)]
+    ends = np.cumsum([len(knots[name]) for name, _ in ways])[:-1]
+    return [
+        DriverBlock(name, against, columns, knots[name])
+        for (name, against), columns in zip(ways, np.split(stacked, ends, axis=1) if ways else [], strict=True)
+    ]
+
+
+def _all_hats(trial: Trial, knots: Mapping[str, FloatArray]) -> FloatArray:
+    """Hats of every driver of one trial, plain and against the motion, shape (k, n)."""
+    hats = [_hats(DRIVERS[name].of(trial), places) for name, places in knots.items()]
+    return np.concatenate([way for plain in hats for way in (plain, plain * trial.motion.direction)])
+
+
+def _hats(values: FloatArray, knots: FloatArray) -> FloatArray:
+    """Linear hat functions of shape (len(knots), n); they sum to one, and are held beyond the outer knots."""
+    return np.array([np.interp(values, knots, unit) for unit in np.eye(len(knots))])

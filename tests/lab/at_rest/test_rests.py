@@ -1,0 +1,96 @@
+"""Rest bounds the effort: a complete model holds, what is wrong at rest alone is found, with its side and its size."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at_rest
+from compensator.lab.comparison.comparison import compare
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.at_rest.test_breakaways import falling
+from tests.lab.ramps import HORIZONTAL, MODEL, RATE_HZ, STATIC, ramp_fit, ramp_recordings
+
+COULOMB, MOMENT, LEAN_RAD, HELD_RAD = 0.05, 0.5, 0.3, 1.2
+NOISE = 5e-4
+
+
+def biased(bias: float, only_at_rest: bool = True) -> Fit:
+    """Swings and ramps whose effort is off by a bias, while the joint stands or all the time."""
+    made = ramp_recordings()
+    for one in made:
+        speed = np.abs(np.gradient(one.channels["position_rad"], one.channels["time_s"]))
+        one.channels["torque_n_m"] += bias * (np.exp(-speed / 0.05) if only_at_rest else 1.0)
+    return fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_complete_model_holds_at_rest(seed):
+    found = compare_at_rest(ramp_fit(seed=seed))
+    assert found.windows > 1000
+    assert found.by_starts
+    assert not found.is_evidence
+    assert found.largest < 0.1 * STATIC
+    assert "no more than chance" in at_rest_in_words(found, "N m")
+
+
+@pytest.mark.parametrize("bias", [0.03, -0.03])
+def test_a_bias_at_rest_that_sliding_does_not_have_is_found_on_its_side(bias):
+    fit = biased(bias)
+    found = compare_at_rest(fit)
+    side, other = (found.above, found.below) if bias > 0.0 else (found.below, found.above)
+    assert side.chance <= 0.001 < 0.5 < other.chance
+    assert side.largest == pytest.approx(abs(bias), abs=0.015)  # static friction itself scatters
+    words = at_rest_in_words(found, "N m")
+    assert f"{'above' if bias > 0.0 else 'below'} only" in words
+    assert "that is no friction" in words
+    assert words in diagnose(fit).notes
+
+
+def test_an_offset_that_sliding_has_too_is_none():
+    assert not compare_at_rest(biased(0.03, only_at_rest=False)).is_evidence
+
+
+def test_friction_that_holds_less_the_quicker_the_effort_rises_is_no_violation():
+    assert not compare_at_rest(ramp_fit(falling)).is_evidence
+
+
+def trial(name: str, position: np.ndarray, lean_rad: float, seed: int) -> Recording:
+    """A joint whose centre of mass stands beside its arm; at rest the servo holds exactly what gravity asks."""
+    time_s = np.arange(len(position)) / RATE_HZ
+    velocity = np.gradient(position, time_s)
+    effort = 0.02 * np.gradient(velocity, time_s) + 0.03 * velocity + COULOMB * np.sign(velocity)
+    effort += MOMENT * np.sin(position + lean_rad) + NOISE * np.random.default_rng(seed).standard_normal(len(position))
+    return Recording(name, "x", {}, {"time_s": time_s, "position_rad": position, "torque_n_m": effort})
+
+
+def leaning(lean_rad: float) -> Fit:
+    """Swings about the lowest angle, where a centre of mass beside the arm looks like an offset, and a rest far off."""
+    time_s = np.arange(0.0, 8.0, 1.0 / RATE_HZ)
+    made = [
+        trial(f"swing-{number}", 0.12 * np.sin(2.0 * np.pi * hz * time_s), lean_rad, number)
+        for number, hz in enumerate((0.5, 0.8, 1.2, 1.7))
+    ]
+    made.append(trial("held", np.full(len(time_s), HELD_RAD), lean_rad, 9))
+    effects = ("inertia", "gravity", "offset", "coulomb", "viscous")
+    return fit_model(make_dataset(made, Facts(), Processing(cutoff_hz=8.0)), effects)
+
+
+def test_a_centre_of_mass_that_sliding_takes_for_an_offset_is_found_at_rest():
+    assert not compare_at_rest(leaning(0.0)).is_evidence
+    found = compare_at_rest(leaning(LEAN_RAD))
+    assert found.below.chance <= 0.01
+    assert found.below.trial == "held"
+    assert not found.by_starts
+
+
+def test_rest_is_a_regime_by_what_lies_beyond_friction():
+    found = compare(biased(0.03))
+    stuck = next(one for one in found.regimes if one.name == "stuck")
+    assert stuck.rows == found.at_rest.windows
+    assert stuck.rms == pytest.approx(found.at_rest.rms)
+    assert 0.0 < stuck.rms < found.at_rest.largest
+    assert 0.0 < found.at_rest.outside < 0.2

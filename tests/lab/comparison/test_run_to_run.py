@@ -1,0 +1,61 @@
+"""Dry friction that differs from run to run is told with its size, and nothing is told where it does not."""
+
+import re
+
+import numpy as np
+import pytest
+
+from compensator.lab.comparison.run_to_run import FrictionByRun, by_run_in_words, friction_by_run
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.validation import held_out
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Joint, plans, recordings
+
+COULOMB_N_M = Joint().coulomb
+
+
+def fitted(differences_n_m: dict[int, float], held: tuple[int, ...] = ()) -> Fit:
+    """Trials with so much more dry friction each; those held do not train."""
+    made = recordings(trials=plans((0.0, 0.2), temperatures_c=(25.0,)), seed=11)
+    for index, difference in differences_n_m.items():
+        channels = made[index].channels
+        channels["torque_n_m"] += difference * np.tanh(np.gradient(channels["position_rad"], channels["time_s"]) / 0.02)
+    dataset = make_dataset(made, FACTS, Processing(8.0))
+    return fit_model(dataset, default_effects(FACTS), dataset.counted & ~np.isin(dataset.trial_index, held))
+
+
+def by_run(fit: Fit) -> FrictionByRun | None:
+    return friction_by_run(fit, held_out(fit))
+
+
+def test_one_run_with_more_friction():
+    fit = fitted({4: 0.05 * COULOMB_N_M}, held=(4,))
+    found, name = by_run(fit), fit.dataset.trials[4].signals.recording.name
+    assert found.trial == name
+    assert found.difference == pytest.approx(0.05 * COULOMB_N_M, rel=0.2)
+    assert found.share == pytest.approx(0.05, rel=0.25)
+    assert 0.0 < found.floor < held_out(fit).relative
+    assert re.search(
+        rf"Dry friction differs from run to run by .* N m, .*% of Coulomb friction, in '{name}' \(\+0.00",
+        by_run_in_words(found, "N m"),
+    )
+
+
+def test_runs_that_scatter_with_each_left_out_in_turn():
+    differences = dict(enumerate(0.01 * np.array([1.0, -1.0, 0.5, -0.5, 1.5, -1.5])))
+    found = by_run(fitted(differences))
+    # a trial that is left out is held against the others' mean, which is 6/5 as far away
+    assert found.scatter == pytest.approx(1.2 * np.sqrt(np.mean(np.square(list(differences.values())))), rel=0.15)
+    assert f"over {len(differences)} trials" in by_run_in_words(found, "N m")
+
+
+@pytest.mark.parametrize("held", [(), (4,)], ids=["each in turn", "one held out"])
+def test_one_friction_for_all_runs_is_not_told(held):
+    assert by_run(fitted({}, held)) is None
+
+
+def test_a_model_without_dry_friction_has_none_to_differ():
+    fit = fitted({4: 0.01}, held=(4,))
+    assert by_run(fit_model(fit.dataset, ("inertia", "gravity", "viscous"), fit.training)) is None

@@ -1,0 +1,203 @@
+"""What cannot be compared ends in a sentence that says why, what was found and what to do; the rest is answered."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compensator.lab.comparison.comparison import compare
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.model.fit import fit_model
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
+
+NO_GRAVITY = Joint(arm_moment=0.0)
+LINEAR = Facts(joint="linear")
+
+
+FEW = plans((0.0, 0.25))
+
+
+def changed(change: Callable[[Recording], None], which: slice = slice(None)) -> list[Recording]:
+    made = recordings(trials=FEW, seed=3)
+    for recording in made[which]:
+        change(recording)
+    return made
+
+
+def put(channel: str, value: object) -> Callable[[Recording], None]:
+    def change(recording: Recording) -> None:
+        old = recording.channels.get(channel)
+        recording.channels[channel] = value(old) if callable(value) else np.full(len(recording), value)
+
+    return change
+
+
+def condition(name: str, value: object) -> Callable[[Recording], None]:
+    return lambda recording: recording.conditions.update({name: value})
+
+
+def first_samples(count: int) -> list[Recording]:
+    one = recordings(seed=3)[0]
+    return [Recording("short", "x", {}, {name: values[:count] for name, values in one.channels.items()})]
+
+
+def steps_only() -> list[Recording]:
+    time_s = np.arange(0, 20, 0.005)
+    position = np.where(time_s // 2 % 2 > 0, 1.0, 0.0)
+    return [Recording("s", "x", {}, {"time_s": time_s, "position_rad": position, "torque_n_m": 0.1 * position})]
+
+
+def jitter_of_the_encoder(old: np.ndarray) -> np.ndarray:
+    return 1e-4 * np.round(np.random.default_rng(0).standard_normal(len(old)))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        ([], "no recordings: choose at least one trial"),
+        (changed(put("position_rad", 0.3)), "the joint does not move in any trial; record trials with motion"),
+        (changed(put("position_rad", jitter_of_the_encoder)), "0 rows where the joint moves faster than 0.000"),
+        (steps_only(), "0 rows where the joint moves faster than"),
+        (changed(put("torque_n_m", 0.3)), "torque_n_m is 0.3 N m all the time; check the channel's mapping"),
+        (changed(put("torque_n_m", 0.0)), "torque_n_m is 0 N m all the time"),
+        (changed(put("torque_n_m", np.nan)), "'load-0g-0-1' has no effort channel"),
+        (changed(put("torque_n_m", np.nan), slice(2, 3)), "'load-0g-2-1' has no effort channel"),
+        (changed(put("position_rad", np.nan), slice(2, 3)), "'load-0g-2-1': position_rad has no finite sample"),
+        (
+            changed(put("enabled", 0.0)),
+            "no usable rows: the power stage is off in 100% of the samples; record with it on",
+        ),
+        (changed(put("duty", 1.0)), "no usable rows: the duty is at its limit in 100% of the samples"),
+        (first_samples(2), "'short' has 2 samples; at least .* are needed to filter"),
+        (first_samples(1), r"'short' has 1 sample\(s\); record longer"),
+        (first_samples(0), "'short' has no effort channel"),
+        ([*recordings(seed=3), *first_samples(50)], "'short' has 50 samples; at least"),
+        (
+            changed(put("time_s", lambda t: 1e3 * t)),
+            "0.2 samples a second; at least 4 .* check that time_s is in seconds",
+        ),
+        (changed(condition("load_kg", "heavy")), "'load-0g-0-1': condition load_kg is 'heavy', wanted is a number"),
+        (changed(condition("arm_m", float("nan"))), "condition arm_m is 'nan', wanted is a number"),
+    ],
+)
+def test_unusable_data_say_what_is_wrong_and_what_to_do(made, words):
+    with pytest.raises(UnusableDataError, match=words):
+        fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+
+
+def diagnosed(made: list[Recording], facts: Facts = FACTS) -> Diagnosis:
+    fit = fit_model(make_dataset(made, facts, Processing()), default_effects(facts))
+    assert np.isfinite(compare(fit).held_out.relative)
+    found = diagnose(fit)
+    assert found.sentence
+    assert np.isfinite([candidate.score for candidate in found.candidates]).all()
+    return found
+
+
+def lost_stretches(recording: Recording) -> None:
+    for first in range(300, 2300, 400):
+        recording.channels["torque_n_m"][first : first + 100] = np.nan
+        recording.channels["position_rad"][first + 50 : first + 120] = np.nan
+
+
+def cold(recording: Recording) -> None:
+    recording.channels["temperature_c"][:] = np.nan
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        changed(lost_stretches),
+        changed(cold),
+        changed(lambda recording: recording.channels["torque_n_m"].__setitem__(500, np.inf)),
+        recordings(seed=3)[:1],
+        recordings(seed=3)[3:5],
+        recordings(trials=plans((0.2,)), seed=3),
+        recordings(trials=plans((0.1, 0.1, 0.1)), seed=3),
+        [replace(one, name="same") for one in recordings(seed=3)],
+        [*recordings(seed=3)[:5], *recordings(bench=Bench(rate_hz=50.0), seed=3)[5:]],
+        recordings(bench=Bench(noise=0.0, quantum=0.0), seed=3),
+        changed(put("torque_n_m", lambda torque: 1e-6 * torque), slice(0, 3))[:3],
+        changed(put("torque_n_m", lambda torque: 1e9 * torque), slice(0, 3))[:3],
+    ],
+    ids=[
+        "lost stretches", "no temperature", "infinite effort", "one trial", "two trials", "one load", "alike loads",
+        "one name for all", "mixed rates", "no noise", "micro-units", "giga-units",
+    ],
+)  # fmt: skip
+def test_a_complete_model_of_poor_data_lacks_nothing(made):
+    found = diagnosed(made)
+    assert found.verdict == "nothing", found.sentence
+    assert found.data_problems == []
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e3, 1e-6])
+def test_a_linear_joint_in_any_unit(scale):
+    made = [
+        Recording(one.name, one.kind, {}, {
+            "time_s": one.channels["time_s"],
+            "position_m": scale * one.channels["position_rad"],
+            "force_n": 100.0 * one.channels["torque_n_m"],
+        })
+        for one in recordings(NO_GRAVITY, Bench(arm_m=0.0), seed=3)
+    ]  # fmt: skip
+    dataset = make_dataset(made, LINEAR, Processing())
+    fit = fit_model(dataset, default_effects(LINEAR))
+    assert "gravity" not in fit.names
+    inertia, viscous = fit.coefficients[0], fit.coefficients[4]
+    assert (scale * inertia, scale * viscous) == pytest.approx((2.0, 3.0), rel=0.05)
+    assert diagnosed(made, LINEAR).verdict == "nothing"
+
+
+def test_a_horizontal_joint_has_no_gravity_to_miss():
+    facts = replace(FACTS, horizontal=True)
+    found = diagnosed(recordings(NO_GRAVITY, Bench(arm_m=0.0), seed=3), facts)
+    assert found.verdict == "nothing"
+    assert not {"gravity", "centre_of_mass_angle"} & {one.effect.name for one in found.candidates}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_an_effort_that_has_nothing_to_do_with_the_motion_is_a_problem_of_the_data(seed):
+    random = np.random.default_rng(seed)
+    made = changed(put("torque_n_m", lambda torque: np.cumsum(random.standard_normal(len(torque)))))
+    found = diagnosed(made)
+    assert found.verdict == "data-problem"
+    assert found.candidates == []
+    assert any("explain next to nothing" in problem for problem in found.data_problems)
+
+
+def test_a_sine_that_is_turned_is_not_said_to_be_late():
+    sines = [Plan(f"sine-{n}", ((0.6, 1.0, n), (0.1, 0.37, n)), load_kg=0.1 * n) for n in range(3)]
+    made = recordings(trials=sines, seed=3)
+    for recording in made:
+        recording.channels["torque_n_m"] *= -1.0
+    (told, *_) = diagnosed(made).data_problems
+    assert "turn the sign of torque_n_m" in told
+
+
+def test_copies_of_a_trial_are_told():
+    made = recordings(seed=3)
+    found = diagnosed([*made, replace(made[2], name="copy")])
+    assert any(f"'{made[2].name}', 'copy' hold the same samples" in problem for problem in found.data_problems)
+
+
+def test_rows_that_go_one_way_only():
+    time_s = np.arange(0, 20, 0.005)
+    torque = 0.1 + 0.005 * np.random.default_rng(1).standard_normal(len(time_s))
+    one_way = Recording("r", "x", {}, {"time_s": time_s, "position_rad": 2 * time_s, "torque_n_m": torque})
+    found = diagnosed([one_way])
+    assert found.verdict == "nothing"
+
+
+def test_a_long_recording_is_answered_in_time():
+    made = recordings(bench=Bench(duration_s=500.0, rate_hz=400.0), trials=plans((0.2,))[1:2], seed=3)
+    assert len(made[0]) == 200_000
+    assert diagnosed(made).verdict == "nothing"

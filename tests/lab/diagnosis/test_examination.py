@@ -1,0 +1,60 @@
+"""When a candidate counts as confirmed."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.examination import is_confirmed, is_within_bounds
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.gain import Gain
+from compensator.lab.screening.evidence import Base, Block, Evidence
+
+
+@pytest.mark.parametrize(
+    ("score", "p_value", "gain", "low", "confirmed"),
+    [
+        (5.0, 0.001, 0.2, 0.1, True),
+        (-1.0, 0.001, 0.2, 0.1, False),  # does not pay for its parameters
+        (5.0, 0.02, 0.2, 0.1, False),  # may be luck
+        (50.0, 0.02, 0.2, 0.1, True),  # few stretches hold the evidence, but it is very strong
+        (5.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain
+        (50.0, 0.001, 0.2, -0.01, True),  # few trials hold the gain, but the evidence is very strong
+        (50.0, 0.001, -0.01, -0.2, False),  # held-out trials lose
+        (50.0, 0.001, 0.0005, 0.0001, False),  # a gain of no use
+    ],
+)
+def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, confirmed):
+    gained = Gain(gain, low, 2.0 * gain)
+    candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, True, None)
+    assert is_confirmed(candidate) == confirmed
+
+
+@pytest.mark.parametrize("rows", ["sliding", "moving"])
+def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
+    gained = Gain(0.2, 0.1, 0.3)
+    for physical in (True, False):
+        candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, physical, None, rows)
+        assert is_confirmed(candidate) == physical
+
+
+@pytest.mark.parametrize(
+    ("share", "noncentrality", "possible"),
+    [
+        (0.5, 400.0, True),
+        (0.29, 400.0, True),  # 0.3 is the least, and lies within two standard errors
+        (0.29, 40000.0, False),  # it does not: they are a tenth as large
+        (0.2, 400.0, False),
+        (-0.5, 400.0, False),
+    ],
+)
+def test_a_size_beyond_its_bounds_for_sure_cannot_be(share, noncentrality, possible):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block("backlash", column[:, None], 0, 15, (0.02,)), 50.0, noncentrality, 0.001, column)
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"))
+    gathered: Any = SimpleNamespace(
+        bases=[Base(np.zeros((200, 1)), share * column)], fit=SimpleNamespace(dataset=dataset)
+    )
+    assert is_within_bounds(gathered, item) == possible

@@ -1,0 +1,103 @@
+"""What a model leaves: more than noise, or not."""
+
+import re
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.remainder import remainder_of
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+
+def fitted(extra=None, seed=0, **bench):
+    made = recordings(Joint(extra=extra), Bench(**{"duration_s": 9.0, "noise_memory": 0.0, **bench}), plans(), seed)
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+
+
+def left(fit):
+    return remainder_of(fit.dataset, fit.residual[fit.training], fit.training)
+
+
+def ripple(x):
+    return 0.05 * np.sin(2.0 * np.pi * 3.1 * x.time_s)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_is_as_dense_in_the_band_of_the_motion_as_above(seed):
+    found = left(fitted(seed=seed))
+    assert found.denser == pytest.approx(1.0, abs=0.35)
+    assert abs(found.certainty) < 3.0
+    assert not found.is_more_than_noise
+
+
+def test_coloured_noise_is_noise():
+    found = left(fitted(noise_memory=0.8))
+    assert found.denser > 1.0
+    assert not found.is_more_than_noise
+
+
+def test_what_follows_the_motion_is_no_noise():
+    found = left(fitted(lambda x: 0.05 * np.abs(x.q - 0.4)))
+    assert found.denser > 3.0
+    assert found.certainty > 10.0
+    assert found.is_more_than_noise
+
+
+def test_less_than_friction_repeats_is_not_told():
+    found = left(fitted(lambda x: 0.002 * np.abs(x.q - 0.4), noise=1e-5))
+    assert found.denser > 2.0
+    assert found.share < 0.01
+    assert not found.is_more_than_noise
+
+
+def test_a_few_wild_rows_do_not_make_it_more_than_noise():
+    fit = fitted()
+    residual = fit.residual[fit.training].copy()
+    residual[::50] += 30.0 * residual.std()
+    wild = remainder_of(fit.dataset, residual, fit.training)
+    assert wild.share < 2.0 * left(fit).share
+    assert not wild.is_more_than_noise
+
+
+def test_a_ripple_is_told_with_its_frequency():
+    fit = fitted(ripple)
+    found = left(fit)
+    assert found.is_more_than_noise
+    assert found.swinging > 0.5
+    assert found.frequency_hz == pytest.approx(3.1, rel=0.1)
+    answer = diagnose(fit)
+    assert answer.remains
+    assert re.match(r"No effect of the catalogue is confirmed \(p = [\d.e-]+\), yet", answer.sentence)
+    assert re.search(r"swings at about (2\.[89]|3(\.[0-4])?) Hz", answer.sentence)
+    assert re.search(r"[\d.]+% of the effort, is more than noise", answer.sentence)
+
+
+def test_friction_that_jumps_is_not_called_nothing():
+    random = np.random.default_rng(3)
+
+    def jumps(x):
+        at_s, size = random.uniform(2.0, 6.0), random.choice([-0.05, 0.05])
+        return size * (x.time_s > at_s) * np.sign(x.v)
+
+    fit = fitted(jumps)
+    assert left(fit).is_more_than_noise
+    assert "Nothing is missing" not in diagnose(fit).sentence
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_that_rises_with_frequency_does_not_swing(seed):
+    """Time stamps that jitter: noise of the position, twice differentiated, takes the place of the residual."""
+    fit = fitted()
+    random = np.random.default_rng(seed)
+    shaken = [np.diff(random.standard_normal(len(one.motion.time_s) + 2), 2)[None] for one in fit.dataset.trials]
+    noise = fit.dataset.stack(shaken)[:, 0]
+    noise *= 0.05 * np.std(fit.dataset.effort) / np.std(noise)
+    found = remainder_of(fit.dataset, noise[fit.training], fit.training)
+    assert found.share > 0.01
+    assert found.swinging < 0.2
+    assert not found.is_more_than_noise

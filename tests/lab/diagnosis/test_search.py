@@ -1,0 +1,37 @@
+"""Two effects at once: found one after the other, the first judged again, and nothing added to a complete model."""
+
+import pytest
+
+from compensator.lab.diagnosis.search import Search, search
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.diagnosis.test_diagnose import PLANTED, WITH_MEMORY
+from tests.lab.synthetic import FACTS, Joint, Law, recordings
+
+
+def search_of(*laws: Law, most: int = 3) -> Search:
+    made = recordings(Joint(extra=lambda x: sum(law(x) for law in laws)), seed=5)
+    return search(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), most)
+
+
+def test_two_effects_are_found_and_the_error_falls_with_each():
+    found = search_of(PLANTED["load_friction"], PLANTED["position_periodic_friction"])
+    assert set(found.added) == {"load_friction", "position_periodic_friction"}
+    errors = [step.held_out.relative for step in found.steps]
+    assert errors == sorted(errors, reverse=True)
+    assert found.last.verdict == "nothing"
+    assert set(found.fit.names) == {*default_effects(FACTS), *found.added}
+
+
+def test_an_effect_with_memory_is_found_after_a_steady_one():
+    found = search_of(PLANTED["spring"], WITH_MEMORY["pre_sliding"])
+    assert set(found.added) == {"spring", "pre_sliding"}
+
+
+@pytest.mark.parametrize("most", [0, 1])
+def test_no_more_than_asked_for_is_added(most):
+    found = search_of(PLANTED["spring"], PLANTED["viscous_asymmetry"], most=most)
+    assert len(found.added) == most
+    assert found.last.verdict == "missing"

@@ -1,0 +1,102 @@
+"""The catalogue, and an effect that another package offers."""
+
+import sys
+
+import pytest
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects import catalogue as module
+from compensator.lab.effects.catalogue import candidates, catalogue, default_effects, effect_named
+from compensator.lab.errors import NotApplicableError, UnknownEffectError
+from compensator.lab.model.fit import fit_model
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Joint, at_temperature, plans, recordings
+
+HOSE = """
+import numpy as np
+from compensator.lab.effects.effect import Effect, Parameter
+
+EFFECT = Effect(
+    name="hose",
+    title="Hose",
+    physics="A hose that stiffens as it bends.",
+    equation="c q^3",
+    columns=lambda motion, shape: (motion.position**3)[None],
+    parameters=(Parameter("stiffening", "{effort}/{position}3"),),
+    driver="position",
+    excited_by="slow motion over the whole range",
+    source="a test",
+)
+IMPOSTOR = Effect(**{**{n: getattr(EFFECT, n) for n in EFFECT.__dataclass_fields__}, "name": "viscous", "title": "No"})
+"""
+
+
+@pytest.fixture
+def hose(tmp_path, monkeypatch):
+    """A package on the path with two effects, one of them under a name of ours."""
+    (tmp_path / "hose_package.py").write_text(HOSE)
+    info = tmp_path / "hose_package-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: hose-package\nVersion: 1.0\n")
+    points = "[friction_bench.effects]\nhose = hose_package:EFFECT\nviscous = hose_package:IMPOSTOR\n"
+    (info / "entry_points.txt").write_text(points)
+    monkeypatch.syspath_prepend(tmp_path)
+    module.catalogue.cache_clear()
+    yield
+    module.catalogue.cache_clear()
+    sys.modules.pop("hose_package", None)
+
+
+def test_an_effect_of_another_package_is_known_fitted_and_found(hose):
+    assert effect_named("hose").title == "Hose"
+    assert effect_named("viscous").title == "Viscous friction"  # ours are not replaced
+    made = recordings(Joint(extra=lambda x: 0.04 * x.q**3), seed=2)
+    dataset = make_dataset(made, FACTS, Processing())
+    found = diagnose(fit_model(dataset, default_effects(FACTS)))
+    assert found.candidates[0].effect.name == "hose"
+    fit = fit_model(dataset, [*default_effects(FACTS), "hose"])
+    assert fit.coefficients[-1] == pytest.approx(0.04, rel=0.15)
+
+
+def test_without_that_package_it_is_unknown():
+    with pytest.raises(UnknownEffectError, match="'hose' is not in the catalogue"):
+        effect_named("hose")
+
+
+def test_an_unknown_name_brings_near_ones():
+    with pytest.raises(UnknownEffectError) as caught:
+        effect_named("viscus")
+    assert str(caught.value).startswith("effect 'viscus' is not in the catalogue; known are for instance: viscous")
+
+
+def test_gravity_does_no_work_on_a_horizontal_or_linear_joint():
+    assert default_effects(Facts()) == ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck")
+    for facts in (Facts(horizontal=True), Facts(joint="linear")):
+        assert "gravity" not in default_effects(facts)
+        names = {effect.name for effect in candidates(default_effects(facts), facts)}
+        assert not {"gravity", "centre_of_mass_angle"} & names
+        assert "spring" in names
+
+
+def test_candidates_are_what_the_model_does_not_have():
+    names = [effect.name for effect in candidates(default_effects(Facts()), Facts())]
+    assert sorted([*names, *default_effects(Facts())]) == sorted(catalogue())
+
+
+@pytest.mark.parametrize(
+    ("effect", "temperature_c", "words"),
+    [
+        ("viscous_temperature", None, "needs channel temperature_c in every trial; record it"),
+        ("coulomb_temperature", 30.0, "needs temperature_c to differ over the data, and it does not; record the same"),
+        ("weight_friction", 30.0, "needs load_kg to differ over the data, and it does not; record several loads"),
+    ],
+)
+def test_an_effect_that_the_trials_cannot_show_says_why(effect, temperature_c, words):
+    trials = at_temperature(plans(loads_kg=(0.1,)), temperature_c)
+    dataset = make_dataset(recordings(trials=trials), FACTS, Processing(5.6))
+    with pytest.raises(NotApplicableError, match=words):
+        dataset.check_applicable(effect_named(effect))
+    with pytest.raises(NotApplicableError, match=words):
+        fit_model(dataset, ["viscous", effect])

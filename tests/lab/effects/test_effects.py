@@ -1,0 +1,209 @@
+"""Every effect file: its columns against the equation that it states, and what it says about itself."""
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.effects.effect import Motion
+from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.rows.drivers import DRIVERS
+from compensator.lab.screening.nuisance import NAMES as NUISANCES
+
+EFFECTS = catalogue()
+LOAD_KG, ARM_M = 0.2, 0.4
+WEIGHT_N_M = 0.2 * 9.80665 * 0.4
+
+
+def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
+    time_s = np.linspace(0.0, 2.0, 41)
+    q, v, a = np.sin(3 * time_s), 3 * np.cos(3 * time_s), -9 * np.sin(3 * time_s)
+    return Motion(
+        facts=Facts(joint=joint),
+        conditions={"load_kg": LOAD_KG, "arm_m": ARM_M, "session_s": 30.0, **conditions},
+        time_s=time_s,
+        position=q,
+        velocity=v,
+        acceleration=a,
+        jerk=-9 * v,
+        direction=np.tanh(v / 0.01),
+        load_effort=1.3 * np.sin(q) - 0.2,
+        inertia_beyond=0.1,
+        inertia=0.3,
+        parting=13.0 * np.sin(q) - 2.0,
+        predicted=0.7 * np.cos(q) - 0.3,
+        effort_rate=4.0 * v,
+        largest_effort=1.5,
+        temperature_c=20.0 + 5.0 * time_s,
+        supply_v=np.full(41, 12.0),
+        position_span=2.0,
+        session_span_s=60.0,
+        slow=0.06,
+        fast=2.9,
+    )
+
+
+def predicted(m: Motion) -> np.ndarray:
+    return 0.7 * np.cos(m.position) - 0.3
+
+
+def back_driven(m: Motion, load: np.ndarray) -> np.ndarray:
+    return np.where(load * m.velocity < 0.0, np.abs(load) * np.sign(m.velocity), 0.0)
+
+
+def slope(values: np.ndarray) -> np.ndarray:
+    return rate_of_change(values, 20.0)
+
+
+def dahl(position: np.ndarray, distance: float) -> np.ndarray:
+    """Dahl's equation, integrated in small steps between the samples, less the sign of the motion."""
+    state, states, sign = 0.0, [0.0], [1.0]
+    for here, there in pairwise(position):
+        for _ in range(2000):
+            step, going = (there - here) / 2000, np.sign(there - here)
+            half = state + 0.5 * step / distance * (1.0 - state * going)
+            state += step / distance * (1.0 - half * going)
+        states.append(state)
+        sign.append(np.sign(there - here))
+    return np.array(states) - np.array(sign)
+
+
+def crossing(m: Motion) -> list[np.ndarray]:
+    """Half of a gap of 0.3 either side; the way between the flanks in steps of speed, caught where it meets one."""
+    step_s, way, speed, gained = 0.05, 0.15 * np.sign(m.parting[0]), 0.0, []
+    for parting in m.parting:
+        wanted = way + step_s * (speed + step_s * parting)
+        ahead = min(max(wanted, -0.15), 0.15)
+        gained.append(((ahead - way) / step_s - speed) / step_s)
+        way, speed = ahead, (ahead - way) / step_s
+    return [-0.1 * np.array(gained)]
+
+
+def twisted(m: Motion) -> list[np.ndarray]:
+    """A far side on a spring of 2 Hz, 0.05 of critical damping, by the trapezoidal rule with the frequency warped."""
+    w, way, speed, before, found = np.tan(np.pi * 2.0 * 0.05) / 0.025, 0.0, 0.0, 0.0, []
+    for parting in m.parting - m.parting[0]:
+        known = parting - 0.1 * w * (speed + 0.025 * before) - w**2 * (way + 0.05 * speed + 0.05**2 / 4.0 * before)
+        now = known / (1.0 + 0.1 * w * 0.025 + w**2 * 0.05**2 / 4.0)
+        way += 0.05 * speed + 0.05**2 / 4.0 * (before + now)
+        speed += 0.025 * (before + now)
+        before = now
+        found.append(now)
+    return [-0.1 * np.array(found)]
+
+
+# one row per parameter, from the equation in the effect's file; shape values in its order
+EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray]]]] = {
+    "inertia": ((), lambda m: [m.acceleration, LOAD_KG * ARM_M**2 * m.acceleration]),
+    "gravity": ((), lambda m: [np.sin(m.position), WEIGHT_N_M * np.sin(m.position)]),
+    "offset": ((), lambda m: [np.ones(41)]),
+    "coulomb": ((), lambda m: [np.sign(m.velocity)]),
+    "viscous": ((), lambda m: [m.velocity]),
+    "stribeck": ((0.7, 2.0), lambda m: [np.sign(m.velocity) * np.exp(-((m.velocity / 0.7) ** 2))]),
+    "coulomb_asymmetry": ((), lambda m: [np.ones(41)]),
+    "viscous_asymmetry": ((), lambda m: [np.abs(m.velocity)]),
+    "viscous_quadratic": ((), lambda m: [np.sign(m.velocity) * m.velocity**2]),
+    "load_friction": ((), lambda m: [np.abs(1.3 * np.sin(m.position) - 0.2) * np.sign(m.velocity)]),
+    "load_friction_quadratic": ((), lambda m: [(1.3 * np.sin(m.position) - 0.2) ** 2 * np.sign(m.velocity)]),
+    "weight_friction": ((), lambda m: [LOAD_KG * np.sign(m.velocity)]),
+    "coulomb_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * np.sign(m.velocity)]),
+    "viscous_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * m.velocity]),
+    "position_periodic_friction": (
+        (7.0,),
+        lambda m: [np.cos(7 * m.position) * np.sign(m.velocity), np.sin(7 * m.position) * np.sign(m.velocity)],
+    ),
+    "spring": ((), lambda m: [m.position]),
+    "centre_of_mass_angle": ((), lambda m: [np.cos(m.position), WEIGHT_N_M * np.cos(m.position)]),
+    "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
+    "back_driving_friction": ((), lambda m: [back_driven(m, 1.3 * np.sin(m.position) - 0.2)]),
+    "cogging": ((9.0,), lambda m: [np.cos(9 * m.position), np.sin(9 * m.position)]),
+    "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
+    "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
+    "dead_time": ((0.02,), lambda m: [np.tanh(predicted(m) / (0.02 * 1.5))]),
+    "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
+    "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
+    "frictional_lag": ((0.5,), lambda m: [m.acceleration * np.exp(-np.abs(m.velocity) / 0.5)]),
+    "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
+    "backlash": ((0.3,), crossing),
+    "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
+    "rate_dependent_breakaway": ((), lambda m: [np.zeros(41)]),
+    "elasticity": ((2.0, 0.05), twisted),
+    "encoder_eccentricity": (
+        (2.0,),
+        lambda m: [
+            0.3 * slope(slope(np.cos(2 * m.position))),
+            0.3 * slope(slope(np.sin(2 * m.position))),
+            slope(np.cos(2 * m.position)),
+            slope(np.sin(2 * m.position)),
+        ],
+    ),
+}
+
+
+def test_every_effect_of_the_catalogue_has_its_equation_here():
+    assert set(EQUATIONS) == set(EFFECTS)
+
+
+@pytest.mark.parametrize("name", EQUATIONS)
+def test_columns_are_the_written_equation(name):
+    shape, equation = EQUATIONS[name]
+    found, wanted = EFFECTS[name].columns(motion(), shape), np.array(equation(motion()))
+    assert found.shape == (len(EFFECTS[name].parameters), 41)
+    assert found == pytest.approx(wanted, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_what_an_effect_says_of_itself(name):
+    effect = EFFECTS[name]
+    assert effect.driver in DRIVERS
+    assert set(effect.confused_with) <= set(EFFECTS) - {name}
+    assert effect.standing_in <= set(NUISANCES)
+    assert effect.title
+    assert effect.physics.endswith(".")
+    for parameter in effect.parameters:
+        assert parameter.low < parameter.high
+        assert "{" not in parameter.unit_in("N m", "rad")
+    for shape in effect.shapes(motion()):
+        assert len(shape) == len(effect.shape_names)
+
+
+def test_units_are_the_studys_own():
+    (viscous,) = EFFECTS["viscous"].parameters
+    assert viscous.unit_in("N", "m") == "N s/m"
+
+
+def test_friction_and_inertia_are_never_negative_and_a_lubricant_never_thickens():
+    for name in ("inertia", "coulomb", "viscous", "stribeck", "load_friction", "weight_friction"):
+        assert EFFECTS[name].parameters[0].low == 0.0
+    assert EFFECTS["viscous_temperature"].parameters[0].high == 0.0
+    assert EFFECTS["load_friction"].parameters[0].high == 1.0
+
+
+def test_a_balanced_arm_has_inertia_but_no_moment():
+    balanced = motion(balanced=True)
+    assert not EFFECTS["gravity"].columns(balanced, ())[1].any()
+    assert EFFECTS["gravity"].columns(balanced, ())[0].any()
+    assert EFFECTS["inertia"].columns(balanced, ())[1].any()
+
+
+def test_what_is_not_told_of_a_load_is_nothing():
+    bare = motion()
+    untold = Motion(**{**{name: getattr(bare, name) for name in bare.__dataclass_fields__}, "conditions": {}})
+    assert untold.load_kg == untold.load_moment_n_m == untold.arm_m == 0.0
+    worded = motion(load_kg="heavy")
+    assert worded.load_kg == 0.0
+
+
+def test_stribeck_speeds_lie_between_the_uncertain_and_half_the_fast():
+    speeds = [speed for speed, _ in EFFECTS["stribeck"].shapes(motion())]
+    assert min(speeds) == pytest.approx(0.12)
+    assert max(speeds) == pytest.approx(1.45)
+
+
+def test_orders_of_a_linear_joint_are_cycles_over_its_travel():
+    (first,), *_, (last,) = EFFECTS["position_periodic_friction"].shapes(motion("linear"))
+    assert (first, last) == pytest.approx((np.pi, 30 * np.pi))
+    assert EFFECTS["position_periodic_friction"].shapes(motion())[0] == (3.0,)

@@ -1,0 +1,26 @@
+"""Rates of change: the error that theory gives, and what plain differences would have lost."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.recordings.differentiation import rate_of_change
+
+
+@pytest.mark.parametrize("turn_rad", [0.2, 0.5, 0.8])
+def test_a_sine_loses_what_theory_says(turn_rad):
+    """Angular frequency times period: at 0.8 plain differences lose a tenth, these a few thousandths of a percent."""
+    rate_hz, k = 100.0, np.arange(400)
+    phase = turn_rad * k
+    found = rate_of_change(np.sin(phase), rate_hz)[20:-20]
+    wanted = turn_rad * rate_hz * np.cos(phase)[20:-20]
+    lost = np.abs(found - wanted).max() / np.abs(wanted).max()
+    assert lost == pytest.approx(turn_rad**8 / 630.0, rel=0.25)
+    plain = np.gradient(np.sin(phase), 1.0 / rate_hz)[20:-20]
+    assert np.abs(plain - wanted).max() > 300.0 * np.abs(found - wanted).max()
+
+
+def test_a_parabola_is_exact_up_to_the_last_samples_and_short_signals_work():
+    time_s = 0.01 * np.arange(30)
+    found = rate_of_change(3.0 * time_s**2, 100.0)
+    assert found[1:-1] == pytest.approx(6.0 * time_s[1:-1])
+    assert rate_of_change(np.array([0.0, 1.0, 2.0]), 10.0) == pytest.approx([10.0, 10.0, 10.0])

@@ -1,0 +1,87 @@
+"""A position that stands still: the sensor is stuck where speed or a leap says so, and at rest where nothing does."""
+
+import re
+
+import numpy as np
+import pytest
+
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.recordings.stuck_sensor import stuck_positions
+from tests.lab.synthetic import FACTS
+
+RATE_HZ = 200.0
+TIME_S = np.arange(0.0, 10.0, 1.0 / RATE_HZ)
+QUANTUM = 1e-4
+SWING = np.sin(2.0 * np.pi * 0.3 * TIME_S)
+SPEED = 2.0 * np.pi * 0.3 * np.cos(2.0 * np.pi * 0.3 * TIME_S)
+
+
+def recording(position: np.ndarray, speed: np.ndarray | None = None) -> Recording:
+    channels = {"time_s": TIME_S, "position_rad": QUANTUM * np.round(position / QUANTUM)}
+    return Recording("one", "x", {}, channels if speed is None else {**channels, "velocity_rad_s": speed})
+
+
+def held(values: np.ndarray, start_s: float, end_s: float) -> np.ndarray:
+    within = (start_s <= TIME_S) & (end_s >= TIME_S)
+    return np.where(within, values[np.argmax(within)], values)
+
+
+def with_rests(rest_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Moves of one second, each from rest to rest, and what the joint does between them."""
+    within = np.mod(TIME_S, 1.0 + rest_s)
+    count = np.floor(TIME_S / (1.0 + rest_s))
+    part = np.minimum(within, 1.0)
+    position = count + part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)
+    return position, np.where(within < 1.0, 1.0 - np.cos(2.0 * np.pi * part), 0.0)
+
+
+@pytest.mark.parametrize("until_s", [6.0, 10.0], ids=["for a while", "for good"])
+def test_a_speed_that_goes_on_tells_where_the_position_is_stuck(until_s):
+    (told,) = stuck_positions([recording(held(SWING, 4.0, until_s), SPEED)], FACTS)
+    assert re.search(rf"'one': position_rad stands still from 4 to {min(until_s, TIME_S[-1]):.4g} s", told)
+    assert re.search(
+        r"velocity_rad_s covers .* rad meanwhile: the sensor is stuck; leave the trial out, or leave", told
+    )
+
+
+def test_without_a_speed_a_leap_tells_it():
+    (told,) = stuck_positions([recording(held(SWING, 4.0, 5.0))], FACTS)
+    assert re.search("from 4 to 5 s, though it goes on with a leap of -?[01].", told)
+
+
+def test_one_sentence_names_all_trials():
+    one = recording(held(SWING, 4.0, 6.0), SPEED)
+    (told,) = stuck_positions([one, recording(SWING, SPEED), Recording("other", "x", {}, one.channels)], FACTS)
+    assert "(and so in 'other')" in told
+
+
+def late(speed: np.ndarray) -> np.ndarray:
+    return np.roll(speed, round(0.08 * RATE_HZ))
+
+
+def filled_up(position: np.ndarray) -> np.ndarray:
+    """Samples that were lost, three in a row, and stand for as long as the last one before."""
+    return position[np.arange(len(position)) // 4 * 4]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        recording(SWING, SPEED),
+        recording(SWING),
+        recording(*with_rests(1.5)),
+        recording(with_rests(1.5)[0]),
+        recording(with_rests(0.3)[0], late(with_rests(0.3)[1])),
+        recording(with_rests(3.0)[0], with_rests(3.0)[1] + 0.1),
+        recording(filled_up(SWING), SPEED),
+        recording(np.round(SWING / 0.05) * 0.05, SPEED),
+        recording(0.0 * SWING, 1e-3 * np.random.default_rng(0).standard_normal(len(SWING))),
+        recording(np.where(np.arange(len(SWING)) % 400 < 200, np.nan, SWING), SPEED),
+    ],
+    ids=[
+        "motion", "motion without speed", "rests", "rests without speed", "late speed", "speed with a wrong zero",
+        "lost samples", "coarse encoder", "no motion", "gaps",
+    ],
+)  # fmt: skip
+def test_a_joint_that_rests_has_no_stuck_sensor(made):
+    assert stuck_positions([made], FACTS) == []

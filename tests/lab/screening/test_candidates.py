@@ -1,0 +1,83 @@
+"""What candidates are judged on: the model, tangents of its shapes, and what the measuring chain produces."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import Candidates, gather
+from compensator.lab.screening.nuisance import NAMES, nuisance_columns
+from tests.lab.synthetic import FACTS, recordings
+
+DEFAULT = default_effects(FACTS)
+
+
+@pytest.fixture(scope="module")
+def gathered() -> Candidates:
+    return gather(fit_model(make_dataset(recordings(seed=3), FACTS, Processing()), DEFAULT))
+
+
+def left_share(gathered: Candidates, columns: np.ndarray, base: int = 0) -> float:
+    """Share of columns (N,) that a base does not hold."""
+    weighted = columns[gathered.rows] * gathered.weights
+    basis = gathered.bases[base].basis
+    return float(np.linalg.norm(weighted - basis @ (basis.T @ weighted)) / np.linalg.norm(weighted))
+
+
+def test_a_small_error_of_a_fitted_shape_is_no_evidence(gathered):
+    dataset, stribeck = gathered.fit.dataset, effect_named("stribeck")
+    speed, exponent = gathered.fit.shapes["stribeck"]
+    here = dataset.columns(stribeck, (speed, exponent))[:, 0]
+    for moved in ((1.03 * speed, exponent), (speed, 1.03 * exponent)):
+        assert left_share(gathered, dataset.columns(stribeck, moved)[:, 0] - here) < 0.03
+
+
+def test_the_model_itself_is_in_every_base(gathered):
+    for base in range(len(gathered.bases)):
+        for column in gathered.fit.columns.T:
+            assert left_share(gathered, column, base) < 1e-3
+
+
+def test_each_effect_is_judged_without_what_would_absorb_it(gathered):
+    nuisances = nuisance_columns(gathered.fit.dataset)
+    assert tuple(nuisances) == NAMES
+    for column in nuisances.values():
+        assert left_share(gathered, column) < 1e-3
+    delay = next(block for block in gathered.named if block.name == "measurement_delay")
+    for name, column in nuisances.items():
+        inside = left_share(gathered, column, delay.base) < 1e-3
+        assert inside == (name not in effect_named("measurement_delay").standing_in)
+
+
+def test_every_effect_that_is_not_in_the_model_is_a_candidate_in_all_its_shapes(gathered):
+    names = {block.name for block in gathered.named}
+    steady = {name for name, effect in catalogue().items() if effect.rows == "sliding" and not effect.efforts}
+    assert names == steady - set(DEFAULT) - set(gathered.left_out)
+    assert set(gathered.left_out) == {"dead_time", "warm_up", "back_driving_friction", "encoder_eccentricity"}
+    memory = gather(gathered.fit, "moving")
+    assert {block.name for block in memory.named} == {n for n, e in catalogue().items() if e.rows == "moving"}
+    orders = [block.key for block in gathered.named if block.name == "position_periodic_friction"]
+    assert orders == [(float(order),) for order in range(3, 31)]
+    assert {block.scanned for block in gathered.named if block.name == "position_periodic_friction"} == {28}
+
+
+def test_only_sliding_training_rows_are_tested(gathered):
+    fit = gathered.fit
+    some = fit_model(fit.dataset, DEFAULT, fit.dataset.counted & (fit.dataset.trial_index < 6))
+    rows = gather(some).rows
+    assert rows.any()
+    assert not rows[fit.dataset.trial_index >= 6].any()
+    assert (fit.dataset.regime[rows] == 0).all()
+
+
+def test_columns_are_weighted_like_the_effort(gathered):
+    spring = next(block for block in gathered.named if block.name == "spring")
+    column = gathered.fit.dataset.columns(effect_named("spring"), ())[gathered.rows, 0]
+    assert spring.columns[:, 0] == pytest.approx(column * gathered.weights)
+    effort = gathered.fit.dataset.effort[gathered.rows] * gathered.weights
+    base = gathered.bases[0]
+    assert base.residual == pytest.approx(effort - base.basis @ (base.basis.T @ effort))
+    wider = gathered.with_block(spring)
+    assert left_share(wider, gathered.fit.dataset.columns(effect_named("spring"), ())[:, 0]) < 1e-6

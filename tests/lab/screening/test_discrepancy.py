@@ -1,0 +1,105 @@
+"""What a formula in the model misses is not named as one more effect."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
+from compensator.lab.effects.effect import Motion
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.discrepancy import discrepancy_columns
+from tests.lab.effects.test_effects import motion, predicted, slope
+from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, Truth, recordings
+
+ORDER = 7.0
+
+
+def fitted(joint: Joint, *added: str) -> Fit:
+    dataset = make_dataset(recordings(joint, Bench(noise=0.003), seed=5), FACTS, Processing())
+    shapes = {"position_periodic_friction": (ORDER,)} if "position_periodic_friction" in added else {}
+    return fit_model(dataset, [*default_effects(FACTS), *added], shapes=shapes)
+
+
+def grown(x: Truth) -> np.ndarray:
+    """Weight changes all of dry friction, what falls with speed as well."""
+    return (0.08 + 0.08 * np.exp(-np.abs(x.v) / 0.25)) * np.sign(x.v) * 6.0 * x.load_kg
+
+
+def wavy(x: Truth) -> np.ndarray:
+    """Weight and angle change all of dry friction, each by its own factor."""
+    dry = 0.08 + 0.08 * np.exp(-np.abs(x.v) / 0.25)
+    return dry * np.sign(x.v) * ((1.0 + 6.0 * x.load_kg) * (1.0 + 0.35 * np.cos(ORDER * x.q)) - 1.0)
+
+
+def meshed(x: Truth) -> np.ndarray:
+    """Teeth that transmit what bearings beyond them take, too."""
+    load = (0.25 + x.load_kg * G_M_S2 * x.arm_m) * np.sin(x.q) + x.load_kg * x.arm_m**2 * x.a
+    return 0.3 * np.abs(load + 0.08 * np.sign(x.v)) * np.sign(x.v)
+
+
+@pytest.mark.parametrize(("law", "effect"), [(grown, "weight_friction"), (meshed, "load_friction")])
+def test_what_the_formula_of_a_complete_model_misses_is_no_effect(law, effect):
+    found = diagnose(fitted(Joint(static_excess=0.08, extra=law), effect))
+    assert found.verdict != "missing", found.sentence
+
+
+def test_shares_of_dry_friction_may_multiply():
+    fit = fitted(Joint(static_excess=0.08, extra=wavy), "weight_friction", "position_periodic_friction")
+    rows, effort = fit.training, fit.dataset.effort
+    wide = np.column_stack([fit.columns, discrepancy_columns(fit)])
+    left = [float(np.linalg.lstsq(some[rows], effort[rows], rcond=None)[1][0]) for some in (fit.columns, wide)]
+    # of Stribeck, weight and angle each two, and two tangents of Stribeck with either of the others
+    assert wide.shape[1] == fit.columns.shape[1] + 7
+    assert left[1] < 0.3 * left[0]
+
+
+def test_a_model_of_speed_alone_leaves_nothing_open():
+    assert discrepancy_columns(fitted(Joint())).shape[1] == 0
+
+
+def near_load(m: Motion, more: np.ndarray) -> np.ndarray:
+    """Load friction of a load that is a little more than the model knows."""
+    return np.abs(m.load_effort + 1e-6 * more) * m.direction
+
+
+def near_square(m: Motion, more: np.ndarray) -> np.ndarray:
+    return (m.load_effort + 1e-6 * more) ** 2 * m.direction
+
+
+def near_sign(m: Motion, more: np.ndarray) -> np.ndarray:
+    return np.tanh((predicted(m) + 1e-6 * more) / (0.02 * 1.5))
+
+
+NEAR: dict[str, tuple[Callable[[Motion, np.ndarray], np.ndarray], Callable[[Motion], list[np.ndarray]]]] = {
+    "load_friction": (near_load, lambda m: [m.direction, m.velocity, m.acceleration]),
+    "load_friction_quadratic": (near_square, lambda m: [m.velocity, m.acceleration]),
+    "dead_time": (near_sign, lambda m: [np.ones(41), m.direction, m.velocity]),
+}
+
+
+@pytest.mark.parametrize("name", NEAR)
+def test_what_is_left_open_is_the_change_to_a_truth_near_by(name):
+    law, changes = NEAR[name]
+    m = motion()
+    clear = (np.abs(m.velocity) > 0.2) & (np.abs(m.load_effort) > 0.3)
+    effect = effect_named(name)
+    assert effect.discrepancy is not None
+    columns = effect.discrepancy(m, (0.02,))
+    wanted = [law(m, change) - law(m, 0.0 * change) for change in changes(m)]
+    assert len(columns) == len(wanted)
+    for found, change in zip(columns, wanted, strict=True):
+        assert np.corrcoef(found[clear], change[clear])[0, 1] > 0.999
+
+
+def test_an_angle_that_is_misread_has_a_second_order():
+    found = effect_named("encoder_eccentricity").discrepancy(motion(), (2.0,))
+    wanted = [0.3 * slope(slope(part(4.0 * motion().position))) for part in (np.cos, np.sin)]
+    assert found == pytest.approx(np.array(wanted))
+
+
+def test_every_effect_that_leaves_something_open_is_tested_here():
+    assert {n for n, e in catalogue().items() if e.discrepancy is not None} == {*NEAR, "encoder_eccentricity"}
