@@ -11,6 +11,7 @@ from bench.blind.calibration import interval
 from bench.blind.judge import Result
 from bench.blind.lab_answer import LabAnswer
 from bench.blind.oracle import Standing
+from bench.blind.recorded import ratio_of
 
 MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
 SHOWN = 0.15  # r from which an effect is expected in the class
@@ -51,6 +52,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     findable = [one for one in shown if _standing(one).ratio >= _standing(one).smallest]
     ranked = [one for one in shown if _answer(one).ranked is not None]
     pairs = [one for one in answered if one.family == "pair" and _both_clear(one)]
+    exact = [one for one in pairs if _is_exact(one)]
     memory = [one for one in answered if one.family == "memory"]
     settled = [one for one in answered if one.settled is not None and one.settled.predicted >= MUST_NAME]
     return [
@@ -67,6 +69,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _mean("two effects of r >= 0.3, recall", "at least 95 %", [_recall(one) for one in pairs], 0.95),
         *_outside(answered),
         _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
+        _share("the same, where two were named and no other", 0.05, exact, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
         _share("named alone after six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
         _gain_over_chance(answered),
@@ -112,7 +115,7 @@ def _outside(answered: Sequence[Result]) -> list[Figure]:
 
 def _unexplained_ratio(one: Result) -> float:
     """The r of what no effect of the catalogue stands for: by how much the base model leaves more because of it."""
-    return float(np.sqrt(max((one.unexplained or 1.0) ** 2 - 1.0, 0.0)))
+    return ratio_of(one.unexplained or 1.0)
 
 
 def _held_out(right: Sequence[Result]) -> list[Figure]:

@@ -19,6 +19,7 @@ SINGLE = tuple(name for name in ACCEPTED if name not in (*MEMORY, *OUTSIDE, *ABS
 SIZES = (-0.7, 1.0)  # share of the range: down to what no data of this length can show
 LARGE = (0.3, 1.0)
 NOISES = (0.002, 0.005, 0.02)  # of the current measurement, as a share of the peak current
+MODERATE = (0.3, 1.0)  # of r: where something outside the catalogue is small enough to be mistaken or passed over
 DURATION_S = 6.0
 PERIOD_S = 0.01
 
@@ -33,6 +34,7 @@ class Family:
         names: mechanisms that are drawn from.
         count: how many are hidden.
         sizes: part of each one's range, as shares of it (log).
+        ratios: r of what is hidden, drawn from here (log), by scaling its size; None: it is what the size makes it.
         memory: recorded by motions that show what happens at rest and at reversals.
         imperfect: late, jittered and lossy recordings.
         settled: recorded in a few trials; then the lab's own suggestions are recorded too.
@@ -46,6 +48,7 @@ class Family:
     memory: bool = False
     imperfect: bool = False
     settled: bool = False
+    ratios: tuple[float, float] | None = None
 
 
 FAMILIES: dict[str, Family] = {
@@ -54,11 +57,12 @@ FAMILIES: dict[str, Family] = {
         Family("complete", 2, (), 0),
         Family("imperfect", 1, (), 0, imperfect=True),
         Family("single", 3, SINGLE, 1),
-        Family("pair", 1, SINGLE, 2, LARGE),
+        Family("pair", 3, SINGLE, 2, LARGE),
         Family("outside", 1, OUTSIDE, 1, LARGE),
         Family("memory", 1, MEMORY, 1, LARGE, memory=True),
         Family("settle", 1, SINGLE, 1, LARGE, settled=True),
         Family("at-rest", 1, (), 0, memory=True),
+        Family("outside-moderate", 2, OUTSIDE, 1, LARGE, ratios=MODERATE),
     )
 }
 
@@ -106,8 +110,8 @@ def items_of(seed: int, plants: int, only: Sequence[str] = ()) -> list[Item]:
     return found
 
 
-def draw_item(item: Item, attempt: int) -> DrawnPlant:
-    """The joint of an item; another one at each attempt."""
+def draw_item(item: Item, attempt: int, scale: float = 1.0) -> DrawnPlant:
+    """The joint of an item; another one at each attempt. `scale` makes what it hides larger or smaller."""
     family = FAMILIES[item.family]
     random = np.random.default_rng((item.seed, attempt))
     noise = float(random.choice(NOISES))
@@ -116,8 +120,16 @@ def draw_item(item: Item, attempt: int) -> DrawnPlant:
         names = tuple(name for name in family.names if accepted(name))
     if family.count == 1:
         names = (family.names[item.turn % len(family.names)],)
-    wanted = Wanted(family.count, family.sizes, noise, names or tuple(MECHANISMS))
+    wanted = Wanted(family.count, family.sizes, noise, names or tuple(MECHANISMS), scale)
     return draw_plant(int(random.integers(2**31)), wanted)
+
+
+def wanted_ratio(item: Item, attempt: int) -> float | None:
+    """The r that what is hidden should have; None where the family does not ask for one."""
+    ratios = FAMILIES[item.family].ratios
+    if ratios is None:
+        return None
+    return float(np.exp(np.random.default_rng((item.seed, attempt, 2)).uniform(*np.log(ratios))))
 
 
 def protocol_of(item: Item, heaviest_kg: float, top_rad_s: float, configuration: BenchConfiguration) -> Protocol:

@@ -4,29 +4,21 @@ import time
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-import numpy as np
-
-from bench.blind.imperfections import DELAY_S, worn
-from bench.blind.items import FAMILIES, PERIOD_S, Item, draw_item, protocol_of
+from bench.blind.items import FAMILIES, Item
 from bench.blind.lab_answer import LabAnswer, ask_lab, base_fit
 from bench.blind.oracle import Standing, standing
+from bench.blind.recorded import bench_for, recorded, unexplained
 from bench.blind.rivals import RIVALS
 from bench.blind.settling import Settled, settle
-from bench.challenge.hidden_plant import DrawnPlant
 from bench.challenge.names import accepted
-from bench.challenge.owner import bench_of, rig_of
-from bench.challenge.session import record
-from bench.configuration import BenchConfiguration
-from bench.errors import ExperimentError, LimitError
+from bench.challenge.owner import rig_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
 from compensator.lab.model.fit import Fit, fit_effects, widened
-from compensator.lab.model.validation import held_out, rms
-from compensator.lab.recordings.recording import Recording
+from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates, gather
 
-ATTEMPTS = 10
 STEPS = 3  # effects that the lab may name where two are hidden
 
 
@@ -88,7 +80,8 @@ def judge(item: Item) -> Result:
     Raises:
         ExperimentError: no joint of the item completes the protocol.
     """
-    drawn, recordings = _recorded(item)
+    found = recorded(item)
+    drawn, recordings = found.drawn, found.recordings
     rig = rig_of(drawn)
     truths = tuple(hidden.name for hidden in drawn.hidden)
     names = tuple(next(iter(accepted(truth)), "") for truth in truths)
@@ -101,54 +94,17 @@ def judge(item: Item) -> Result:
         gathered = gather(fit)
         standings, error = _oracle(fit, gathered, names)
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
-        unexplained = _unexplained(item, drawn, fit) if names == ("",) else None
-        settled = _settled(item, drawn, recordings, fit, names[0]) if FAMILIES[item.family].settled else None
+        more_left = unexplained(item, found) if names == ("",) else None
+        settled = settle(bench_for(item, drawn), recordings, fit, names[0]) if FAMILIES[item.family].settled else None
     except LabError as refusal:
         empty = (None,) * len(truths)
         return Result(
             item.key, item.family, truths, names, sizes, None, empty, None, float("nan"), refusal=str(refusal)
         )
     return Result(
-        item.key, item.family, truths, names, sizes, answer, standings, unexplained, error, rivals, seconds,
+        item.key, item.family, truths, names, sizes, answer, standings, more_left, error, rivals, seconds,
         settled=settled,
     )  # fmt: skip
-
-
-def _recorded(item: Item) -> tuple[DrawnPlant, list[Recording]]:
-    reason = ""
-    for attempt in range(ATTEMPTS):
-        drawn = draw_item(item, attempt)
-        try:
-            return drawn, _record(item, drawn, attempt, None)
-        except (ExperimentError, LimitError) as error:
-            reason = str(error)
-    raise ExperimentError(f"item {item.key}: no joint completes the protocol: {reason}")
-
-
-def _bench(item: Item, drawn: DrawnPlant, without: str | None) -> BenchConfiguration:
-    configuration = bench_of(drawn, item.seed, without)
-    control = configuration.control.model_copy(update={"period_s": PERIOD_S})
-    return configuration.model_copy(update={"control": control})
-
-
-def _record(item: Item, drawn: DrawnPlant, attempt: int, without: str | None) -> list[Recording]:
-    configuration = _bench(item, drawn, without)
-    random = np.random.default_rng((item.seed, attempt, 1))
-    protocol = protocol_of(item, drawn.joint.heaviest_kg, drawn.joint.top_rad_s, configuration)
-    if not FAMILIES[item.family].imperfect:
-        return record(configuration, protocol)
-    return worn(record(_late(configuration, float(random.uniform(*DELAY_S))), protocol), random)
-
-
-def _settled(item: Item, drawn: DrawnPlant, recordings: list[Recording], fit: Fit, name: str) -> Settled | None:
-    configuration = _bench(item, drawn, None)
-    return settle(configuration, recordings, fit, name)
-
-
-def _late(configuration: BenchConfiguration, delay_s: float) -> BenchConfiguration:
-    values = configuration.model_dump()
-    values["drive"]["plant"] = {**values["drive"]["plant"], "latency": {"delay_s": delay_s}}
-    return BenchConfiguration.model_validate(values)
 
 
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:
@@ -178,12 +134,3 @@ def _can_be_seen(fit: Fit, name: str) -> bool:
     except NotApplicableError:
         return False
     return True
-
-
-def _unexplained(item: Item, drawn: DrawnPlant, fit: Fit) -> float | None:
-    """What the base model leaves with the mechanism over what it leaves of the same joint without."""
-    try:
-        plain = base_fit(_record(item, drawn, 0, drawn.hidden[0].name), rig_of(drawn))
-    except (ExperimentError, LimitError):
-        return None
-    return rms(fit.residual[fit.training]) / rms(plain.residual[plain.training])

@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
 
 def blind(
-    plants: Annotated[int, typer.Option(min=1, help="Rounds; each asks eleven items of eleven joints.")] = 20,
+    plants: Annotated[int, typer.Option(min=1, help="Rounds; each asks fifteen items of fifteen joints.")] = 20,
     seed: Annotated[int, typer.Option(min=0, help="Draws joints, mechanisms and noise.")] = 1,
     results: Annotated[
         Path | None,

@@ -59,12 +59,14 @@ class Wanted:
         sizes: the part of each mechanism's range that its size comes from, as shares of it (log).
         noise: standard deviation of the current measurement, as a share of the peak current.
         names: that mechanisms are drawn from; None: all.
+        scale: of the sizes that are drawn: the same joint with more or less of what it hides.
     """
 
     count: int
     sizes: tuple[float, float] = (0.0, 1.0)
     noise: float = 0.002
     names: tuple[str, ...] | None = None
+    scale: float = 1.0
 
 
 def draw_plant(seed: int, wanted: Wanted) -> DrawnPlant:
@@ -92,7 +94,9 @@ def draw_hidden(joint: Joint, wanted: Wanted, random: np.random.Generator) -> tu
         if mechanism not in found and all(_agree(mechanism, other) for other in found):
             found.append(mechanism)
     low, high = wanted.sizes
-    return tuple(hide(one, one.size.at(float(random.uniform(low, high))), joint, random) for one in found)
+    return tuple(
+        hide(one, wanted.scale * one.size.at(float(random.uniform(low, high))), joint, random) for one in found
+    )
 
 
 def hide(mechanism: Mechanism, size: float, joint: Joint, random: np.random.Generator) -> Hidden:

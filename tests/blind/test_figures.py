@@ -80,6 +80,28 @@ def test_outside_is_sorted_by_what_it_leaves_unexplained() -> None:
     assert (large.items, large.measured) == (1, 1.0)
 
 
+def test_of_pairs_those_that_are_clear_are_asked_for_and_flags_where_both_are_right() -> None:
+    def pair(named: tuple[str, ...], ratio: float = 0.5, unknown: bool = False) -> Result:
+        one = _result("pair", "spring", ("spring",), ratio, 9.0)
+        answer = LabAnswer("missing", named[:1], tuple((name,) for name in named), unknown, 0.001, 9.0, 0.021)
+        return replace(
+            one, answer=answer, truths=("spring", "drag"), names=("spring", "drag"), standings=one.standings * 2
+        )
+
+    results = [
+        pair(("spring", "drag")),
+        pair(("drag", "spring"), unknown=True),
+        pair(("spring",), unknown=True),
+        pair(("spring", "drag", "cogging")),
+        pair(("cogging",), ratio=0.2),  # too small to be asked for
+    ]
+    both, recall = _figure(results, "both and no other"), _figure(results, "recall")
+    assert (both.items, both.measured) == (4, 0.5)
+    assert (recall.items, recall.measured) == (4, pytest.approx(7 / 8))
+    flags = _figure(results, "where two were named")
+    assert (flags.items, flags.measured, flags.reached) == (2, 0.5, False)
+
+
 def test_smallest_effect_is_where_the_curve_of_detection_reaches_nine_in_ten() -> None:
     results = []
     for step in range(200):

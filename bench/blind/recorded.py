@@ -1,0 +1,141 @@
+"""The joint of an item, recorded; where its family asks for an r, with so much of what it hides as makes that r."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.blind.imperfections import DELAY_S, worn
+from bench.blind.items import FAMILIES, PERIOD_S, Item, draw_item, protocol_of, wanted_ratio
+from bench.blind.lab_answer import base_fit
+from bench.challenge.hidden_plant import MECHANISMS, DrawnPlant
+from bench.challenge.owner import bench_of, rig_of
+from bench.challenge.session import record
+from bench.configuration import BenchConfiguration
+from bench.errors import ExperimentError, LimitError
+from compensator.lab.errors import LabError
+from compensator.lab.model.validation import rms
+from compensator.lab.recordings.recording import Recording
+
+ATTEMPTS = 10
+SCALINGS = 4  # of a size, towards the r that is wanted
+NEAR = 1.25  # factor: an r so near to the wanted one will do
+LARGEST_STEP = 10.0  # of a size at once
+STEEPNESS = (0.5, 4.0)  # d ln r / d ln size: a clutch slips suddenly
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What was recorded of an item.
+
+    Attributes:
+        drawn: the joint and what it hides.
+        recordings: of it.
+        attempt: how many joints were drawn before it.
+    """
+
+    drawn: DrawnPlant
+    recordings: list[Recording]
+    attempt: int
+
+
+def recorded(item: Item) -> Recorded:
+    """Draw and record the first joint that completes the protocol.
+
+    Raises:
+        ExperimentError: none does.
+    """
+    reason = ""
+    for attempt in range(ATTEMPTS):
+        try:
+            return _scaled(item, attempt)
+        except (ExperimentError, LimitError) as error:
+            reason = str(error)
+    raise ExperimentError(f"item {item.key}: no joint completes the protocol: {reason}")
+
+
+def bench_for(item: Item, drawn: DrawnPlant, without: str | None = None) -> BenchConfiguration:
+    """The bench that the joint is on; with one of its mechanisms left out where it is named."""
+    configuration = bench_of(drawn, item.seed, without)
+    control = configuration.control.model_copy(update={"period_s": PERIOD_S})
+    return configuration.model_copy(update={"control": control})
+
+
+def unexplained(item: Item, found: Recorded) -> float | None:
+    """What the base model leaves with the mechanism over what it leaves of the same joint without."""
+    try:
+        return _left(found) / _left(_plain(item, found))
+    except (ExperimentError, LimitError):
+        return None
+
+
+def ratio_of(left: float) -> float:
+    """The r of what no effect stands for, from what the base model leaves with it over that without."""
+    return float(np.sqrt(max(left**2 - 1.0, 0.0)))
+
+
+def _scaled(item: Item, attempt: int) -> Recorded:
+    """The joint of an attempt, its size by secants of ln r over ln size, so many at most."""
+    wanted, scale = wanted_ratio(item, attempt), 1.0
+    found = _recorded(item, attempt, scale)
+    if wanted is None:
+        return found
+    plain = _left(_plain(item, found))
+    known: list[tuple[float, float]] = []
+    for _ in range(SCALINGS):
+        ratio = max(ratio_of(_left(found) / plain), 0.01)
+        if max(ratio / wanted, wanted / ratio) <= NEAR:
+            break
+        known.append((scale, ratio))
+        scale = _bounded(found, scale, _next_scale(known, wanted))
+        found = _recorded(item, attempt, scale)
+    return found
+
+
+def _next_scale(known: list[tuple[float, float]], wanted: float) -> float:
+    scale, ratio = known[-1]
+    steep = 1.0
+    if len(known) > 1 and known[-2][0] != scale:
+        steep = float(np.log(ratio / known[-2][1]) / np.log(scale / known[-2][0]))
+    step = (wanted / ratio) ** (1.0 / float(np.clip(steep, *STEEPNESS)))
+    return scale * float(np.clip(step, 1.0 / LARGEST_STEP, LARGEST_STEP))
+
+
+def _bounded(found: Recorded, scale: float, wanted: float) -> float:
+    """The wanted scale, or that which brings the mechanism to the upper end of its range."""
+    hidden = found.drawn.hidden[0]
+    return min(wanted, scale * MECHANISMS[hidden.name].size.high / hidden.size)
+
+
+def _recorded(item: Item, attempt: int, scale: float) -> Recorded:
+    drawn = draw_item(item, attempt, scale)
+    return Recorded(drawn, _record(item, drawn, attempt, None), attempt)
+
+
+def _plain(item: Item, found: Recorded) -> Recorded:
+    """The same joint without what it hides."""
+    drawn = found.drawn
+    return Recorded(drawn, _record(item, drawn, found.attempt, drawn.hidden[0].name), found.attempt)
+
+
+def _left(found: Recorded) -> float:
+    """What the base model leaves, root mean square, in the effort's unit."""
+    try:
+        fit = base_fit(found.recordings, rig_of(found.drawn))
+    except LabError as error:
+        raise ExperimentError(f"no model can be fitted: {error}") from error
+    return rms(fit.residual[fit.training])
+
+
+def _record(item: Item, drawn: DrawnPlant, attempt: int, without: str | None) -> list[Recording]:
+    configuration = bench_for(item, drawn, without)
+    random = np.random.default_rng((item.seed, attempt, 1))
+    protocol = protocol_of(item, drawn.joint.heaviest_kg, drawn.joint.top_rad_s, configuration)
+    if not FAMILIES[item.family].imperfect:
+        return record(configuration, protocol)
+    return worn(record(_late(configuration, float(random.uniform(*DELAY_S))), protocol), random)
+
+
+def _late(configuration: BenchConfiguration, delay_s: float) -> BenchConfiguration:
+    values = configuration.model_dump()
+    values["drive"]["plant"] = {**values["drive"]["plant"], "latency": {"delay_s": delay_s}}
+    return BenchConfiguration.model_validate(values)
