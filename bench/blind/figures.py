@@ -71,7 +71,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
         _share("the same, where two were named and no other", 0.05, exact, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
-        _share("named alone after six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
+        _share("named alone after at most six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
         _gain_over_chance(answered),
     ]
 

@@ -4,7 +4,14 @@ from collections.abc import Sequence
 from math import isnan
 from pathlib import Path
 
-from bench.blind.calibration import Stated, names_by_detectability, p_values
+from bench.blind.calibration import (
+    Came,
+    Stated,
+    came_of_prediction,
+    named_by_prediction,
+    names_by_detectability,
+    p_values,
+)
 from bench.blind.confusion import rival_figures
 from bench.blind.figures import figures
 from bench.blind.judge import Result
@@ -21,6 +28,7 @@ def write_page(path: Path, results: Sequence[Result], command: str) -> None:
 def sections_of(results: Sequence[Result], command: str) -> list[Section]:
     """What the page is made of."""
     found, by_d_prime = p_values(results), names_by_detectability(results)
+    settled, came = named_by_prediction(results), came_of_prediction(results)
     measured = [
         (one.what, one.asked, _number(one.measured), _number(one.low), _number(one.high), one.items, one.reached)
         for one in figures(results)
@@ -34,6 +42,7 @@ def sections_of(results: Sequence[Result], command: str) -> list[Section]:
             tables=(Table("Methods", ("method", "false alarms#", "named first where d' >= 6#"), methods),),
         ),
         Section("Stated and observed", tables=(_table(found), _table(by_d_prime)), figures=_plots(found, by_d_prime)),
+        Section("Predicted, and as it came", tables=(_table(settled), _came_table(came)), figures=[_came_plot(came)]),
     ]
 
 
@@ -45,6 +54,23 @@ def _plots(found: Sequence[Stated], by_d_prime: Sequence[Stated]) -> list[Figure
         ),
         Figure("One effect hidden", "d', from", "share named first", (_points(by_d_prime),)),
     ]
+
+
+def _came_plot(rows: Sequence[Came]) -> Figure:
+    seen = [one for one in rows if one.rounds]
+    low, high = [one.low for one in seen], [one.high for one in seen]
+    points = Points("came: median, quartiles", [one.at for one in seen], [one.median for one in seen], low, high)
+    most = max((one.at for one in seen), default=1.0)
+    honest = Line("as predicted", [0.0, most], [0.0, most], dashed=True)
+    return Figure("Suggested trials, each round", "predicted d'", "d' as it came", (honest, points))
+
+
+def _came_table(rows: Sequence[Came]) -> Table:
+    return Table(
+        "d' of each round",
+        ("predicted", "rounds#", "median#", "quartile#", "quartile#"),
+        [(one.what, one.rounds, _number(one.median), _number(one.low), _number(one.high)) for one in rows],
+    )
 
 
 def _points(rows: Sequence[Stated]) -> Points:

@@ -10,6 +10,7 @@ from bench.cli.cores import Cluster, Workers, progress
 from bench.cli.output import Json, complain, print_json, say, table
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.blind.calibration import Came
     from bench.blind.figures import Figure
     from bench.blind.judge import Result
 
@@ -52,16 +53,18 @@ def blind(
 def _as_json(results: "list[Result]", seed: int, plants: int) -> dict[str, object]:
     from dataclasses import asdict
 
-    from bench.blind.calibration import names_by_detectability, p_values
+    from bench.blind.calibration import came_of_prediction, named_by_prediction, names_by_detectability, p_values
     from bench.blind.confusion import confusions, rival_figures
     from bench.blind.figures import figures
 
+    stated = (*p_values(results), *names_by_detectability(results), *named_by_prediction(results))
     return {
         "seed": seed,
         "plants": plants,
         "figures": [asdict(one) for one in figures(results)],
         "confusion": [asdict(one) for one in confusions(results)],
-        "calibration": [asdict(one) for one in (*p_values(results), *names_by_detectability(results))],
+        "calibration": [asdict(one) for one in stated],
+        "predictions": [asdict(one) for one in came_of_prediction(results)],
         "rivals": [asdict(one) for one in rival_figures(results)],
         "items": [one.to_json() for one in results],
     }
@@ -105,12 +108,24 @@ def _print(results: "list[Result]") -> None:
 
 
 def _print_calibration(results: "list[Result]") -> None:
-    from bench.blind.calibration import names_by_detectability, p_values
+    from bench.blind.calibration import came_of_prediction, named_by_prediction, names_by_detectability, p_values
 
     rows = [(one.what, one.items, _percent(one.observed)) for one in p_values(results)]
     table("p of complete models: stated and observed", ["stated", "items#", "observed#"], rows)
     rows = [(one.what, one.items, _percent(one.observed)) for one in names_by_detectability(results)]
     table("One effect hidden: named first, by d'", ["d'", "items#", "named first#"], rows)
+    rows = [(one.what, one.items, _percent(one.observed)) for one in named_by_prediction(results)]
+    table("Suggested trials recorded: named alone, by predicted d'", ["d'", "items#", "named alone#"], rows)
+    came = [(one.what, one.rounds, _number(one.median), _quartiles(one)) for one in came_of_prediction(results)]
+    table("d' of each round: predicted, and as it came", ["predicted", "rounds#", "median#", "quartiles#"], came)
+
+
+def _quartiles(one: "Came") -> str:
+    return "-" if one.rounds == 0 else f"{one.low:.1f} .. {one.high:.1f}"
+
+
+def _number(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.1f}"
 
 
 def _measured(one: "Figure") -> str:

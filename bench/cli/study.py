@@ -22,7 +22,11 @@ _HOLD_OUT = (
     "Without it, each trial is left out in turn."
 )
 _WHERE = "Use only trials of which this holds; repeatable."
-_START = "Run them one after the other: the joint moves. Then add them to the study, and diagnose again."
+_START = (
+    "Run them: the joint moves. After each round add what completed to the study, diagnose, and suggest anew; what "
+    "trips or is refused is replaced by the next best."
+)
+_AT_ONCE = "Trials of a round, with --start."
 _QUEUE = "Put them into the queue of the service that runs, on the same store; then `study extend` adds what completed."
 _BENCH = "Move the joint once with each model not tried yet: the error of the reflected load, in grams."
 _EXTEND = "Experiment whose trials are added; repeatable. Without it, those that were run for the study."
@@ -128,6 +132,7 @@ def suggest(
     model: Model = None,
     trials: Annotated[int, typer.Option(min=1, max=50, help="Trials at most.")] = 6,
     start: Annotated[bool, typer.Option("--start", help=_START)] = False,
+    at_once: Annotated[int, typer.Option(min=1, max=50, help=_AT_ONCE)] = 2,
     queue: Annotated[bool, typer.Option("--queue", help=_QUEUE)] = False,
     url: Url = DEFAULT_URL,
     as_json: Json = False,
@@ -137,13 +142,12 @@ def suggest(
 
     if start and queue:
         raise typer.BadParameter("--start runs the trials here, --queue on the service: give one of them")
+    if start:
+        carry_out_all(session_of(context), study, model, trials, at_once, as_json)
+        return
     found = suggested(session_of(context), study, model, trials)
     if queue:
         queue_all(session_of(context), found, url, as_json)
-    elif start:
-        if not as_json:
-            tables.suggestion(found)
-        carry_out_all(session_of(context), found, as_json)
     else:
         print_json(found) if as_json else tables.suggestion(found)
 

@@ -1,6 +1,7 @@
-"""`friction-bench study suggest`: with --start runs what is suggested, adds it to the study, and diagnoses again; with
---queue has a service run it."""
+"""`friction-bench study suggest`: with --start runs what is suggested, adds it to the study, and diagnoses, in rounds;
+with --queue has a service run it."""
 
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -11,38 +12,115 @@ from bench.cli.exit_codes import ExitCode
 from bench.cli.output import print_json, say
 from bench.cli.run import carry_out
 from bench.cli.service import ask
+from bench.errors import LimitError, ParameterError
+from bench.study.next_trial.rounds import Ended, in_rounds
+from drivers.errors import DriveError
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Experiment
 
+REPLACED = ("tripped", "failed", "refused")  # outcomes after which the next best trial is run
 
-def suggested(session: BenchSession, study_id: int, model_id: int | None, trials: int) -> dict[str, Any]:
+
+def suggested(
+    session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] = ()
+) -> dict[str, Any]:
     """What to record next."""
     from bench.study import suggest
 
     with session.open_store() as store:
-        return suggest(store, study_id, session.configuration(), model_id, trials)
+        return suggest(store, study_id, session.configuration(), model_id, trials, refused)
 
 
-def carry_out_all(session: BenchSession, found: dict[str, Any], as_json: bool) -> None:
-    """Run every suggested trial; what completed is added to the study, also where a later one did not."""
-    done: list[Experiment] = []
-    signal_code: int | None = None
-    for one in found["trials"]:
-        experiment, signal_code = carry_out(session, one["kind"], one["parameters"], "", found["note"], None, as_json)
-        done.append(experiment)
-        if experiment.outcome != "completed":
-            break
-    completed = [one.id for one in done if one.outcome == "completed"]
-    answer = {"suggested": found, **_added(session, found["study_id"], completed)}
+def carry_out_all(
+    session: BenchSession, study_id: int, model_id: int | None, trials: int, at_once: int, as_json: bool
+) -> None:
+    """Suggest, run, add and diagnose in rounds; what completed is added, also where a later one did not."""
+    running = _Running(session, study_id, model_id, as_json)
+    tried = in_rounds(running.ask, running.run, running.learn, trials, at_once)
     if as_json:
-        print_json(answer)
-    else:
-        _tell(answer, done)
-    if signal_code is not None:
-        raise typer.Exit(signal_code)
-    if len(completed) < len(found["trials"]):
+        print_json(running.told())
+    elif running.rounds[-1].get("diagnosis"):
+        tables.diagnosis(running.rounds[-1]["diagnosis"])
+    if running.signal_code is not None:
+        raise typer.Exit(running.signal_code)
+    if tried and tried[-1].reason:  # the end of it: what was replaced has others after it
         raise typer.Exit(ExitCode.NOT_COMPLETED)
+
+
+class _Suggested:
+    """A suggested trial, by the name that it has among the options."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        self.values, self.name = values, str(values["name"])
+
+
+class _Running:
+    """Rounds on this bench.
+
+    Attributes:
+        rounds: what was suggested in each, which experiments came of it, and what the study says then.
+        signal_code: exit code where a signal ended a trial.
+    """
+
+    def __init__(self, session: BenchSession, study_id: int, model_id: int | None, quiet: bool) -> None:
+        self._session, self._study_id, self._model_id, self._quiet = session, study_id, model_id, quiet
+        self.rounds: list[dict[str, Any]] = []
+        self.signal_code: int | None = None
+
+    def told(self) -> dict[str, Any]:
+        """Every round; and what was suggested first, and what the study says at last."""
+        last: dict[str, Any] = {}
+        for one in self.rounds:
+            last.update({name: one[name] for name in ("extended", "diagnosis") if name in one})
+        return {"suggested": self.rounds[0]["suggested"], "rounds": self.rounds, **last}
+
+    def ask(self, most: int, kept_out: Collection[str]) -> Sequence[_Suggested]:
+        """What is suggested now."""
+        found = suggested(self._session, self._study_id, self._model_id, most, kept_out)
+        self.rounds.append({"suggested": found, "experiments": []})
+        if not self._quiet:
+            tables.suggestion(found)
+        return [_Suggested(one) for one in found["trials"]]
+
+    def run(self, trial: _Suggested) -> str:
+        """One trial; however it ends, the joint is powered off."""
+        one, note = trial.values, self.rounds[-1]["suggested"]["note"]
+        try:
+            found, signal_code = carry_out(
+                self._session, one["kind"], one["parameters"], "", note, None, quiet=self._quiet
+            )
+        except (LimitError, ParameterError) as error:
+            self._note(None, "refused", str(error))
+            return f"refused: {error}"
+        except DriveError as error:
+            self._note(None, "failed", str(error))
+            raise Ended(f"failed: {error}") from error
+        self._note(found, found.outcome, found.reason)
+        self.signal_code = signal_code
+        if found.outcome != "completed" and found.outcome not in REPLACED:
+            raise Ended(f"{found.outcome}: {found.reason}")
+        return "" if found.outcome == "completed" else f"{found.outcome}: {found.reason}"
+
+    def learn(self) -> None:
+        """Add what completed in this round, and diagnose."""
+        from bench.study import diagnose, extend_study
+
+        completed = [one["experiment_id"] for one in self.rounds[-1]["experiments"] if one["outcome"] == "completed"]
+        with self._session.open_store() as store:
+            extended = extend_study(store, self._study_id, completed)
+            self.rounds[-1].update(extended=extended, diagnosis=diagnose(store, self._study_id))
+        self._model_id = None  # the newest, from now on
+        if not self._quiet:
+            tables.extended(extended)
+            say(self.rounds[-1]["diagnosis"]["sentence"])
+
+    def _note(self, found: "Experiment | None", outcome: str, reason: str) -> None:
+        number = None if found is None else found.id
+        self.rounds[-1]["experiments"].append({"experiment_id": number, "outcome": outcome, "reason": reason})
+        if not self._quiet:
+            name = "a trial" if number is None else f"experiment {number}"
+            say(f"{name}: {outcome}{f': {reason}' if reason else ''}")
 
 
 def queue_all(session: BenchSession, found: dict[str, Any], url: str, as_json: bool) -> None:
@@ -56,20 +134,3 @@ def queue_all(session: BenchSession, found: dict[str, Any], url: str, as_json: b
     tables.suggestion(found)
     if items:
         say(f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found['study_id']}")
-
-
-def _added(session: BenchSession, study_id: int, completed: list[int]) -> dict[str, Any]:
-    from bench.study import diagnose, extend_study
-
-    if not completed:
-        return {}
-    with session.open_store() as store:
-        return {"extended": extend_study(store, study_id, completed), "diagnosis": diagnose(store, study_id)}
-
-
-def _tell(answer: dict[str, Any], done: "list[Experiment]") -> None:
-    for one in done:
-        say(f"experiment {one.id}: {one.outcome}{f': {one.reason}' if one.reason else ''}")
-    if "extended" in answer:
-        tables.extended(answer["extended"])
-        tables.diagnosis(answer["diagnosis"])

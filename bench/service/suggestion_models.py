@@ -17,12 +17,22 @@ class PairOfRivals(BaseModel):
 class SuggestedTrial(BaseModel):
     """One trial to record, as POST /experiments takes it."""
 
+    name: str = Field(description="kind and parameters in one line")
     kind: str
     parameters: dict[str, Any]
     minutes: float = Field(description="of bench time")
     before: float | None = Field(description="smallest predicted d' of the pairs, with the trials above")
     after: float | None = Field(description="with this one too")
     sentence: str = Field(description="why")
+
+
+class KeptOut(BaseModel):
+    """An experiment that the study asked for and that did not complete: it is not suggested again."""
+
+    experiment_id: int
+    kind: str
+    outcome: str
+    reason: str
 
 
 class Suggested(BaseModel):
@@ -37,6 +47,7 @@ class Suggested(BaseModel):
     note: str = Field(description="to be given to the experiments: by it the study finds their trials")
     pairs: list[PairOfRivals]
     hopeless: list[PairOfRivals] = Field(description="pairs that no trial of this bench tells apart")
+    kept_out: list[KeptOut] = Field(description="tripped or failed when they were run; others take their place")
     trials: list[SuggestedTrial]
 
 

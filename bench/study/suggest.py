@@ -1,15 +1,16 @@
 """What to record next, as JSON: trials that would separate the rivals of a diagnosis."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from bench.calibration import with_friction
 from bench.configuration import BenchConfiguration
 from bench.drive_factory import is_simulated
-from bench.store import Store
+from bench.store import Experiment, Store
 from bench.study.errors import StudyError, lab_errors
 from bench.study.extend import note_for
 from bench.study.material import Material, facts_of, load_model
+from bench.study.next_trial.kept_out import kept_out, without
 from bench.study.next_trial.options import Choice, choices
 from bench.study.next_trial.predict import choose
 from bench.study.selection import Criterion
@@ -26,10 +27,12 @@ def suggest(
     configuration: BenchConfiguration,
     model_id: int | None = None,
     trials: int = MOST_TRIALS,
+    refused: Collection[str] = (),
 ) -> dict[str, Any]:
     """The trials that would raise the smallest d' of the leading rivals most, per minute of bench time.
 
-    Every trial that the bench can run inside its limits is run on the joint of the fitted model first.
+    Every trial that the bench can run inside its limits is run on the joint of the fitted model first. What was
+    suggested before, and tripped or failed on the joint itself, is kept out, and named.
 
     Args:
         store: with the study.
@@ -37,6 +40,7 @@ def suggest(
         configuration: of the bench that would run them.
         model_id: which model; None takes the newest.
         trials: how many at most.
+        refused: names of trials that are kept out besides.
 
     Raises:
         StudyError: no such model, a study of another rig, data that are wrong themselves, or what a trial would show
@@ -55,7 +59,8 @@ def suggest(
         if diagnosis.verdict == "data-problem":
             raise StudyError(f"{diagnosis.sentence} Mend it before more is recorded")
         possible = choices(configuration, not is_simulated(configuration), shows_from_rest(diagnosis))
-        possible = _fitted_ones(material, possible)
+        impossible = kept_out(store, study_id)
+        possible = [one for one in without(_fitted_ones(material, possible), impossible) if one.name not in refused]
         found, chosen = choose(fit, diagnosis, configuration, possible, trials)
     return {
         "study_id": study_id,
@@ -67,6 +72,7 @@ def suggest(
         "note": note_for(study_id),
         "pairs": [_pair(pair) for pair in found.pairs],
         "hopeless": [_pair(pair) for pair in found.hopeless],
+        "kept_out": [_kept_out(one) for one in impossible],
         "trials": [_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
     }
 
@@ -89,9 +95,14 @@ def _pair(pair: Pair) -> dict[str, Any]:
     return {"true": pair.true, "rival": pair.rival, "before": pair.before, "after": pair.after}
 
 
+def _kept_out(one: Experiment) -> dict[str, Any]:
+    return {"experiment_id": one.id, "kind": one.kind, "outcome": one.outcome, "reason": one.reason}
+
+
 def _pick(pick: Pick, choice: Choice, found: Suggestion, material: Material) -> dict[str, Any]:
     unit = material.dataset.effort_definition.unit
     return {
+        "name": choice.name,
         "kind": choice.kind,
         "parameters": choice.parameters,
         "minutes": pick.minutes,

@@ -1,9 +1,10 @@
+import json
 from dataclasses import replace
 from math import isnan
 
 import pytest
 
-from bench.blind.calibration import names_by_detectability, p_values
+from bench.blind.calibration import came_of_prediction, named_by_prediction, names_by_detectability, p_values
 from bench.blind.confusion import confusions, rival_figures
 from bench.blind.figures import Figure, figures
 from bench.blind.judge import Result
@@ -165,3 +166,29 @@ def test_suggested_trials_are_held_against_random_ones() -> None:
     assert gain.reached
     old = {"rivals": [], "before": 1.0, "predicted": 2.0, "trials": 6, "named": []}
     assert Settled.from_json(old).by_chance == 0.0
+
+
+def test_what_was_predicted_of_suggested_trials_is_held_against_what_came() -> None:
+    one = _result("settle", "spring", ("spring",), 1.0, 9.0)
+
+    def result(predicted: float, named: str, stated: tuple[tuple[float, float], ...]) -> Result:
+        return replace(one, settled=Settled(("spring",), 1.0, predicted, 6, (named,), 0.5 * predicted, 0, stated))
+
+    results = [
+        result(6.5, "spring", ((5.0, 4.0), (7.0, 6.0))),
+        result(6.5, "cogging", ((5.0, 8.0), (0.0, 3.0))),
+        result(0.0, "spring", ((0.0, 0.0),)),
+        one,
+    ]
+    again = [Result.from_json(json.loads(json.dumps(one.to_json()))) for one in results]
+    assert again == results
+    by_d_prime = {row.what: row for row in named_by_prediction(results)}
+    assert (by_d_prime["no rival before"].items, by_d_prime["no rival before"].observed) == (1, 1.0)
+    assert (by_d_prime["d' 6 .. 7"].items, by_d_prime["d' 6 .. 7"].observed) == (2, 0.5)
+    came = {row.what: row for row in came_of_prediction(results)}
+    assert (came["d' 3 .. 6"].rounds, came["d' 3 .. 6"].at, came["d' 3 .. 6"].median) == (2, 5.0, 6.0)
+    assert (came["d' 3 .. 6"].low, came["d' 3 .. 6"].high) == (5.0, 7.0)
+    assert (came["d' 6 .. 9"].rounds, came["d' 6 .. 9"].median) == (1, 6.0)
+    assert sum(row.rounds for row in came.values()) == 3  # nothing was predicted, or came, in the others
+    named = _figure(results, "named alone after at most six")
+    assert (named.items, named.measured) == (2, 0.5)

@@ -69,6 +69,7 @@ def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):
     found = json.loads(started.stdout)
     assert found["extended"]["trials"] == 4 + len(found["extended"]["added"])
     assert found["diagnosis"]["model_id"] == found["extended"]["model_id"]
+    assert [one["outcome"] for one in found["rounds"][0]["experiments"]] == ["completed"]
     refused = command("study", "use", 1)
     assert refused.exit_code == 3
     assert "this bench has no calibration" in refused.stderr

@@ -35,12 +35,12 @@ def bench_with(plant):
 CONFIGURATION = bench_with({"spring": {"stiffness_n_m_rad": 0.03}})
 
 
-def run(store, kind, parameters, note="", configuration=CONFIGURATION):
+def run(store, kind, parameters, note="", configuration=CONFIGURATION, outcome="completed"):
     runner = Runner(configuration, store)
     number = runner.start(kind, parameters, note=note)
     assert runner.wait(60.0)
     runner.close()
-    assert store.experiment(number).outcome == "completed"
+    assert store.experiment(number).outcome == outcome, store.experiment(number).reason
     return number
 
 
@@ -119,6 +119,25 @@ def test_a_suggestion_can_be_started_as_it_is(store, made, found):
     assert rungs[1]["effects"] == rungs[0]["effects"]
     with pytest.raises(StudyError, match="no completed trial that study"):
         study.extend_study(store, made["study_id"])
+
+
+def test_what_tripped_on_the_joint_is_named_and_not_suggested_again_until_it_completes(store, made, found):
+    one = found["trials"][0]
+    fault = {"kind": "encoder-jump", "at_s": 0.4, "jump_rad": 1.0}
+    drive = default_configuration().drive.model_dump() | {"plant": CONFIGURATION.drive.plant, "faults": [fault]}
+    faulty = type(CONFIGURATION).model_validate({**CONFIGURATION.model_dump(), "drive": drive})
+    number = run(store, one["kind"], one["parameters"], found["note"], faulty, outcome="tripped")
+    again = study.suggest(store, made["study_id"], CONFIGURATION, made["model_id"], trials=2)
+    Suggested.model_validate(plain(again))
+    assert [(out["experiment_id"], out["outcome"]) for out in again["kept_out"]] == [(number, "tripped")]
+    assert "speed" in again["kept_out"][0]["reason"]
+    assert again["trials"]
+    assert one["name"] not in [other["name"] for other in again["trials"]]
+    (other, *_) = again["trials"]
+    third = study.suggest(store, made["study_id"], CONFIGURATION, made["model_id"], 2, [other["name"]])
+    assert not {one["name"], other["name"]} & {trial["name"] for trial in third["trials"]}
+    store.annotate(run(store, one["kind"], one["parameters"], found["note"]), note="")
+    store.annotate(number, note="")
 
 
 def test_what_is_held_out_by_condition_is_not_suggested_and_stays_held_out(store, made):

@@ -43,6 +43,7 @@ class BreakawaySeparation(Rivalry):
         inside, weight = rows.training, self._starts.weight[rows.training]
         self._typical_sd = float(np.median(self._deviation(rows)))
         self.rivals = [_rival(self._starts, candidate) for candidate in candidates]
+        self.suspects = len(self.rivals)
         self._nuisance, self._model = (LAG,), self._starts.columns.shape[1] - 1
         base = Base.of(weight[:, None] * self._starts.columns[inside], weight * rows.free[inside])
         left = base.extended(weight[:, None] * _columns(rows, self.rivals[0], self.rivals[0].shape)[inside]).residual

@@ -1,11 +1,12 @@
 """How well trials tell two effects apart, and would if others were added: predicted d'.
 
-Each of two rivals is fitted to the effort that the other predicts; what remains, over the noise, is d'^2:
+Each of two rivals is fitted to the effort that the other predicts. What that leaves of it tells them apart:
 
-    d'^2 = |M_k z_j|^2 / (v s^2)
+    d'^2 = n / v ln(1 + |M_0 z_j|^2 / (n s^2)) |M_k z_j|^2 / |M_0 z_j|^2
 
-z_j is what effect j adds to the effort, as fitted; M_k takes out what the model, the measuring chain and effect k at
-its best shape can make of it; s^2 is the weighted residual's power, v its rows per independent row.
+z_j is what effect j adds to the effort, as fitted; M_0 takes out what the model and the measuring chain can make of it,
+M_k what effect k can at its best shape, too; s^2 is the weighted residual's power, n the rows, v those per independent
+row. It is the d' of a diagnosis: the noise is learnt from the same rows, so that evidence grows with the logarithm.
 All of it follows from the normal equations, which add up over trials: what a trial would bring costs one small solve.
 """
 
@@ -71,12 +72,14 @@ class Rivalry(ABC):
     Columns stand in this order: the model's, the measuring chain's, every shape of every rival's.
 
     Attributes:
-        rivals: effects that may be the missing one.
+        rivals: effects that may be the missing one, and after them those that could only imitate one of these.
+        suspects: how many may be the missing one.
         noise_power: of the weighted residual once the first of them is in the model.
         measured: what the rows of the diagnosis say.
     """
 
     rivals: list[Rival]
+    suspects: int
     noise_power: float
     measured: Equations
     _inflation: list[float]  # rows per independent row, for each rival
@@ -99,8 +102,25 @@ class Rivalry(ABC):
 
     def d_prime(self, equations: Equations, true: int, rival: int | None) -> float:
         """d' of one rival if it is the truth, against another by its index; None: against nothing being missing."""
-        remains = self._remains(equations.gram, true, rival)
-        return float(np.sqrt(remains / (self._inflation[true] * self.noise_power)))
+        return float(self.d_primes(equations, [(true, rival)])[0])
+
+    def d_primes(self, equations: Equations, pairs: Sequence[tuple[int, int | None]]) -> FloatArray:
+        """The same of many pairs, shape (p,): what the model can make is taken out once for all."""
+        known: dict[frozenset[str], _Projected] = {}
+        found = np.empty(len(pairs))
+        for number, (true, rival) in enumerate(pairs):
+            standing_in = self._standing_in(true, rival)
+            if standing_in not in known:
+                known[standing_in] = _Projected(equations.gram, self._base(standing_in), self._first_effect)
+            found[number] = self._squared(known[standing_in], equations.rows, true, rival)
+        return np.sqrt(found)
+
+    def _squared(self, projected: "_Projected", rows: int, true: int, rival: int | None) -> float:
+        power = projected.power(self._own[true], self.rivals[true].coefficients)
+        if power == 0.0:
+            return 0.0
+        gain = rows / self._inflation[true] * np.log1p(power / (rows * self.noise_power))
+        return float(gain * self._left(projected, true, rival) / power)
 
     def difference(self, known: Equations, brings: Equations, true: int, rival: int | None) -> float:
         """What a trial adds to what remains when the rival is fitted to the effort that the truth predicts.
@@ -116,38 +136,44 @@ class Rivalry(ABC):
         Returns:
             Root mean square over the rows of the trial, in the effort's unit.
         """
-        after = self._remains((known + brings).gram, true, rival)
-        return float(np.sqrt(max(after - self._remains(known.gram, true, rival), 0.0) / max(brings.rows, 1)))
+        more = self.remaining(known + brings, true, rival) - self.remaining(known, true, rival)
+        return float(np.sqrt(max(more, 0.0) / max(brings.rows, 1)))
 
-    def _remains(self, gram: FloatArray, true: int, rival: int | None) -> float:
+    def remaining(self, equations: Equations, true: int, rival: int | None) -> float:
         """The least power that the model and the rival, at any of its shapes, leave of the truth's part."""
-        own = self._own[true]
-        amplitudes = self.rivals[true].coefficients
-        power = float(amplitudes @ gram[np.ix_(own, own)] @ amplitudes)
-        base = self._base(true, rival)
-        if rival is None:
-            return max(power - _absorbed(gram, base, own, amplitudes), 0.0)
-        absorbed = [
-            _absorbed(gram, np.concatenate([base, columns]), own, amplitudes) for columns in self._shaped[rival]
-        ]
-        return max(power - max(absorbed), 0.0)
+        base = self._base(self._standing_in(true, rival))
+        return self._left(_Projected(equations.gram, base, self._first_effect), true, rival)
 
-    def _base(self, true: int, rival: int | None) -> IntArray:
-        """Columns of the model and of the measuring chain, less those that stand in for the one or the other."""
-        standing_in = self._stands_in(self.rivals[true])
-        if rival is not None:
-            standing_in = standing_in | self._stands_in(self.rivals[rival])
+    def _left(self, projected: "_Projected", true: int, rival: int | None) -> float:
+        own, amplitudes = self._own[true], self.rivals[true].coefficients
+        power = projected.power(own, amplitudes)
+        if rival is None:
+            return power
+        return max(power - projected.most_absorbed(self._shaped[rival], own, amplitudes), 0.0)
+
+    def _standing_in(self, true: int, rival: int | None) -> frozenset[str]:
+        """Columns of the measuring chain that stand in for the one or the other."""
+        own = self._stands_in(self.rivals[true])
+        return own if rival is None else own | self._stands_in(self.rivals[rival])
+
+    def _base(self, standing_in: frozenset[str]) -> IntArray:
+        """Columns of the model and of the measuring chain, less those that stand in for a rival."""
         kept = [i for i, name in enumerate(self._nuisance) if name not in standing_in]
         return np.concatenate([np.arange(self._model), self._model + np.array(kept, dtype=np.int64)])
 
+    @property
+    def _first_effect(self) -> int:
+        """The first column that is none of the model or the measuring chain."""
+        return self._model + len(self._nuisance)
+
     @cached_property
-    def _shaped(self) -> list[list[IntArray]]:
-        """Indices of the columns of each rival's shapes."""
-        found, start = [], self._model + len(self._nuisance)
+    def _shaped(self) -> list[IntArray]:
+        """Columns of each rival's shapes among those of all effects, shape (shapes, k)."""
+        found, start = [], 0
         for one in self.rivals:
-            width = len(one.coefficients)
-            found.append([start + width * number + np.arange(width) for number in range(len(one.shapes))])
-            start += width * len(one.shapes)
+            width, count = len(one.coefficients), len(one.shapes)
+            found.append(start + np.arange(width * count).reshape(count, width))
+            start += width * count
         return found
 
     @cached_property
@@ -162,12 +188,15 @@ class Separation(Rivalry):
     Args:
         gathered: what the diagnosed model may be missing, on the rows where the rivals show.
         candidates: the rivals, as the diagnosis found them.
+        others: effects that may imitate one of these, but are not taken for the truth.
     """
 
-    def __init__(self, gathered: Candidates, candidates: Sequence[Candidate]) -> None:
+    def __init__(self, gathered: Candidates, candidates: Sequence[Candidate], others: Sequence[str] = ()) -> None:
         self._fit, self._show_in = gathered.fit, gathered.show_in
         self._weights = RowWeights.learnt(gathered.fit.dataset, gathered.fit.residual, gathered.rows)
         self.rivals = [_rival(gathered, candidate) for candidate in candidates]
+        self.rivals += [_imitator(gathered, name) for name in others]
+        self.suspects = len(candidates)
         left = _left_by_best(gathered, candidates[0])
         self.noise_power = float(np.mean(left**2))
         stretch = gathered.fit.dataset.block_index[gathered.rows]
@@ -206,19 +235,47 @@ class Separation(Rivalry):
         return frozenset(rival.effect.standing_in)
 
 
-def _absorbed(
-    gram: FloatArray,
-    base: IntArray,
-    own: IntArray,
-    amplitudes: FloatArray,
-) -> float:
-    """Power of `own @ amplitudes` that the base columns explain."""
-    inside = gram[np.ix_(base, base)]
-    scale = np.sqrt(np.maximum(np.diag(inside), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(inside / np.outer(scale, scale))
-    solid = values > NEGLIGIBLE * values[-1]
-    share = vectors[:, solid].T @ (gram[np.ix_(base, own)] @ amplitudes / scale)
-    return float(np.sum(share**2 / values[solid]))
+class _Projected:
+    """Columns of effects once all that the base columns can make is taken out, by normal equations alone.
+
+    Args:
+        gram: of all columns, shape (K, K).
+        base: columns that are taken out.
+        first: the first column of an effect; the others follow it.
+    """
+
+    def __init__(self, gram: FloatArray, base: IntArray, first: int) -> None:
+        inside = gram[np.ix_(base, base)]
+        scale = np.sqrt(np.maximum(np.diag(inside), np.finfo(float).tiny))
+        values, vectors = np.linalg.eigh(inside / np.outer(scale, scale))
+        solid = values > NEGLIGIBLE * values[-1]
+        share = (vectors[:, solid] / np.sqrt(values[solid])).T @ (gram[base, first:] / scale[:, None])
+        self._gram: FloatArray = gram[first:, first:] - share.T @ share
+        self._least: FloatArray = np.maximum(NEGLIGIBLE * np.diag(gram)[first:], np.finfo(float).tiny)
+
+    def power(self, own: IntArray, amplitudes: FloatArray) -> float:
+        """Of `own @ amplitudes`, what is left of it."""
+        return max(float(amplitudes @ self._gram[np.ix_(own, own)] @ amplitudes), 0.0)
+
+    def most_absorbed(self, shapes: IntArray, own: IntArray, amplitudes: FloatArray) -> float:
+        """Power of the same that another effect explains at the best of its shapes, whose columns have shape (s, k)."""
+        share = (self._gram[:, own] @ amplitudes)[shapes]
+        if shapes.shape[1] == 1:
+            columns = shapes[:, 0]
+            left = np.diag(self._gram)[columns]
+            return float(
+                np.max(
+                    np.where(
+                        left > self._least[columns], share[:, 0] ** 2 / np.maximum(left, self._least[columns]), 0.0
+                    )
+                )
+            )
+        inside = self._gram[shapes[:, :, None], shapes[:, None, :]]
+        scale = np.sqrt(np.maximum(np.diagonal(inside, axis1=1, axis2=2), self._least[shapes]))
+        values, vectors = np.linalg.eigh(inside / (scale[:, :, None] * scale[:, None, :]))
+        turned = np.einsum("skj,sk->sj", vectors, share / scale)
+        explained = np.where(values > NEGLIGIBLE, turned**2 / np.maximum(values, NEGLIGIBLE), 0.0)
+        return float(np.max(explained.sum(axis=1)))
 
 
 def _rival(gathered: Candidates, candidate: Candidate) -> Rival:
@@ -230,6 +287,14 @@ def _rival(gathered: Candidates, candidate: Candidate) -> Rival:
     projected = block.columns - base.basis @ (base.basis.T @ block.columns)
     coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0].astype(np.float64)
     return Rival(effect, shape, coefficients, shapes if shape in shapes else (*shapes, shape))
+
+
+def _imitator(gathered: Candidates, name: str) -> Rival:
+    """An effect that is fitted to what another one makes, and has no size of its own."""
+    effect = effect_named(name)
+    shapes = tuple(effect.shapes(gathered.fit.dataset.trials[0].motion))
+    width = next(one.columns.shape[1] for one in gathered.named if one.name == name)
+    return Rival(effect, shapes[0], np.zeros(width), shapes)
 
 
 def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatArray, stretch: IntArray) -> float:

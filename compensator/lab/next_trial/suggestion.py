@@ -5,14 +5,16 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
+from scipy.special import ndtr
 
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import Fit, widened
 from compensator.lab.model.validation import rms
 from compensator.lab.next_trial.breakaway_separation import BreakawaySeparation
 from compensator.lab.next_trial.separation import Equations, Rivalry, Separation
-from compensator.lab.recordings.recording import Recording
+from compensator.lab.recordings.recording import FloatArray, Recording
 from compensator.lab.rows.assembly import more_trials, usable
 from compensator.lab.screening.candidates import gather
 
@@ -20,6 +22,7 @@ SURE = 7.0  # d' from which a name is right every time; from 6 on nearly every t
 MOST_RIVALS = 4
 RUNNERS_UP = 3  # that are looked at where no class of several is named
 LEAST_RISE = 0.05  # of d': less is not worth a trial
+LEAST_FALL = 0.002  # of the mean chance of a wrong name: the same
 DRAWS = 12  # of random trials, to hold the suggested ones against
 HOPELESS = 2.0  # d' that even all options together do not reach: no trial of this bench tells the two apart
 
@@ -107,9 +110,25 @@ def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int
     rivals = rivals_of(diagnosis)
     if not rivals:
         raise UnusableDataError("the diagnosis ranks no effect: there is nothing to separate; record any motion first")
-    enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
     separation = _separation(fit, rivals)
-    return _Choice(separation, options, _pairs(separation, diagnosis)).made(most, enough)
+    pairs = _pairs(separation, diagnosis)
+    enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
+    if _several(diagnosis):  # d' that did not tell them apart is not enough
+        enough = max(enough, 2.0 * min(separation.d_primes(separation.measured, pairs), default=0.0))
+    return _Choice(separation, options, pairs).made(most, enough)
+
+
+def d_prime_of(fit: Fit, diagnosis: Diagnosis, name: str) -> float:
+    """Smallest d' of one effect, taken for the truth, on the trials that were diagnosed.
+
+    Against every effect that shows where it does; 0 where it is no candidate.
+    """
+    candidates = [one for one in diagnosis.candidates if one.effect.name == name]
+    if not candidates:
+        return 0.0
+    separation = _separation(fit, candidates)
+    pairs: list[tuple[int, int | None]] = [(0, None), *((0, rival) for rival in range(1, len(separation.rivals)))]
+    return float(separation.d_primes(separation.measured, pairs).min())
 
 
 def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
@@ -120,7 +139,10 @@ def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
     wide = fit.dataset.choice_for([one.effect for one in rivals])
     gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
     known = {(block.name, block.key) for block in gathered.named}
-    return Separation(gathered, [one for one in rivals if (one.effect.name, one.shape) in known])
+    rivals = [one for one in rivals if (one.effect.name, one.shape) in known]
+    named = {one.effect.name for one in rivals}
+    of_one_kind = [name for name, _ in known if effect_named(name).pipeline == rivals[0].effect.pipeline]
+    return Separation(gathered, rivals, sorted({*of_one_kind} - named))
 
 
 def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
@@ -132,9 +154,19 @@ def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
     return members[:MOST_RIVALS] if len(members) > 1 else family[:RUNNERS_UP]
 
 
+def _several(diagnosis: Diagnosis) -> bool:
+    """Whether a class of several effects is named."""
+    return diagnosis.verdict == "missing" and len(diagnosis.classes[0]) > 1
+
+
 def shows_from_rest(diagnosis: Diagnosis) -> bool:
     """Whether the rivals of a diagnosis are told apart by starts from rest."""
     return any(one.rows == "breakaway" for one in rivals_of(diagnosis)[:1])
+
+
+def _risk(d_primes: FloatArray) -> float:
+    """Mean chance to take one of a pair for the other, each equally likely: half of d' lies between them."""
+    return float(np.mean(ndtr(-0.5 * d_primes)))
 
 
 def _of_one_kind(candidate: Candidate, first: Candidate) -> bool:
@@ -142,16 +174,25 @@ def _of_one_kind(candidate: Candidate, first: Candidate) -> bool:
 
 
 def _pairs(separation: Rivalry, diagnosis: Diagnosis) -> list[tuple[int, int | None]]:
-    """Within a class each against each; a name that stands alone against the next; what is not sure against nothing."""
-    count = len(separation.rivals)
-    if diagnosis.verdict == "missing" and len(diagnosis.classes[0]) == 1:
-        return [(0, rival) for rival in range(1, count)]
-    pairs: list[tuple[int, int | None]] = [(i, k) for i in range(count) for k in range(count) if i != k]
-    return [(i, None) for i in range(count)] if diagnosis.verdict == "nothing" else pairs
+    """Each of the first rivals against every effect that could imitate it, and against nothing where that is possible.
+
+    What comes after them in rank today may come before them tomorrow. A name that stands alone is the only one that is
+    taken for the truth.
+    """
+    missing = diagnosis.verdict == "missing"
+    true = range(1 if missing and not _several(diagnosis) else separation.suspects)
+    pairs: list[tuple[int, int | None]] = [(i, k) for i in true for k in range(len(separation.rivals)) if i != k]
+    return pairs if missing else [*((i, None) for i in true), *pairs]
 
 
 class _Choice:
-    """Greedy choice among options."""
+    """Greedy choice among options.
+
+    Args:
+        separation: of the rivals, and of what else could imitate them.
+        options: trials that could be run.
+        pairs: that are to be told apart: indices of truth and rival.
+    """
 
     def __init__(self, separation: Rivalry, options: Sequence[Option], pairs: list[tuple[int, int | None]]) -> None:
         self._separation = separation
@@ -159,8 +200,8 @@ class _Choice:
         found = [(option, usable(dataset, option.recordings)) for option in options]
         self._options = [option for option, recordings in found if recordings]
         self._brings = [separation.of_trials(more_trials(dataset, recordings)) for _, recordings in found if recordings]
-        everything = sum(self._brings, separation.measured)
-        self._reachable = {pair: separation.d_prime(everything, *pair) for pair in pairs}
+        reachable = separation.d_primes(sum(self._brings, separation.measured), pairs)
+        self._reachable = dict(zip(pairs, reachable.tolist(), strict=True))
         self._hopeless = [pair for pair in pairs if self._reachable[pair] < HOPELESS]
         self._pairs = [pair for pair in pairs if pair not in self._hopeless]
 
@@ -176,11 +217,24 @@ class _Choice:
             known = known + self._brings[best]
         drawn = self._drawn(len(picks))
         return Suggestion(
-            pairs=tuple(self._pair(pair, measured, known, drawn) for pair in self._pairs),
+            pairs=tuple(self._pair(pair, measured, known, drawn) for pair in self._shown(measured, known)),
             hopeless=tuple(self._pair(pair, measured, known, drawn) for pair in self._hopeless),
             picks=tuple(picks),
             noise=float(np.sqrt(self._separation.noise_power)),
         )
+
+    def _shown(self, *ends: Equations) -> list[tuple[int, int | None]]:
+        """The rivals against each other and against nothing; of what else could imitate each, the nearest."""
+        nearest = {
+            min(others, key=lambda pair: self._separation.d_prime(equations, *pair))
+            for equations in ends
+            for true in range(self._separation.suspects)
+            if (others := [pair for pair in self._pairs if pair[0] == true and not self._is_of_rivals(pair)])
+        }
+        return [pair for pair in self._pairs if self._is_of_rivals(pair) or pair in nearest]
+
+    def _is_of_rivals(self, pair: tuple[int, int | None]) -> bool:
+        return pair[1] is None or pair[1] < self._separation.suspects
 
     def _drawn(self, count: int) -> list[Equations]:
         """What is known with so many options drawn at random instead, a few times over; one may come again."""
@@ -190,30 +244,24 @@ class _Choice:
         draws = [generator.integers(len(self._brings), size=count).tolist() for _ in range(DRAWS)]
         return [sum((self._brings[index] for index in drawn), self._separation.measured) for drawn in draws]
 
-    def _all(self, equations: Equations) -> list[float]:
-        return [self._separation.d_prime(equations, *pair) for pair in self._pairs]
+    def _all(self, equations: Equations) -> FloatArray:
+        return self._separation.d_primes(equations, self._pairs)
 
     def _smallest(self, equations: Equations) -> float:
-        return min(self._all(equations))
+        return float(self._all(equations).min())
 
     def _best(self, known: Equations) -> int | None:
-        """The option that raises the smallest d' most per minute; where it stays, all of them together."""
-        before, short = self._smallest(known), self._short(known)
-        rises = [
-            (self._smallest(after) - before, short - self._short(after)) for after in map(known.__add__, self._brings)
-        ]
-        useful = [index for index, rise in enumerate(rises) if max(rise) > LEAST_RISE]
-
-        def rate(index: int) -> tuple[float, float]:
-            smallest, together = rises[index]
-            minutes = self._options[index].minutes
-            return (smallest / minutes if smallest > LEAST_RISE else 0.0, together / minutes)
-
-        return max(useful, key=rate, default=None)
-
-    def _short(self, equations: Equations) -> float:
-        """What the pairs together lack to be sure."""
-        return -sum(min(d_prime, SURE) for d_prime in self._all(equations))
+        """The option after which the chance of a wrong name falls most per minute; where it is small, d' rises most."""
+        before = self._all(known)
+        afters = [self._all(known + brings) for brings in self._brings]
+        falls = [_risk(before) - _risk(after) for after in afters]
+        rises = [float(after.min() - before.min()) for after in afters]
+        minutes = [option.minutes for option in self._options]
+        for gains, least in ((falls, LEAST_FALL), (rises, LEAST_RISE)):
+            useful = [index for index, gain in enumerate(gains) if gain > least]
+            if useful:
+                return max(useful, key=lambda index: gains[index] / minutes[index])
+        return None
 
     def _pick(self, index: int, known: Equations) -> Pick:
         option, brings = self._options[index], self._brings[index]

@@ -1,0 +1,79 @@
+"""Trials in rounds: what does not complete is replaced, and each round knows what the ones before it told."""
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from bench.study.next_trial.rounds import MOST_FAILED, Ended, Tried, in_rounds
+
+
+@dataclass(frozen=True)
+class Named:
+    name: str
+
+
+@dataclass
+class Bench:
+    """Knows what trips, and writes down what happens."""
+
+    trips: tuple[str, ...] = ()
+    ends_at: str = ""
+    sure_after: int = 100
+    seen: list[str] = field(default_factory=list)
+
+    def ask(self, most, kept_out):
+        self.seen.append(f"ask {most}")
+        done = sum(one.startswith("ran") for one in self.seen)
+        return [] if done >= self.sure_after else [Named(n) for n in "abcdefgh" if n not in kept_out][:most]
+
+    def run(self, trial):
+        if trial.name == self.ends_at:
+            raise Ended("stopped: by hand")
+        self.seen.append(f"tripped {trial.name}" if trial.name in self.trips else f"ran {trial.name}")
+        return "speed" if trial.name in self.trips else ""
+
+    def learn(self):
+        self.seen.append("learn")
+
+    def go(self, most, at_once=2):
+        return in_rounds(self.ask, self.run, self.learn, most, at_once)
+
+
+def test_every_round_is_asked_for_with_what_was_learnt_before():
+    bench = Bench()
+    assert bench.go(5) == [Tried(name) for name in "ababa"]  # the same again tells more
+    assert bench.seen == [
+        "ask 2", "ran a", "ran b", "learn", "ask 2", "ran a", "ran b", "learn", "ask 1", "ran a", "learn",
+    ]  # fmt: skip
+
+
+def test_what_trips_is_kept_out_and_replaced():
+    bench = Bench(trips=("a", "c"))
+    tried = bench.go(3)
+    assert tried == [Tried("a", "speed"), Tried("b"), Tried("b"), Tried("c", "speed"), Tried("b")]
+    assert bench.seen.count("learn") == 3
+
+
+def test_nothing_is_learnt_from_a_round_in_which_all_trips():
+    bench = Bench(trips=("a", "b"))
+    assert bench.go(1)[-1] == Tried("c")
+    assert bench.seen == ["ask 1", "tripped a", "ask 1", "tripped b", "ask 1", "ran c", "learn"]
+
+
+def test_after_some_that_trip_somebody_should_look():
+    bench = Bench(trips=tuple("abcdefgh"))
+    tried = bench.go(6)
+    assert len(tried) == MOST_FAILED
+    assert "learn" not in bench.seen
+
+
+def test_what_was_recorded_before_the_end_is_learnt():
+    bench = Bench(ends_at="b")
+    assert bench.go(6) == [Tried("a"), Tried("b", "stopped: by hand")]
+    assert bench.seen == ["ask 2", "ran a", "learn"]
+
+
+@pytest.mark.parametrize("enough", [0, 2])
+def test_it_ends_where_nothing_more_is_to_be_told(enough):
+    bench = Bench(sure_after=enough)
+    assert len(bench.go(6)) == enough
