@@ -19,8 +19,6 @@ from compensator.lab.model.fit import Fit, fit_effects, widened
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates, gather
 
-STEPS = 3  # effects that the lab may name where two are hidden
-
 
 @dataclass(frozen=True, slots=True)
 class Result:
@@ -89,7 +87,7 @@ def judge(item: Item) -> Result:
     try:
         fit = base_fit(recordings, rig)
         began = time.process_time()
-        answer = ask_lab(fit, STEPS if item.family == "pair" else 1)
+        answer = ask_lab(fit, several=FAMILIES[item.family].count > 1)
         seconds = time.process_time() - began
         gathered = gather(fit)
         standings, error = _oracle(fit, gathered, names)

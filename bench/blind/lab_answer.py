@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from bench.rig import Rig
 from bench.study.material import facts_of
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.search import search
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_effects, fit_model
 from compensator.lab.model.validation import held_out
@@ -25,7 +26,7 @@ class LabAnswer:
     Attributes:
         verdict: of the first diagnosis.
         first: the class that it names; empty where it names none.
-        named: classes of all steps, in order.
+        named: the class that is named first; where several are searched for, those that are in the model at the end.
         unknown: the last step says that none of the catalogue is it, or that something remains.
         p_value, detectability: of the first diagnosis and its best candidate.
         error: held-out, of the model with all that was named in it.
@@ -54,23 +55,26 @@ def refitted(fit: Fit, recordings: Sequence[Recording]) -> Fit:
     return fit_model(make_dataset(recordings, fit.dataset.facts, Processing()), fit.names)
 
 
-def ask_lab(fit: Fit, steps: int) -> LabAnswer:
-    """Diagnose, add what is named, and diagnose again, so many times at most."""
-    first = found = diagnose(fit)
-    named: list[tuple[str, ...]] = []
-    for step in range(steps):
-        if found.verdict != "missing":
-            break
-        named.append(found.classes[0])
-        fit = fit_effects(fit.dataset, [*fit.names, found.classes[0][0]], fit.training)
-        if step + 1 < steps:
-            found = diagnose(fit)
-    top = first.classes[0] if first.verdict == "missing" else ()
+def ask_lab(fit: Fit, several: bool) -> LabAnswer:
+    """Diagnose; where several effects may be missing, search: forward, swap, backward, as `study search` does.
+
+    Args:
+        fit: of the base model.
+        several: whether to go on after the first name.
+    """
+    first = last = diagnose(fit)
+    classes = first.classes[:1] if first.verdict == "missing" else []
+    named = list(classes)
+    if several:
+        found = search(fit, first=first)
+        fit, last, named = found.fit, found.last, [(name,) for name in found.added]
+    elif classes:
+        fit = fit_effects(fit.dataset, [*fit.names, classes[0][0]], fit.training)
     return LabAnswer(
         verdict=first.verdict,
-        first=top,
+        first=classes[0] if classes else (),
         named=tuple(named),
-        unknown=found.remains,
+        unknown=last.remains,
         p_value=first.p_value,
         detectability=first.candidates[0].detectability if first.candidates else 0.0,
         error=held_out(fit).relative,

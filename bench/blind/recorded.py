@@ -17,10 +17,10 @@ from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import Recording
 
 ATTEMPTS = 10
-SCALINGS = 4  # of a size, towards the r that is wanted
+SCALINGS = 7  # sizes that are tried for the r that is wanted
 NEAR = 1.25  # factor: an r so near to the wanted one will do
-LARGEST_STEP = 10.0  # of a size at once
-STEEPNESS = (0.5, 4.0)  # d ln r / d ln size: a clutch slips suddenly
+LARGEST_STEP = 2.0  # of the logarithm of a size at once
+LEAST_RATIO = 0.1  # a smaller r is lost in what friction leaves differently each time
 
 
 @dataclass(frozen=True)
@@ -74,30 +74,32 @@ def ratio_of(left: float) -> float:
 
 
 def _scaled(item: Item, attempt: int) -> Recorded:
-    """The joint of an attempt, its size by secants of ln r over ln size, so many at most."""
+    """The joint of an attempt, its size scaled until r is near the wanted one; the nearest where none is."""
     wanted, scale = wanted_ratio(item, attempt), 1.0
     found = _recorded(item, attempt, scale)
     if wanted is None:
         return found
     plain = _left(_plain(item, found))
-    known: list[tuple[float, float]] = []
+    tried: list[tuple[float, float, Recorded]] = []
     for _ in range(SCALINGS):
-        ratio = max(ratio_of(_left(found) / plain), 0.01)
-        if max(ratio / wanted, wanted / ratio) <= NEAR:
+        ratio = max(ratio_of(_left(found) / plain), LEAST_RATIO)
+        tried.append((float(np.log(scale)), float(np.log(ratio / wanted)), found))
+        if abs(tried[-1][1]) <= np.log(NEAR):
             break
-        known.append((scale, ratio))
-        scale = _bounded(found, scale, _next_scale(known, wanted))
+        scale = _bounded(found, scale, float(np.exp(_next([(at, off) for at, off, _ in tried]))))
         found = _recorded(item, attempt, scale)
-    return found
+    return min(tried, key=lambda one: abs(one[1]))[2]
 
 
-def _next_scale(known: list[tuple[float, float]], wanted: float) -> float:
-    scale, ratio = known[-1]
-    steep = 1.0
-    if len(known) > 1 and known[-2][0] != scale:
-        steep = float(np.log(ratio / known[-2][1]) / np.log(scale / known[-2][0]))
-    step = (wanted / ratio) ** (1.0 / float(np.clip(steep, *STEEPNESS)))
-    return scale * float(np.clip(step, 1.0 / LARGEST_STEP, LARGEST_STEP))
+def _next(tried: list[tuple[float, float]]) -> float:
+    """Where to look for a rising function's zero after (place, value), ...: between the nearest ones of either sign."""
+    below = max((one for one in tried if one[1] < 0.0), default=None)
+    above = min((one for one in tried if one[1] >= 0.0), default=None)
+    if below is None or above is None:
+        place, value = tried[-1]
+        return place - float(np.clip(value, -LARGEST_STEP, LARGEST_STEP))  # r goes with the size, roughly
+    share = float(np.clip(-below[1] / (above[1] - below[1]), 0.2, 0.8))
+    return below[0] + share * (above[0] - below[0])
 
 
 def _bounded(found: Recorded, scale: float, wanted: float) -> float:

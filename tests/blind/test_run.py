@@ -110,3 +110,12 @@ def test_what_the_far_side_does_is_named_and_its_shadow_in_steady_sliding_is_not
     assert found.truths == (mechanism,)
     assert found.answer is not None
     assert found.answer.first == found.names
+
+
+@pytest.mark.timeout(400)
+def test_what_a_formula_leaves_open_is_not_said_to_remain() -> None:
+    found = judge(_item("90001-13-single-2"))
+    assert found.truths == ("periodic_friction",)
+    assert found.answer is not None
+    assert found.answer.first == found.names
+    assert not found.answer.unknown

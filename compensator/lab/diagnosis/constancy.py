@@ -5,19 +5,20 @@ What is missing and follows a driver comes back with it, and so in every trial a
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import f as fisher
 
+from compensator.lab.diagnosis.drift import Moments, chance_of_drift, moments_of
+from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.evidence import Base, inflation_of
 
 FEWEST_ROWS = 8  # of a stretch
-CHANCE = 1e-3  # of so much change in noise alone
-LEAST_SHARE = 0.005  # of the effort: by half as much friction differs along the path without any cause
+CHANCE = 1e-4  # of so much change in noise alone, whose colour is known by its first lag only
+LEAST_SHARE = 0.005  # of dry friction: what scatters by 2 % over 0.05 rad leaves so much of the mean of a stretch
 NEGLIGIBLE = 1e-6  # share of a column's power that the stretches leave: the base's own constants are sums of theirs
 
 DRY_FRICTION, OFFSET = "dry friction", "a constant force or the zero of the angle"
@@ -31,19 +32,21 @@ class Change:
         what: DRY_FRICTION or OFFSET.
         chance: of so much change in noise alone.
         share: root mean square of what changes, less what noise makes of it, over the effort's.
+        least: of it, for it to be more than dry friction scatters by without any cause.
     """
 
     what: str
     chance: float
     share: float
+    least: float = LEAST_SHARE
 
     @property
     def is_there(self) -> bool:
         """Whether it is neither noise, nor less than friction differs without any cause."""
-        return self.chance <= CHANCE and self.share > LEAST_SHARE
+        return self.chance <= CHANCE and self.share > self.least
 
 
-def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray) -> Change | None:
+def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray, friction: float) -> Change | None:
     """What changes most from one stretch of 2 s to the next; None where nothing does for sure.
 
     Args:
@@ -51,6 +54,7 @@ def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray
         rows: chosen, shape (N,).
         base: what the model explains of them, and the weighted residual (n,).
         weights: of the chosen rows, shape (n,).
+        friction: that the model takes for constant, in the effort's unit.
     """
     sliding = dataset.regime[rows] == Regime.SLIDING  # near reversals nothing is constant
     labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
@@ -59,8 +63,11 @@ def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray
     direction = dataset.rows_of([trial.motion.direction for trial in dataset.trials])[rows]
     constants: Mapping[str, FloatArray] = {DRY_FRICTION: chosen * direction, OFFSET: chosen}
     power = float(np.sum((weights * dataset.effort[rows]) ** 2))
-    found = [_change(what, base, column, stretch, len(labels), power) for what, column in constants.items()]
-    there = [change for change in found if change is not None and change.is_there]
+    moments = moments_of(dataset, rows)
+    found = [_change(what, base, column, stretch, len(labels), power, moments) for what, column in constants.items()]
+    least = LEAST_SHARE * friction / max(rms(dataset.effort[rows]), np.finfo(float).tiny)
+    judged = [replace(change, least=least) for change in found if change is not None]
+    there = [change for change in judged if change.is_there]
     return max(there, key=lambda change: change.share, default=None)
 
 
@@ -71,8 +78,9 @@ def _change(
     stretch: "np.ndarray[tuple[int], np.dtype[np.intp]]",
     of: int,
     power: float,
+    moments: Moments,
 ) -> Change | None:
-    """F-test of the column cut into stretches, beside the base; linear in rows, since the cuts do not overlap."""
+    """How much the column's coefficient drifts, by cutting it into stretches, and the chance of that if it does not."""
     own = np.bincount(stretch, column**2, of)
     kept = own > 0.0
     inverse = np.where(kept, 1.0 / np.where(kept, own, 1.0), 0.0)
@@ -89,8 +97,7 @@ def _change(
     rest = float(after @ after)
     if rank < 1 or freedom < 1 or rest == 0.0 or power == 0.0:
         return None
-    inflation = inflation_of(after)
-    noise = inflation * rest / freedom
+    noise = inflation_of(after) * rest / freedom
     explained = float(base.residual @ base.residual) - rest
-    chance = float(fisher.sf(explained / rank / noise, rank, freedom / inflation))
+    chance = chance_of_drift(moments, base, column, noise)
     return Change(what, chance, float(np.sqrt(max(explained - rank * noise, 0.0) / power)))

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.diagnosis.bursts import Bursts, bursts_of
-from compensator.lab.diagnosis.constancy import change_of
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
@@ -17,21 +16,23 @@ from compensator.lab.diagnosis.examination import (
     is_too_small,
     is_within_bounds,
 )
-from compensator.lab.diagnosis.remainder import LEAST_SHARE, remainder_of
+from compensator.lab.diagnosis.left_over import left_over
+from compensator.lab.diagnosis.remainder import LEAST_SHARE
 from compensator.lab.diagnosis.wording import (
     answer_in_words,
     bending_in_words,
     bursts_in_words,
     changing_in_words,
+    swinging_in_words,
     unexplained_in_words,
 )
 from compensator.lab.effects.catalogue import catalogue
-from compensator.lab.model.fit import Fit, with_columns
+from compensator.lab.model.fit import Fit, fit_effects, with_columns
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
-from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.candidates import Candidates, gather_curves
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
@@ -88,7 +89,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
     enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
     if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
-        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(gathered, best)
+        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(fit, gathered, best)
         return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
     found = _bends(gathered, examined, best_of_each)
     if p_value <= SIGNIFICANT and found is not None:
@@ -100,14 +101,13 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
     sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
     if generic is not None:
-        left = remainder_of(fit.dataset, gathered.fit.residual[gathered.rows], gathered.rows)
-        bursts = _bursts(gathered)
-        change = change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights)
-        if bursts.are_there and left.share * np.sqrt(bursts.share) > LEAST_SHARE:
+        left, bursts = left_over(gathered), _bursts(gathered)
+        share = left.remainder.share
+        if bursts.are_there and share * np.sqrt(bursts.share) > LEAST_SHARE:
             names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
-            sentence, remains = bursts_in_words(bursts, names, left.share, p_value), True
-        elif left.is_more_than_noise or change is not None:
-            sentence, remains = unexplained_in_words(left, change, _nearest_driver(generic), p_value), True
+            sentence, remains = bursts_in_words(bursts, names, share, p_value), True
+        elif left.is_more_than_noise:
+            sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value), True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 
 
@@ -172,25 +172,23 @@ def _nearest_driver(generic: Screening) -> str | None:
     return best.block.name if best is not None and best.score > 0.0 else None
 
 
-def _what_remains(gathered: Candidates, best: Evidence) -> list[str]:
-    """What remains once the best effect is in the model."""
-    left = gathered.with_block(best.block)
-    dataset, rows = gathered.fit.dataset, gathered.rows
-    base = left.bases[best.block.base]
-    remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
-    steady = gathered.show_in == "sliding"  # a formula of memory that is nearly right leaves some in every stretch
-    change = change_of(dataset, rows, base, gathered.weights) if steady else None
-    if change is None and not remainder.is_more_than_noise:
+def _what_remains(fit: Fit, gathered: Candidates, best: Evidence) -> list[str]:
+    """What remains with the best effect in the model, beside what its formula leaves open, as the next step sees it."""
+    name = best.block.name
+    grown = gather_curves(fit_effects(fit.dataset, [*fit.names, name], fit.training), gathered.show_in)
+    left = left_over(grown)
+    if not left.is_more_than_noise:
         return []
-    rest = screen(left.bases, left.curves.blocks, dataset.block_index[rows])
+    rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
-        name = rest.evidence[0].block.name
-        driver = DRIVERS[name.removesuffix(" against motion")]
-        how = " against the motion" if name.endswith("against motion") else ""
-        return [f"After {best.block.name}, structure over {driver.title}{how} remains; add it and diagnose again."]
-    if change is not None:
-        return [f"After {best.block.name}, {changing_in_words(change)}; repeat a trial to see whether it comes again."]
+        driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
+        how = " against the motion" if rest.evidence[0].block.name.endswith("against motion") else ""
+        return [f"After {name}, structure over {driver.title}{how} remains; add it and diagnose again."]
+    if left.change is not None:
+        return [f"After {name}, {changing_in_words(left.change)}; repeat a trial to see whether it comes again."]
+    if left.swing is not None:
+        return [f"After {name}, what is left {swinging_in_words(left.swing)}."]
     return [
-        f"After {best.block.name}, what is left is still more than noise, {remainder.share:.1%} of the effort, and "
+        f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "
         "has structure over no variable that is measured; add it and diagnose again."
     ]

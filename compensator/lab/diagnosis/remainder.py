@@ -2,9 +2,6 @@
 
 No model of what is missing is needed. What a mechanism leaves follows the motion, and so lies in the motion's band, a
 quarter of the final cut-off (`bandwidth`); noise fills the whole band of the filter, and is no denser below than above.
-What swings by itself, as a supply that ripples, holds more of one frequency than chance gives it (Fisher 1929). The
-noise itself is not white: time stamps that jitter move the position, and its second derivative is the steeper the
-higher the frequency. So each frequency is held against the noise around it, in all trials.
 """
 
 from dataclasses import dataclass
@@ -23,11 +20,7 @@ BANDS = (0.0, 0.25, 0.5, 0.9)  # of the cut-off: the motion's, a gap, and the no
 DENSER = 2.0  # in the motion's band than above: what coloured noise does not reach
 SURE = 3.0  # standard deviations of that ratio's logarithm
 LEAST_SHARE = 0.01  # of the effort: by so much friction differs from one stroke to the next without any cause
-CHANCE = 0.01  # of so strong a frequency in a trial that holds only noise
-MOST = 0.5  # share of the trials
-AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and what swings is narrower
 FEWEST_ROWS = 20
-ALIKE = 0.1  # relative spread of the frequencies of one source
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,21 +31,16 @@ class Remainder:
         share: its root mean square over the effort's.
         denser: its spectral density in the band of the motion over that above.
         certainty: logarithm of `denser` over that of noise alone, in standard deviations.
-        swinging: share of the trials in which one frequency stands out.
-        frequency_hz: of it, where it is the same in all of these; NaN where it is not.
     """
 
     share: float
     denser: float
     certainty: float
-    swinging: float
-    frequency_hz: float
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        follows_motion = self.denser > DENSER and self.certainty > SURE
-        return self.share > LEAST_SHARE and (follows_motion or self.swinging > MOST)
+        return self.share > LEAST_SHARE and self.denser > DENSER and self.certainty > SURE
 
 
 def remainder_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Remainder:
@@ -70,13 +58,11 @@ def remainder_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Rem
         for index, trial in enumerate(dataset.trials)
         if int((trials == index).sum()) >= FEWEST_ROWS
     ]
-    found = [_strongest(*spectrum) for spectrum in _over_noise(spectra)]
-    clear = [frequency for chance, frequency in found if chance <= CHANCE]
     effort = dataset.effort[rows]
     power = float(effort @ effort)
     share = float(np.sqrt(residual @ residual / power)) if power > 0.0 else 0.0
     denser, certainty = _in_band(dataset.cutoff_hz, spectra)
-    return Remainder(share, denser, certainty, len(clear) / len(found) if found else 0.0, _common(clear))
+    return Remainder(share, denser, certainty)
 
 
 def _spectrum(dataset: Dataset, trial: Trial, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -107,34 +93,3 @@ def _in_band(cutoff_hz: float, spectra: list[tuple[FloatArray, FloatArray]]) -> 
     denser = float(below.mean() / above.mean())
     # a power is exponentially distributed, so that a mean of n of them has a relative scatter of 1 / sqrt(n)
     return denser, float(np.log(max(denser, 1e-12)) / np.sqrt(1.0 / len(below) + 1.0 / len(above)))
-
-
-def _over_noise(spectra: list[tuple[FloatArray, FloatArray]]) -> list[tuple[FloatArray, FloatArray]]:
-    """Each spectrum over that of the noise: the median around a frequency, of all trials, which no line moves."""
-    spectra = [(at, power / power.mean()) for at, power in spectra if len(power) and power.mean() > 0.0]
-    if not spectra:
-        return []
-    every, powers = (np.concatenate(parts) for parts in zip(*spectra, strict=True))
-    centres = np.arange(0.0, every.max() + AROUND_HZ, 0.5 * AROUND_HZ)
-    near = [np.abs(every - centre) <= AROUND_HZ for centre in centres]
-    known = np.array([inside.any() for inside in near])
-    floor = np.array([np.median(powers[inside]) for inside in near if inside.any()])
-    logarithm = np.log(np.maximum(floor, np.finfo(float).tiny))
-    return [(at, power / np.exp(np.interp(at, centres[known], logarithm))) for at, power in spectra]
-
-
-def _strongest(frequencies_hz: FloatArray, power: FloatArray) -> tuple[float, float]:
-    """The chance of a frequency as strong as the strongest, in noise alone, and that frequency [Hz]."""
-    whole = float(power.sum())
-    if whole == 0.0:
-        return 1.0, np.nan
-    best = int(np.argmax(power))
-    chance = len(power) * (1.0 - float(power[best]) / whole) ** (len(power) - 1)
-    return min(chance, 1.0), float(frequencies_hz[best])
-
-
-def _common(frequencies_hz: list[float]) -> float:
-    if len(frequencies_hz) < 3:
-        return np.nan
-    middle = float(np.median(frequencies_hz))
-    return middle if float(np.median(np.abs(np.array(frequencies_hz) - middle))) <= ALIKE * middle else np.nan

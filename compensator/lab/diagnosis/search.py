@@ -62,18 +62,19 @@ class Search:
         return tuple(name for name in self.fit.names if name not in self.start.names)
 
 
-def search(fit: Fit, most: int = MOST_EFFECTS) -> Search:
+def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -> Search:
     """Add effects while a diagnosis names one, and keep the earlier ones honest.
 
     Args:
         fit: the model to begin with; its own effects stay.
         most: effects that are added at most.
+        first: diagnosis of that model, where it is known.
 
     Raises:
         UnusableDataError: as `diagnose`.
     """
     start, steps = fit, []
-    diagnosis = diagnose(fit)
+    diagnosis = first or diagnose(fit)
     while diagnosis.verdict == "missing" and len(fit.names) < len(start.names) + most:
         name = diagnosis.classes[0][0]
         steps.append(_step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training)))

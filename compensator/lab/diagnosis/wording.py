@@ -1,14 +1,14 @@
 """What a diagnosis says in words."""
 
 from collections.abc import Sequence
-from math import isfinite
 
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis.bursts import Bursts
 from compensator.lab.diagnosis.constancy import Change
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.remainder import Remainder
+from compensator.lab.diagnosis.left_over import LeftOver
+from compensator.lab.diagnosis.swinging import Swing
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.evidence import least_p_value
@@ -72,21 +72,27 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(remainder: Remainder, change: Change | None, driver: str | None, p_value: float) -> str:
-    """The answer where much is left that no effect and no curve explains."""
-    if isfinite(remainder.frequency_hz):
-        how = f"it swings at about {remainder.frequency_hz:.2g} Hz in most trials: look at the supply and at what turns"
-    elif change is not None:
-        how = changing_in_words(change)
+def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float) -> str:
+    """The answer where something is left that no effect and no curve explains."""
+    if left.change is not None:
+        how = changing_in_words(left.change)
+    elif left.swing is not None:
+        how = f"it {swinging_in_words(left.swing)}"
     elif driver is not None:
         how = f"it varies with {driver}, most of all that is measured"
     else:
         how = "it varies with nothing that is measured"
     return (
         f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
-        f"{remainder.share:.1%} of the effort, is more than noise; {how}. Repeat a trial: what comes again is the "
+        f"{left.remainder.share:.1%} of the effort, is more than noise; {how}. Repeat a trial: what comes again is the "
         "joint's, what does not has changed since."
     )
+
+
+def swinging_in_words(swing: Swing) -> str:
+    """What most trials share, and where to look."""
+    where = "with the voltage: look at the supply" if swing.of_voltage else "in most trials: look at what turns"
+    return f"swings at about {swing.frequency_hz:.2g} Hz {where}"
 
 
 def changing_in_words(change: Change) -> str:

@@ -90,14 +90,24 @@ def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
         fit: of the model.
         show_in: the rows that are tested, and the effects that show in them.
     """
+    ground, builder = _ground(fit, show_in)
+    named, left_out = builder.named()
+    return replace(ground, bases=builder.bases, named=named, left_out=left_out)
+
+
+def gather_curves(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
+    """The same without the effects of the catalogue: what the model leaves, and free curves. Arguments as `gather`."""
+    return _ground(fit, show_in)[0]
+
+
+def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
     dataset = with_own_prediction(fit)
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
     weights = row_weights(dataset, fit.residual, rows)
     weights = weights * bounded_influence(fit.residual[rows], weights)
     builder = _Builder(fit, show_in, rows, weights)
-    named, left_out = builder.named()
-    return Candidates(fit, show_in, rows, weights, builder.bases, named, Curves(dataset, builder.weighted), left_out)
+    return Candidates(fit, show_in, rows, weights, builder.bases, [], Curves(dataset, builder.weighted), {}), builder
 
 
 class _Builder:

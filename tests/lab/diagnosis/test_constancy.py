@@ -23,7 +23,7 @@ def fitted(extra=None, seed=0, **bench):
 
 def change(fit):
     gathered = gather(fit)
-    return change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights)
+    return change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights, fit.dry_friction)
 
 
 def jumping(of):
@@ -50,7 +50,8 @@ def test_the_base_is_fitted_anew_beside_the_stretches_as_least_squares_would():
     base, power = Base.of(base_columns, effort), float(effort @ effort)
     noise = inflation_of(after) * float(after @ after) / (rows - of + 1 - 3)
     explained = float(base.residual @ base.residual - after @ after)
-    found = _change(OFFSET, base, column, stretch, of, power)
+    moments = (np.arange(rows) // 10, np.repeat(np.arange(of), rows // of // 10), 0.5 * np.tile(np.arange(10.0), of))
+    found = _change(OFFSET, base, column, stretch, of, power, moments)
     assert found is not None
     assert found.share == pytest.approx(np.sqrt((explained - (of - 1) * noise) / power), rel=1e-9)
 
@@ -83,4 +84,6 @@ def test_what_follows_the_motion_is_no_change():
 
 
 def test_less_than_friction_scatters_is_not_told():
-    assert change(fitted(lambda x: 0.05 * jumping(lambda y: np.sign(y.v))(x), noise=1e-4)) is None
+    # 0.25 % of Coulomb friction, in next to no noise
+    assert change(fitted(lambda x: 0.01 * jumping(lambda y: np.sign(y.v))(x), noise=1e-4)) is None
+    assert change(fitted(lambda x: 0.1 * jumping(lambda y: np.sign(y.v))(x), noise=1e-4)) is not None

@@ -1,12 +1,11 @@
 """What a model leaves: more than noise, or not."""
 
-import re
-
 import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.remainder import remainder_of
+from compensator.lab.diagnosis.swinging import swing_of
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
@@ -21,10 +20,6 @@ def fitted(extra=None, seed=0, **bench):
 
 def left(fit):
     return remainder_of(fit.dataset, fit.residual[fit.training], fit.training)
-
-
-def ripple(x):
-    return 0.05 * np.sin(2.0 * np.pi * 3.1 * x.time_s)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -64,19 +59,6 @@ def test_a_few_wild_rows_do_not_make_it_more_than_noise():
     assert not wild.is_more_than_noise
 
 
-def test_a_ripple_is_told_with_its_frequency():
-    fit = fitted(ripple)
-    found = left(fit)
-    assert found.is_more_than_noise
-    assert found.swinging > 0.5
-    assert found.frequency_hz == pytest.approx(3.1, rel=0.1)
-    answer = diagnose(fit)
-    assert answer.remains
-    assert re.match(r"No effect of the catalogue is confirmed \(p = [\d.e-]+\), yet", answer.sentence)
-    assert re.search(r"swings at about (2\.[89]|3(\.[0-4])?) Hz", answer.sentence)
-    assert re.search(r"[\d.]+% of the effort, is more than noise", answer.sentence)
-
-
 def test_friction_that_jumps_is_not_called_nothing():
     random = np.random.default_rng(3)
 
@@ -99,5 +81,5 @@ def test_noise_that_rises_with_frequency_does_not_swing(seed):
     noise *= 0.05 * np.std(fit.dataset.effort) / np.std(noise)
     found = remainder_of(fit.dataset, noise[fit.training], fit.training)
     assert found.share > 0.01
-    assert found.swinging < 0.2
     assert not found.is_more_than_noise
+    assert swing_of(fit.dataset, noise[fit.training], fit.training) is None

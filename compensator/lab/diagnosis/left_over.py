@@ -1,0 +1,45 @@
+"""What a model leaves of the effort: whether it is more than noise, and in what way, whatever the catalogue says."""
+
+from dataclasses import dataclass
+
+from compensator.lab.diagnosis.constancy import Change, change_of
+from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
+from compensator.lab.diagnosis.swinging import Swing, swing_of
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOver:
+    """What is left beside all that the formulas of a model, and the measuring chain, leave open.
+
+    Attributes:
+        remainder: how much it is, and whether it follows the motion.
+        change: that something constant is another one in each stretch; None where nothing is for sure.
+        swing: that it swings at one frequency; None where it does not for sure.
+    """
+
+    remainder: Remainder
+    change: Change | None
+    swing: Swing | None
+
+    @property
+    def is_more_than_noise(self) -> bool:
+        """Whether something is left to be explained."""
+        return self.remainder.is_more_than_noise or self.change is not None or self.swing is not None
+
+
+def left_over(gathered: Candidates) -> LeftOver:
+    """Judge what a model leaves on the rows where a family shows.
+
+    Near reversals a formula of memory that is nearly right leaves some in every stretch, so that nothing is asked to be
+    constant there.
+    """
+    dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.bases[WITH_CHAIN]
+    friction = gathered.fit.dry_friction
+    steady = gathered.show_in == "sliding"
+    remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
+    swing = swing_of(dataset, base.residual, rows)
+    if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:
+        swing = None  # so little may be of the motion, whose own frequencies most trials can share
+    change = change_of(dataset, rows, base, gathered.weights, friction) if steady else None
+    return LeftOver(remainder, change, swing)

@@ -1,0 +1,115 @@
+"""Whether what a model leaves swings at one frequency, the same in most trials: something that goes by itself.
+
+What is missing and follows the motion has the motion's frequencies, which differ from one waveform to the next; a
+supply that hunts, or something that turns, keeps its own. In each trial the power at a frequency, over that of the
+noise around it, is exponentially distributed if it is noise (Schuster 1898). The noise itself is not white: time stamps
+that jitter move the position, and its second derivative is the steeper the higher the frequency. The lower median of
+the trials' powers tells, by the binomial distribution: a few trials that hold a line, as those of one waveform, do not
+make it so.
+
+What drives the motor may swing, too: a supply that ripples, unseen, changes the effort by so much of the voltage, and
+that voltage follows the motion. Its line is found in the residual times the voltage alone, as a modulated carrier's is.
+"""
+
+from dataclasses import dataclass
+from math import exp, log
+
+import numpy as np
+from scipy.stats import binom
+
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.dataset import Dataset, Trial
+
+CHANCE = 1e-3  # of such a line in noise alone
+LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
+BAND = 0.9  # of the cut-off
+AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and a line is narrower
+STEPS = 4.0  # per width of a line, so that none falls between two frequencies
+FEWEST_ROWS = 20
+FEWEST_TRIALS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """A line that most trials share.
+
+    Attributes:
+        frequency_hz: of it.
+        chance: of such a line at any frequency, in noise alone.
+        of_voltage: it swings with the voltage that drives the motor, as a supply does.
+    """
+
+    frequency_hz: float
+    chance: float
+    of_voltage: bool
+
+
+def swing_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Swing | None:
+    """The line that most trials share most surely, if any does for sure.
+
+    Args:
+        dataset: of the rows.
+        residual: of the chosen rows, shape (rows.sum(),).
+        rows: chosen, shape (N,).
+    """
+    voltage = dataset.rows_of([_voltage(trial) for trial in dataset.trials])[rows]
+    carriers = [(False, np.ones(len(residual)))]
+    if np.any(voltage):
+        carriers.append((True, voltage))
+    found = [_line(dataset, residual * carrier, rows, of_voltage) for of_voltage, carrier in carriers]
+    there = [one for one in found if one is not None and len(carriers) * one.chance <= CHANCE]
+    return min(there, key=lambda one: one.chance, default=None)
+
+
+def _voltage(trial: Trial) -> FloatArray:
+    """Duty times supply over the trial, up to a constant; zero where no duty is known."""
+    signals = trial.signals
+    channels = signals.recording.channels
+    if "duty" not in channels:
+        return np.zeros(len(signals.time_s))
+    duty = np.interp(signals.time_s, channels["time_s"], np.nan_to_num(channels["duty"]))
+    supply = np.where(np.isfinite(signals.supply_v), signals.supply_v, 1.0)
+    voltage: FloatArray = duty * supply
+    return voltage
+
+
+def _line(dataset: Dataset, values: FloatArray, rows: BoolArray, of_voltage: bool) -> Swing | None:
+    """The frequency that stands out in most trials; None where there are too few of them."""
+    index = dataset.trial_index[rows]
+    parts = [
+        (dataset.time_of(trial)[rows[dataset.trial_index == number]], values[index == number])
+        for number, trial in enumerate(dataset.trials)
+        if int((index == number).sum()) >= FEWEST_ROWS
+    ]
+    parts = [(time_s, own) for time_s, own in parts if np.any(own)]
+    if len(parts) < FEWEST_TRIALS:
+        return None
+    longest_s = max(float(time_s[-1] - time_s[0]) for time_s, _ in parts)
+    highest_hz = BAND * min(dataset.cutoff_hz, *(0.5 / float(np.median(np.diff(time_s))) for time_s, _ in parts))
+    at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (STEPS * longest_s))
+    if len(at_hz) < 3:
+        return None
+    lower = np.sort(_over_noise(at_hz, parts), axis=0)[(len(parts) - 1) // 2]
+    # what falls or rises towards an end of the band is no line: a step has most at the lowest frequency
+    best = 1 + int(np.argmax(np.where(_is_peak(lower), lower[1:-1], 0.0)))
+    count = len(parts) - (len(parts) - 1) // 2  # trials that hold so much, or more
+    chance = float(binom.sf(count - 1, len(parts), exp(-float(lower[best]))))
+    independent = max((highest_hz - LEAST_HZ) * longest_s, 1.0)
+    return Swing(float(at_hz[best]), min(1.0, independent * chance), of_voltage)
+
+
+def _is_peak(values: FloatArray) -> BoolArray:
+    """Which of the inner values (n - 2,) are as large as both their neighbours."""
+    peaks: BoolArray = (values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:])
+    return peaks
+
+
+def _over_noise(at_hz: FloatArray, parts: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
+    """Power of each trial at each frequency over that of the noise: the median around it, of all trials."""
+    turns = 2j * np.pi
+    powers = np.array([np.abs(np.exp(-turns * np.outer(at_hz, time_s)) @ own) ** 2 for time_s, own in parts])
+    powers = powers / powers.mean(axis=1, keepdims=True)
+    floor = np.array([np.median(powers[:, np.abs(at_hz - centre) <= AROUND_HZ]) for centre in at_hz])
+    over: FloatArray = log(2.0) * powers / np.maximum(floor, np.finfo(float).tiny)  # the median of Exp(1) is ln 2
+    return over

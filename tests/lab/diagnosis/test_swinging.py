@@ -1,0 +1,79 @@
+"""What swings at one frequency in most trials is told from noise, and from what follows the motion."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.swinging import Swing, swing_of
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+BENCH = Bench(duration_s=9.0, noise_memory=0.0)
+SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
+
+
+def recorded(extra=None, seed=0, noise=BENCH.noise) -> list[Recording]:
+    return recordings(Joint(extra=extra), replace(BENCH, noise=noise), plans(), seed)
+
+
+def rippling(made: list[Recording], share: float, seed: int = 7) -> list[Recording]:
+    """The same, the motor driven by a voltage that goes with the torque, and a supply that ripples by a share of it."""
+    random, found = np.random.default_rng(seed), []
+    for one in made:
+        channels = one.channels
+        duty = channels["torque_n_m"] / 2.0
+        phase = random.uniform(-np.pi, np.pi)
+        ripple = share * np.sin(2.0 * np.pi * RIPPLE_HZ * channels["time_s"] + phase)
+        supply = np.full_like(duty, SUPPLY_V)
+        more = {"duty": duty, "supply_v": supply, "torque_n_m": channels["torque_n_m"] * (1.0 + ripple)}
+        found.append(replace(one, channels={**channels, **more}))
+    return found
+
+
+def fitted(made: list[Recording]) -> Fit:
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+
+
+def swing(fit: Fit) -> Swing | None:
+    return swing_of(fit.dataset, fit.residual[fit.training], fit.training)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_does_not_swing(seed):
+    assert swing(fitted(rippling(recorded(seed=seed), 0.0))) is None
+
+
+def test_a_line_in_the_torque_is_told_with_its_frequency():
+    fit = fitted(recorded(lambda x: 0.005 * np.sin(2.0 * np.pi * 3.1 * x.time_s)))
+    found = swing(fit)
+    assert found is not None
+    assert not found.of_voltage
+    assert found.frequency_hz == pytest.approx(3.1, rel=0.05)
+    answer = diagnose(fit)
+    assert answer.remains
+    assert re.match(r"No effect of the catalogue is confirmed \(p = [\d.e-]+\), yet", answer.sentence)
+    assert re.search(r"it swings at about 3(\.[0-2])? Hz in most trials", answer.sentence)
+
+
+def test_a_ripple_of_the_supply_is_told_where_it_follows_the_voltage():
+    found = swing(fitted(rippling(recorded(noise=0.004), 0.02)))
+    assert found is not None
+    assert found.of_voltage
+    assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
+
+
+def test_a_line_in_a_few_trials_is_theirs_alone():
+    made = recorded()
+    few = [
+        replace(one, channels={**one.channels, "torque_n_m": one.channels["torque_n_m"] + 0.02 * np.sin(12.0 * time_s)})
+        for one in made[: len(made) // 3]
+        for time_s in [one.channels["time_s"]]
+    ]
+    assert swing(fitted([*few, *made[len(few) :]])) is None
