@@ -1,4 +1,4 @@
-"""`friction-bench study ...`: compare, diagnose, suggest, add, drop, search, ladder, report."""
+"""`friction-bench study ...`: compare, simulate, diagnose, suggest, add, drop, search, ladder, report."""
 
 from enum import Enum
 from pathlib import Path
@@ -29,6 +29,8 @@ _START = (
 _AT_ONCE = "Trials of a round, with --start."
 _QUEUE = "Put them into the queue of the service that runs, on the same store; then `study extend` adds what completed."
 _BENCH = "Move the joint once with each model not tried yet: the error of the reflected load, in grams."
+_MOTION = "Simulate each model not simulated yet in closed loop: the error of the motion."
+_REFINE = "Refine the coefficients by it, too: the effort regressed along the simulated motion; nothing is kept."
 _EXTEND = "Experiment whose trials are added; repeatable. Without it, those that were run for the study."
 _BASE = "Effect of the first model; repeatable. Without it, the rigid joint with General Kinetic Friction."
 
@@ -78,6 +80,18 @@ def list_(context: typer.Context, as_json: Json = False) -> None:
 def compare(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Measured against predicted: error per trial and regime, parameters, the floor."""
     _show(context, as_json, tables.comparison, "compare", study, model_id=model)
+
+
+@app.command("simulate")
+def simulate(
+    context: typer.Context,
+    study: StudyId,
+    model: Model = None,
+    refine: Annotated[bool, typer.Option("--refine", help=_REFINE)] = False,
+    as_json: Json = False,
+) -> None:
+    """The model under the servo that the trials ran under: does it go where the joint went."""
+    _show(context, as_json, tables.simulation, "simulate", study, model_id=model, refined=refine)
 
 
 @app.command("diagnose")
@@ -206,9 +220,14 @@ def ladder(
     context: typer.Context,
     study: StudyId,
     bench: Annotated[bool, typer.Option("--bench", help=_BENCH)] = False,
+    motion: Annotated[bool, typer.Option("--motion", help=_MOTION)] = False,
     as_json: Json = False,
 ) -> None:
-    """The error from model to model, training and held-out, down towards the floor; and in grams on the bench."""
+    """The error from model to model, training and held-out, down towards the floor; in motion; in grams."""
+    if motion:
+        from bench.cli.study_motion import simulate_models
+
+        simulate_models(session_of(context), study, quiet=as_json)
     if bench:
         from bench.cli.study_bench import measure_models
 

@@ -65,6 +65,37 @@ def _at_rest(found: Found, unit: str) -> None:
     say(found["sentence"])
 
 
+def simulation(found: Found) -> None:
+    """Errors of a model in closed loop, by trial; coefficients before and after a refinement."""
+    say(f"model {found['model_id']}: {', '.join(found['effects'])}")
+    refined = found["refined"]
+    rows = [("training", found["training"]), ("held out", found["held_out"])]
+    if refined:
+        rows += [("training, refined", refined["training"]), ("held out, refined", refined["held_out"])]
+    columns = [f"position [{found['position_unit']}]#", "of its spread#", "speed#", "effort#"]
+    table("In closed loop, rms error", ["on", *columns], [(name, *_in_loop(one)) for name, one in rows if one])
+    trials = [
+        (one["name"], one["role"].replace("_", " "), one["law"], "" if one["settled"] else "no", *_in_loop(one))
+        for one in found["trials"]
+    ]
+    table("Trials", ["name", "used as", "servo told by", "settled", *columns], trials)
+    if refined:
+        values = [
+            (one["effect"], one["name"], one["before"], one["after"], one["unit"]) for one in refined["parameters"]
+        ]
+        table("Coefficients", ["effect", "name", "by least squares#", "refined#", "unit"], values)
+        say(refined["sentence"])
+        before, after = percent(refined["inverse_before"]), percent(refined["inverse_after"])
+        say(f"Along the measured motion the error of the effort is {before} before and {after} after.")
+    for note in found["notes"]:
+        say(note)
+
+
+def _in_loop(error: Found) -> tuple[object, ...]:
+    shares = (error[f"{name}_relative"] for name in ("position", "velocity", "effort"))
+    return (error["position"], *map(percent, shares))
+
+
 def diagnosis(found: Found) -> None:
     """The verdict and the ranking."""
     say(found["sentence"])
@@ -170,11 +201,13 @@ def ladder(found: Found) -> None:
             percent(one["training"]),
             share_interval(one["held_out"], one["held_out_low"], one["held_out_high"]),
             percent(one["breakaway"]["held_out"]) if one["breakaway"] else "",
+            f"{one['motion']['position']:.3g} {one['motion']['unit']}" if one["motion"] else "",
             one["reflected_error_g"],
         )
         for one in found["rungs"]
     ]
-    columns = ["model#", "change", "training error#", "held-out error#", "breakaway#", "reflected load, error [g]#"]
+    errors = ["training error#", "held-out error#", "breakaway#", "position in closed loop#"]
+    columns = ["model#", "change", *errors, "reflected load, error [g]#"]
     table(f"Ladder of study {found['study_id']}", columns, rows)
     floor = found["floor"]
     if floor is not None:

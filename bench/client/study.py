@@ -30,6 +30,10 @@ class Study:
         """What is missing, how sure that is, and what adding it would bring."""
         return Answer(self._get("/diagnose", model_id=model_id))
 
+    def simulate(self, model_id: int | None = None, refine: bool = False) -> Answer:
+        """Where the model's joint goes under the servo of the trials: error of the motion; refined coefficients."""
+        return Answer(self._get("/closed-loop", model_id=model_id, refine=refine))
+
     def add(self, effect: str, model_id: int | None = None) -> Answer:
         """One effect more: refit; the error before and after."""
         return self._change(effect, "add", model_id)

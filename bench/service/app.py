@@ -17,6 +17,7 @@ from bench.service import (
     bench_state,
     calibrations,
     challenges,
+    closed_loop,
     conditional,
     effects,
     error_map,
@@ -77,6 +78,7 @@ A missing effect, found and added:
 
     POST /api/v1/studies            {"name": "arm", "experiment_ids": [1], "hold_out": ["load_kg=0.1"]}
     GET  /api/v1/studies/1/compare
+    GET  /api/v1/studies/1/closed-loop?refine=true
     GET  /api/v1/studies/1/diagnose
     POST /api/v1/studies/1/models   {"effect": "viscous_asymmetry"}
     GET  /api/v1/studies/1/ladder
@@ -94,6 +96,7 @@ _ROOMS = (
     calibrations,
     studies,
     error_map,
+    closed_loop,
     effects,
     challenges,
     audit,

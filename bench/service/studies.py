@@ -104,7 +104,8 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
     The catalogue of effects is part of it too, which is read at the start of the service.
     """
     found = store.study(study_id)
-    models = [(model.id, model.created_utc) for model in store.models(study_id)]
+    # what was kept with a model later, its error on the bench or in closed loop, is part of the ladder, too
+    models = [(model.id, model.created_utc, sorted(model.result)) for model in store.models(study_id)]
     response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
 
 

@@ -305,6 +305,15 @@ class BreakawayRung(BaseModel):
     held_out_high: float | None
 
 
+class RungMotion(BaseModel):
+    """Error of one model in closed loop: held out, or of the training trials where there are too few."""
+
+    position: float | None = Field(description="root mean square, in `unit`")
+    position_relative: float | None = Field(description="over the standard deviation of the measured position, 0..1")
+    effort_relative: float | None = Field(description="of the effort, relative (0..1)")
+    unit: Literal["rad", "m"]
+
+
 class Rung(BaseModel):
     """One model of the ladder; errors are relative (0..1)."""
 
@@ -322,6 +331,7 @@ class Rung(BaseModel):
         description="error of the reflected load in motion with the model at work on the bench, rms; null: not tried"
     )
     breakaway: BreakawayRung | None = Field(description="null: too few starts from rest, or a model of older versions")
+    motion: RungMotion | None = Field(description="null: not simulated in closed loop yet")
     trials: int | None = Field(description="of the study when the model was fitted; null: in models of older versions")
 
 

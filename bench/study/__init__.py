@@ -4,6 +4,7 @@ Every function takes the store first and returns JSON-able dicts; errors are `be
 """
 
 from bench.study.changes import add_effect, drop_effect
+from bench.study.closed_loop import keep_motion_errors, simulate
 from bench.study.compare import compare
 from bench.study.create import create_study, describe, list_studies
 from bench.study.diagnose import diagnose
@@ -31,12 +32,14 @@ __all__ = [
     "error_map",
     "extend_study",
     "keep_bench_error",
+    "keep_motion_errors",
     "ladder",
     "list_studies",
     "moments",
     "refit",
     "report_html",
     "search",
+    "simulate",
     "suggest",
     "use",
 ]

@@ -40,5 +40,19 @@ def _rung(model: ModelRow, parent: ModelRow | None) -> dict[str, Any]:
         "held_out_kind": model.result["held_out_kind"],
         "breakaway": model.result.get("breakaway"),
         "trials": model.result.get("trials"),
+        "motion": _motion(model.result.get("closed_loop")),
         "reflected_error_g": model.result.get("bench", {}).get("reflected_error_g"),
+    }
+
+
+def _motion(kept: dict[str, Any] | None) -> dict[str, Any] | None:
+    """Error of the position in closed loop: held out, or of the training trials where there are too few."""
+    if kept is None:
+        return None
+    error = kept["held_out"] or kept["training"]
+    return {
+        "position": error["position"],
+        "position_relative": error["position_relative"],
+        "effort_relative": error["effort_relative"],
+        "unit": kept["position_unit"],
     }

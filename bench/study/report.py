@@ -6,11 +6,13 @@ from bench.configuration import BenchConfiguration
 from bench.errors import BenchError
 from bench.report import Section, html_page
 from bench.store import Store
+from bench.study.closed_loop import simulate
 from bench.study.compare import compare
 from bench.study.create import describe
 from bench.study.diagnose import diagnose
 from bench.study.ladder import ladder
 from bench.study.report_sections import (
+    closed_loop_section,
     diagnosis_section,
     ladder_section,
     measured_section,
@@ -48,6 +50,7 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
         ladder_section(rungs),
         model_section(now),
         residual_section(before, now),
+        _in_closed_loop(store, study_id, newest),
     ]
     if first != newest:
         title = f"What was missing from the first model, {first}"
@@ -67,3 +70,12 @@ def _next(store: Store, study_id: int, configuration: BenchConfiguration) -> Sec
     except BenchError as error:
         return Section("Trials to record next", [f"Not known: {error}."])
     return suggestion_section(found)
+
+
+def _in_closed_loop(store: Store, study_id: int, model_id: int) -> Section:
+    """Where the model's joint goes; why nobody knows where it cannot be moved."""
+    try:
+        found = simulate(store, study_id, model_id)
+    except BenchError as error:
+        return Section("In closed loop", [f"Not known: {error}."])
+    return closed_loop_section(found)

@@ -121,6 +121,47 @@ def model_section(found: Found) -> Section:
     )
 
 
+def closed_loop_section(found: Found) -> Section:
+    """The newest model under the servo of the trials: error of the motion beside that of the effort."""
+    unit = found["position_unit"]
+    columns = [f"position, rms [{unit}]#", "of its spread#", "speed#", "effort#"]
+    errors = [
+        (name, *_in_loop(found[key]))
+        for key, name in (("training", "training"), ("held_out", "held out"))
+        if found[key]
+    ]
+    trials = [(one["name"], one["law"], "" if one["settled"] else "no", *_in_loop(one)) for one in found["trials"]]
+    return Section(
+        "In closed loop",
+        [
+            f"Model {found['model_id']}, moved under the servo that the trials ran under: how far its joint is from "
+            "the measured one, and its servo's effort from the measured effort.",
+            *found["notes"],
+        ],
+        [
+            Table("Errors", ["on", *columns], errors),
+            Table("Error by trial", ["trial", "servo told by", "settled", *columns], trials),
+        ],
+        [_moved(one, unit) for one in sorted(found["trials"], key=_farthest)[-1:]],
+    )
+
+
+def _in_loop(error: Found) -> tuple[object, ...]:
+    shares = (error[f"{name}_relative"] for name in ("position", "velocity", "effort"))
+    return (_number(error["position"]), *map(_percent, shares))
+
+
+def _farthest(trial: Found) -> float:
+    value = trial["position_relative"]
+    return value if isfinite(value) else -1.0
+
+
+def _moved(trial: Found, unit: str) -> Figure:
+    series = trial["series"]
+    lines = [Line(name, series["time_s"], series[name]) for name in ("measured", "simulated")]
+    return Figure(f"Trial {trial['name']}, measured and simulated", "time [s]", f"position [{unit}]", lines)
+
+
 def _parameters(title: str, found: list[Found]) -> Table:
     rows = [
         (one["effect"], one["name"], _number(one["value"]), _interval(one), one["unit"], one["note"]) for one in found

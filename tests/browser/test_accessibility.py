@@ -48,6 +48,8 @@ def test_no_view_breaks_a_rule(axe, open_page, study, width, scheme):
             page.get_by_role("group", name="Channels of trial").locator(".legend-entry").first.wait_for()
         if view == study:
             page.locator("table.heat button.cell").first.wait_for()
+            page.get_by_role("button", name="Simulate", exact=True).click()
+            page.get_by_label("In closed loop").locator(".plot .trace").first.wait_for()
             page.get_by_role("button", name="Diagnose").click()
             page.locator("article .plot .trace").first.wait_for()
         broken += [f"{view} {one}" for one in violations(axe, page)]

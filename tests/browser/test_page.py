@@ -58,6 +58,14 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     page.locator("table.heat button.cell").last.click()
     page.get_by_label("Moments").get_by_role("button", name="Show swing").first.click()
     assert "Measured and predicted" in page.evaluate("document.activeElement.getAttribute('aria-label')")
+    loop = page.get_by_label("In closed loop")
+    loop.get_by_role("button", name="Simulate and refine").click()
+    loop.locator(".plot .trace").first.wait_for()
+    assert (
+        loop.locator("[aria-label='Errors in closed loop'] tbody tr").count() == 4
+    )  # both models, both kinds of trials
+    loop.locator("#loop-trial").select_option(index=1)
+    loop.get_by_text("stands in").wait_for()
     page.get_by_role("button", name="Diagnose").click()
     first = page.locator("article").first
     first.locator(".plot .trace").first.wait_for()

@@ -115,7 +115,7 @@ def studies(asking: Asking, service: RunningService) -> None:
     new = {"name": "arm, winter", "experiment_ids": [imported["experiment_id"]], "hold_out": ["amplitude_rad=0.9"]}
     number = ask("POST /studies", new)["study_id"]
     ask("GET /studies")
-    for route in ("", "/compare", "/diagnose", "/error-map"):
+    for route in ("", "/compare", "/closed-loop", "/diagnose", "/error-map"):
         ask(f"GET /studies/{{number}}{route}", number=number)
     ask("GET /studies/{number}/moments", query={"where": "velocity=0.5..1"}, number=number)
     ask("POST /studies/{number}/models", {"effect": "viscous_asymmetry"}, number=number)

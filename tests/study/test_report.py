@@ -32,6 +32,7 @@ def test_everything_that_a_lab_files_is_in_it(store, number, sections):
         "The ladder",
         f"Model {newest.id}",
         "What the models leave",
+        "In closed loop",
         f"What was missing from the first model, {first.id}",
         f"What is missing from the newest model, {newest.id}",
         "Trials to record next",

@@ -3,6 +3,7 @@
 import { get } from "./api.js";
 import { facts, h, panel, replace, table } from "./dom.js";
 import { errorMap } from "./errormap.js";
+import { closedLoop } from "./closedloop.js";
 import { chance, conditions, interval, nameOf, number, percent } from "./format.js";
 import { momentList } from "./moments.js";
 import { band, colour, draw } from "./plot.js";
@@ -13,15 +14,17 @@ const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
 
 // returns what has to be closed when the place is left
 export async function comparison(place, compared, path) {
-  const [series, spots, moments, drivers] = ["div", "div", "div", "div"].map((tag) => h(tag));
+  const [series, loop, spots, moments, drivers] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
   drivers.className = "cards";
   replace(place,
     panel("Measured against predicted", errors(compared), series),
+    panel("In closed loop", loop),
     panel("Where the model is wrong", spots, moments),
     panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers),
     panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), ...restTable(compared), parameterTable(compared), ...breakawayTable(compared))),
     compared.notes.length ? panel("Notes", compared.notes.map((note) => h("p", {}, note))) : null);
   const plot = new SeriesPlot(series, compared);
+  closedLoop(loop, path, compared.model_id);
   const ask = (where, words) => attempt(moments, async () => {
     const query = new URLSearchParams([...where.map((one) => ["where", one]), ["model_id", compared.model_id]]);
     momentList(moments, words, await get(`${path}/moments?${query}`), (one) => plot.showMoment(one));

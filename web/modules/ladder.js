@@ -1,7 +1,7 @@
 // The ladder: relative error of each model, training and held-out, down towards the floor.
 
 import { h, replace, table } from "./dom.js";
-import { interval, percent } from "./format.js";
+import { interval, number, percent } from "./format.js";
 import { colour, draw } from "./plot.js";
 import { rungName } from "./study.js";
 
@@ -41,5 +41,6 @@ function rungTable(ladder, current) {
     { title: "Training error", number: true, cell: (rung) => percent(rung.training) },
     { title: "Held-out error", number: true, cell: (rung) => interval(rung.held_out, rung.held_out_low, rung.held_out_high) },
     ...(rows.some((rung) => rung.breakaway) ? [{ title: "Breakaway, held out", number: true, cell: (rung) => percent(rung.breakaway?.held_out) }] : []),
+    ...(rows.some((rung) => rung.motion) ? [{ title: "Position in closed loop, rms", number: true, cell: (rung) => (rung.motion ? `${number(rung.motion.position, 3)} ${rung.motion.unit}` : "") }] : []),
   ], rows);
 }

@@ -80,7 +80,7 @@ def dynamics_of(fit: Fit, rig: Rig) -> Dynamics:
         StudyError: neither model nor rig tells the inertia, or the rig does not say what a current is worth.
     """
     found = {term.effect.name: term for term in fit.terms}
-    drive = _drive(fit, rig)
+    drive = drive_of(fit, rig)
     own, of_load = _inertia(fit, rig, drive)
     gravity, stribeck = found.get("gravity"), found.get("stribeck")
 
@@ -128,7 +128,12 @@ def _rig_inertia(rig: Rig, drive: Drive) -> tuple[float, float]:
     return per_n_m * (arm + (rig.motor.rotor_inertia_kg_m2 or 0.0) * ratio**2), per_n_m
 
 
-def _drive(fit: Fit, rig: Rig) -> Drive:
+def drive_of(fit: Fit, rig: Rig) -> Drive:
+    """What a motor current is worth in the effort of a fitted model.
+
+    Raises:
+        StudyError: the rig does not say.
+    """
     effort = fit.dataset.effort_definition
     motor, ratio = rig.motor, rig.gear.ratio
     if effort.quantity in ("current", "current_estimate"):

@@ -1,0 +1,1 @@
+"""A fitted model under the control law that the joint ran under: does it go where the joint went."""
