@@ -71,9 +71,12 @@ function refinement(refined) {
   ], refined.parameters)];
 }
 
+// both motions, and beneath them by how much they differ: on the scale of the motion that is not to be seen
 function picture(plot, { trials, position_unit }, index) {
-  const { series } = trials[index];
-  const line = (name, y, hue, dash) => ({ x: series.time_s, y, name, mode: "lines", line: { color: colour(hue), width: 2, dash } });
-  return draw(plot, [line("measured", series.measured, "blue", "solid"), line("simulated", series.simulated, "red", "dash")],
-    { height: 270, xaxis: { title: { text: "time [s]" } }, yaxis: { title: { text: `position [${position_unit}]` } } });
+  const { time_s, measured, simulated } = trials[index].series;
+  const line = (name, y, hue, extra) => ({ x: time_s, y, name, mode: "lines", line: { color: colour(hue), width: 2, ...extra } });
+  const apart = { ...line("simulated less measured", simulated.map((value, at) => value - measured[at]), "purple"), yaxis: "y2" };
+  const axis = (text, domain) => ({ title: { text: `${text} [${position_unit}]` }, domain });
+  return draw(plot, [line("measured", measured, "blue"), line("simulated", simulated, "red", { dash: "dash" }), apart],
+    { height: 360, xaxis: { title: { text: "time [s]" }, anchor: "y2" }, yaxis: axis("position", [0.45, 1]), yaxis2: axis("difference", [0, 0.35]) });
 }
