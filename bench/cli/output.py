@@ -22,6 +22,8 @@ class FileError(BenchError, OSError):
 Json = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
 _MOST_COLUMNS = 200
 
+SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
+
 
 def console() -> Console:
     """The terminal. Made at each call, because stdout may have been exchanged since the last."""
@@ -67,8 +69,10 @@ def text(value: object) -> str:
 
 
 def percent(share: float | None) -> str:
-    """A share of 1 as per cent."""
-    return "-" if share is None or math.isnan(share) else f"{100 * share:.2f} %"
+    """A share of 1 as per cent; a small one by its first two digits."""
+    if share is None or math.isnan(share):
+        return "-"
+    return f"{100 * share:.2g} %" if 0.0 < abs(share) < SMALL_SHARE else f"{100 * share:.2f} %"
 
 
 def share_interval(value: float | None, low: float | None, high: float | None) -> str:

@@ -54,3 +54,16 @@ def test_the_name_does_not_hang_on_the_published_processing(command, base):
         "study_id"
     ]
     assert command("study", "diagnose", study_id)["ranking"][0]["effect"] == "viscous_asymmetry"
+
+
+def test_motion_and_effort_in_closed_loop(command, study_id):
+    """Published in closed loop for the symmetric model: speed 0.229 %, force 5.85 % of the reference run."""
+    before = command("study", "simulate", study_id)
+    assert [one["law"] for one in before["trials"]] == ["recording", "stand-in"]  # pulses are put past the servo
+    assert before["training"]["velocity_relative"] < 0.004
+    assert before["training"]["effort_relative"] < 0.08
+    command("study", "add", study_id, "viscous_asymmetry")
+    after = command("study", "simulate", study_id)
+    for role in ("training", "held_out"):
+        assert after[role]["position"] < before[role]["position"]
+        assert after[role]["effort_relative"] < before[role]["effort_relative"]

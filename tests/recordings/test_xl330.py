@@ -30,3 +30,15 @@ def test_the_search_goes_on_while_held_out_trials_gain_and_then_stops(command):
     assert diagnosis["verdict"] == "nothing"
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] <= 0.5 * errors[0]
+
+
+def test_the_motion_comes_nearer_with_the_effect_that_is_named(command):
+    """Each trial with the coefficients of the others, under the servo that its own set point and effort tell."""
+    study_id = command("study", "new", "xl330", "--experiment", command.import_set("xl330"))["study_id"]
+    before = command("study", "simulate", study_id)
+    assert sum(one["law"] == "recording" for one in before["trials"]) >= 15
+    command("study", "add", study_id, "load_friction_quadratic")
+    after = command("study", "simulate", study_id, "--refine")
+    assert after["held_out"]["position"] < 0.6 * before["held_out"]["position"]
+    assert after["held_out"]["effort_relative"] < 0.6 * before["held_out"]["effort_relative"]
+    assert after["refined"]["held_out"]["effort"] < after["held_out"]["effort"]
