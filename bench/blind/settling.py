@@ -62,7 +62,7 @@ def settle(configuration: BenchConfiguration, recordings: Sequence[Recording], f
         name: of the truth, for scoring only: what is suggested does not know it.
     """
     rounds = _Rounds(configuration, recordings, fit, name)
-    if rounds.is_sure:
+    if rounds.is_sure or rounds.diagnosis.verdict == "data-problem":
         return None
     planned, _ = rounds.planned(TRIALS)
     if not planned.picks:
@@ -121,6 +121,8 @@ class _Rounds:
 
     def ask(self, most: int, kept_out: Collection[str]) -> list[Choice]:
         """What is suggested now."""
+        if self.diagnosis.verdict == "data-problem":
+            return []
         suggestion, chosen = self.planned(most, kept_out)
         self._predicted = _of_truth(suggestion, self._name)[1]
         return chosen

@@ -13,6 +13,7 @@ from bench.cli.output import print_json, say
 from bench.cli.run import carry_out
 from bench.cli.service import ask
 from bench.errors import LimitError, ParameterError
+from bench.study.errors import StudyError
 from bench.study.next_trial.rounds import Ended, in_rounds
 from drivers.errors import DriveError
 
@@ -77,7 +78,15 @@ class _Running:
 
     def ask(self, most: int, kept_out: Collection[str]) -> Sequence[_Suggested]:
         """What is suggested now."""
-        found = suggested(self._session, self._study_id, self._model_id, most, kept_out)
+        try:
+            found = suggested(self._session, self._study_id, self._model_id, most, kept_out)
+        except StudyError as error:
+            if not self.rounds:
+                raise
+            self.rounds[-1]["end"] = str(error)  # what was recorded since is in the study all the same
+            if not self._quiet:
+                say(str(error))
+            return []
         self.rounds.append({"suggested": found, "experiments": []})
         if not self._quiet:
             tables.suggestion(found)

@@ -30,6 +30,7 @@ from bench.service import (
     queue,
     recording_sets,
     studies,
+    study_rounds,
     trials,
     turns,
 )
@@ -95,6 +96,7 @@ _ROOMS = (
     recording_sets,
     calibrations,
     studies,
+    study_rounds,
     error_map,
     closed_loop,
     effects,

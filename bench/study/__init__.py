@@ -12,6 +12,7 @@ from bench.study.effects import effect_example, effects_catalogue
 from bench.study.error_map import error_map, moments
 from bench.study.extend import extend_study
 from bench.study.ladder import ladder
+from bench.study.next_round import next_round
 from bench.study.on_bench import bench_configurations, keep_bench_error
 from bench.study.refit import refit
 from bench.study.report import report_html
@@ -36,6 +37,7 @@ __all__ = [
     "ladder",
     "list_studies",
     "moments",
+    "next_round",
     "refit",
     "report_html",
     "search",

@@ -16,6 +16,10 @@ class StudyError(BenchError, ValueError):
     """
 
 
+class NothingNewError(StudyError):
+    """Raised when a study is to be given more trials, and there is none that it has not yet."""
+
+
 @contextmanager
 def lab_errors() -> Iterator[None]:
     """Turn the lab's errors into the bench's, so that service and command line show them alike."""

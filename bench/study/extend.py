@@ -7,7 +7,7 @@ from typing import Any
 from bench.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
-from bench.study.errors import StudyError
+from bench.study.errors import NothingNewError, StudyError
 from bench.study.material import Definition, Material, facts_of, load, material_of, model_of
 from bench.study.models import keep_model
 from bench.study.selection import Criterion
@@ -32,7 +32,8 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
 
     Raises:
         NotFoundError: no such study or experiment.
-        StudyError: nothing new is there, or an experiment is of another rig.
+        NothingNewError: nothing new is there.
+        StudyError: an experiment is of another rig.
     """
     row = store.study(study_id)
     definition = Definition.from_json(row.definition)
@@ -41,7 +42,7 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     new = [trial for number in numbers for trial in _new_trials(store, number, definition)]
     trials = [trial for trial in new if usable(dataset, [store.recording(trial.id)])]
     if not trials:
-        raise StudyError(
+        raise NothingNewError(
             f"there is no completed trial that study {study_id} can use and has not yet; run those that "
             f"`study suggest {study_id}` names, or name other experiments"
         )

@@ -57,6 +57,10 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
     page.get_by_role("button", name="Add the recorded trials to the study").click()
     page.get_by_text(re.compile(r"^([5-9]|\d\d) training trials, 2 held out")).wait_for()
 
+    page.get_by_role("button", name="Record the next round").click()
+    page.get_by_text(re.compile(r"\d in the queue\. When they have ended|Nothing is queued")).wait_for()
+    service.client.delete("/queue").raise_for_status()
+
     page.get_by_role("button", name="Diagnose").click()
     named.filter(has_text="Load-dependent friction").first.get_by_role("button", name="Add").click()
     page.get_by_role("button", name="Undo this change").wait_for()

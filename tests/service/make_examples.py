@@ -128,6 +128,10 @@ def studies(asking: Asking, service: RunningService) -> None:
     own = service.client.post("/studies", json={"name": "own", "experiment_ids": [excited]}).json()["study_id"]
     ask("POST /studies/{number}/use", {}, number=own)
     ask("POST /studies/{number}/suggest", {"trials": 1}, number=own)
+    service.client.post("/queue/pause")
+    ask("POST /studies/{number}/rounds", {"trials": 1}, number=own)
+    service.client.delete("/queue")
+    service.client.post("/queue/resume")
 
 
 def learning(asking: Asking, service: RunningService) -> None:

@@ -38,6 +38,7 @@ CHANGES = [
     ("POST", "/studies/1/use"),
     ("POST", "/studies/1/trials"),
     ("POST", "/studies/1/suggest"),
+    ("POST", "/studies/1/rounds"),
     ("POST", "/studies/1/use"),
     ("POST", "/challenges"),
     ("POST", "/challenges/1/reveal"),

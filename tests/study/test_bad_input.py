@@ -13,13 +13,21 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from bench.challenge.session import record
 from bench.cli.app import app
 from bench.cli.exit_codes import ExitCode
+from bench.configuration import default_configuration
 from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.rig import Rig
 from bench.store import Store
+from bench.study.material import facts_of
+from compensator.lab.diagnosis.data_checks import data_problems
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import Bench, Plan, plans, recordings
 from tests.study.conftest import RIG
 
@@ -263,3 +271,13 @@ def test_loads_in_step_with_warmth_are_told_with_the_trial_that_would_separate_t
     assert any(
         "the heavier the load, the warmer" in one and "repeat the first load at the end" in one for one in problems
     )
+
+
+def test_a_trial_that_tells_what_all_others_leave_open_is_not_called_turned():
+    """Motions of a joint with free play, of which nearly all rows that slide on one flank are in the last trial."""
+    configuration = default_configuration()
+    motions = {"loads_kg": [0.0, 0.1], "waveforms": ["multisine"], "duration_s": 6.0, "repeats": 2}
+    swing = {"loads_kg": [0.1], "waveforms": ["slow-sine"], "speed_rad_s": 4.8, "amplitude_rad": 1.6, "repeats": 1}
+    recorded = record(configuration, [("excitation", motions), ("excitation", swing)])
+    facts = facts_of(configuration.rig)
+    assert data_problems(fit_model(make_dataset(recorded, facts, Processing()), default_effects(facts))) == []

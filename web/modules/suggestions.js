@@ -1,4 +1,5 @@
-// Which trials would separate the rivals of a diagnosis: ask, queue them or start one, and add them to the study.
+// Which trials would separate the rivals of a diagnosis: ask, queue them or start one, and add them to the study; or
+// round by round, a few at a time.
 
 import { post } from "./api.js";
 import { h, replace, table } from "./dom.js";
@@ -13,7 +14,23 @@ export function suggestions(place, path, model_id, extended) {
     const found = await attempt(answer, () => post(`${path}/suggest`, { model_id: model_id() }), { button, busy: "Simulating what each trial would tell …" });
     if (found) show(answer, path, found, extended);
   });
-  replace(place, h("div", { class: "row centre" }, button, h("span", { class: "soft" }, "which trials would tell apart what these cannot")), answer);
+  const round = h("button", { type: "button", title: "The joint moves when it is the queue's turn" }, "Record the next round");
+  round.addEventListener("click", async () => {
+    const made = await attempt(answer, () => post(`${path}/rounds`, {}), { button: round, busy: "Adding what was recorded, diagnosing, and simulating what each trial would tell …" });
+    if (!made) return;
+    const told = `${made.suggested.diagnosis} ${made.suggested.sentence} ${queued(made.item_ids.length)}`;
+    if (made.extended) await extended(`${made.extended.sentence} ${told}`);
+    else replace(answer, h("div", { class: "good", role: "status" }, told), ...keptOut(made.suggested));
+  });
+  replace(place, h("div", { class: "row centre" }, button, round, h("span", { class: "soft" }, "which trials would tell apart what these cannot")), answer);
+}
+
+function queued(count) {
+  return count ? `${count} in the queue. When they have ended, record the next round.` : "Nothing is queued.";
+}
+
+function keptOut(found) {
+  return found.kept_out.map((one) => h("p", { class: "soft" }, `Kept out: ${one.kind}, experiment ${one.experiment_id}, ${one.outcome}: ${one.reason}`));
 }
 
 function show(place, path, found, extended) {
@@ -36,7 +53,7 @@ function show(place, path, found, extended) {
     { title: "Minutes", number: true, cell: (one) => number(one.minutes, 2) },
     { title: "Why", cell: (one) => one.sentence },
     { title: "", cell: (one) => h("button", { type: "button", class: "small", "aria-label": `Start ${one.kind}: ${words(one.parameters)}`, onclick: start(one) }, "Start") },
-  ], found.trials), found.trials.length > 0 && h("div", { class: "row" }, queue, add), started, added);
+  ], found.trials), found.trials.length > 0 && h("div", { class: "row" }, queue, add), ...keptOut(found), started, added);
 }
 
 function words(parameters) {

@@ -112,7 +112,10 @@ def _late(fit: Fit) -> list[str]:
 
 
 def _mirrored_trials(fit: Fit) -> list[str]:
-    """Trials that the model, fitted to all others, explains far better with their effort turned."""
+    """Trials that the model explains far better with their effort turned: fitted to all others, and to them, too.
+
+    The others alone may leave open what this trial is the only one to tell, and be wrong about it by any amount.
+    """
     dataset, found = fit.dataset, []
     kept = np.concatenate([term.kept for term in fit.terms])
     bounds, columns, effort = fit.bounds.of(kept), fit.columns[:, kept], dataset.effort
@@ -124,6 +127,10 @@ def _mirrored_trials(fit: Fit) -> list[str]:
         predicted = columns[rows] @ solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
         as_is, turned = (rms(sign * effort[rows] - predicted) for sign in (1.0, -1.0))
         if int(rows.sum()) >= FEWEST_ROWS and turned < MIRRORED * as_is:
+            nothing = np.zeros_like(whole[0])
+            with_turned = solve_without(whole, (nothing, 2.0 * own.T @ own_effort), bounds)
+            if rms(-effort[rows] - columns[rows] @ with_turned) > MIRRORED * rms(fit.residual[rows]):
+                continue
             found.append(
                 f"trial '{trial.signals.recording.name}' has the other sign: its effort leaves {as_is:.3g} "
                 f"{dataset.effort_definition.unit}, turned {turned:.3g}; turn it, or leave the trial out"
