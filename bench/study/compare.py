@@ -10,6 +10,7 @@ from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
 from compensator.lab.at_rest.rest_comparison import at_rest_in_words
 from compensator.lab.chance import stated
 from compensator.lab.comparison import comparison
+from compensator.lab.comparison.null_space import left_open
 from compensator.lab.comparison.run_to_run import by_run_in_words, friction_by_run
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.model.fit import Fit
@@ -34,11 +35,12 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
     material, model = load_model(store, study_id, model_id)
     fit = material.fit_of(model)
     found = comparison.compare(fit)
+    parameters = estimates(fit)
     return {
         "study_id": study_id,
         "model_id": model.id,
         "effects": model.effects,
-        "parameters": _parameters(estimates(fit)),
+        "parameters": _parameters(parameters),
         "effort": material.effort,
         "error": {
             "training": _error(found.training),
@@ -55,7 +57,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
         "breakaway": _breakaway(found),
         "series": _series(material, fit),
         "residual_against": _against(material, found),
-        "notes": _notes(material, found),
+        "notes": [*_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))],
     }
 
 
