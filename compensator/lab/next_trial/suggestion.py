@@ -146,12 +146,24 @@ def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
 
 
 def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
-    """The class that is named; where it has one member, or nothing is named, the next in rank too. One family alone."""
+    """The class that is named; where it has one member, or nothing is named, the next in rank too. One family alone.
+
+    Where nothing is sure, starts from rest may speak for an effect while motion speaks for none: they need trials of
+    their own, so that then these are the rivals.
+    """
     named = set(diagnosis.classes[0]) if diagnosis.verdict == "missing" else set()
     first = diagnosis.candidates[:1]
+    if first and not named:
+        from_rest = [one for one in diagnosis.candidates if one.rows == "breakaway" and _speaks_for_itself(one)]
+        first = sorted([*first, *from_rest], key=lambda one: -one.score)[:1]
     family = [one for one in diagnosis.candidates if _of_one_kind(one, first[0])] if first else []
     members = [one for one in family if one.effect.name in named]
     return members[:MOST_RIVALS] if len(members) > 1 else family[:RUNNERS_UP]
+
+
+def _speaks_for_itself(candidate: Candidate) -> bool:
+    """Whether a candidate that is not sure pays for its parameters, can be it, and would lower the held-out error."""
+    return candidate.score > 0.0 and candidate.physical and candidate.gain.value > 0.0
 
 
 def _several(diagnosis: Diagnosis) -> bool:

@@ -11,7 +11,7 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_model
 from compensator.lab.next_trial.separation import Separation
-from compensator.lab.next_trial.suggestion import SURE, Option, suggest
+from compensator.lab.next_trial.suggestion import SURE, Option, shows_from_rest, suggest
 from compensator.lab.rows.assembly import make_dataset, more_trials
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
@@ -179,6 +179,22 @@ def test_a_slow_ramp_after_a_short_rest_tells_rate_from_dwell(ramps_in_step):
     assert suggested.picks[0].name == "crossed"
     assert all(pair.before < 5.0 and pair.after > SURE for pair in suggested.pairs)
     assert all(pair.before < pair.by_chance < pair.after for pair in suggested.pairs)
+
+
+def test_where_nothing_is_sure_and_starts_alone_speak_for_an_effect_ramps_are_asked_for(ramps_in_step):
+    found = diagnose(ramps_in_step[0])
+    (best, *_) = from_rest = [one for one in found.candidates if one.rows == "breakaway"]
+    assert best.score > 0.0
+    assert best.physical
+    steady = replace(best, rows="sliding", score=-1.0)
+
+    def unsure(*candidates):
+        return replace(found, verdict="nothing", classes=[(steady.effect.name,)], candidates=list(candidates))
+
+    assert shows_from_rest(unsure(steady, *from_rest))
+    assert not shows_from_rest(unsure(replace(steady, score=best.score + 1.0), *from_rest))
+    assert not shows_from_rest(unsure(steady, replace(best, physical=False)))
+    assert not shows_from_rest(replace(unsure(steady, *from_rest), verdict="missing"))
 
 
 def test_predicted_d_prime_of_breakaway_comes_true(ramps_in_step):
