@@ -1,7 +1,9 @@
 """Whether what a model takes for constant is another one in each stretch: friction that jumps, a zero that shifts.
 
 A coefficient of every stretch of its own, beside the model's one for all (parameter constancy: Chow 1960, Nyblom 1989).
-What is missing and follows a driver comes back with it, and so in every trial alike; what jumps does not.
+What is missing and follows a driver comes back with it, and so in every trial alike; what jumps does not. Static
+friction is another one from stop to stop, by some percent (the paper's repeated steps), and slow strokes keep what they
+began with: each of these is allowed its own, or every joint would seem to change.
 """
 
 from collections.abc import Mapping
@@ -13,12 +15,13 @@ from compensator.lab.diagnosis.drift import Moments, chance_of_drift, moments_of
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import Dataset, IntArray
 from compensator.lab.screening.evidence import Base, inflation_of
 
 FEWEST_ROWS = 8  # of a stretch
-CHANCE = 1e-4  # of so much change in noise alone, whose colour is known by its first lag only
-LEAST_SHARE = 0.005  # of dry friction: what scatters by 2 % over 0.05 rad leaves so much of the mean of a stretch
+CHANCE = 1e-3  # of so much change in noise alone
+LEAST_SHARE = 0.002  # of dry friction: what changes less is of no use to know
+MOST_STATIC = 0.05  # share of dry friction, in a stroke: it scatters by some percent, of which this is next to nothing
 NEGLIGIBLE = 1e-6  # share of a column's power that the stretches leave: the base's own constants are sums of theirs
 
 DRY_FRICTION, OFFSET = "dry friction", "a constant force or the zero of the angle"
@@ -32,7 +35,7 @@ class Change:
         what: DRY_FRICTION or OFFSET.
         chance: of so much change in noise alone.
         share: root mean square of what changes, less what noise makes of it, over the effort's.
-        least: of it, for it to be more than dry friction scatters by without any cause.
+        least: of it, for it to be worth saying.
     """
 
     what: str
@@ -42,11 +45,13 @@ class Change:
 
     @property
     def is_there(self) -> bool:
-        """Whether it is neither noise, nor less than friction differs without any cause."""
+        """Whether it is neither noise nor next to nothing."""
         return self.chance <= CHANCE and self.share > self.least
 
 
-def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray, friction: float) -> Change | None:
+def change_of(
+    dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray, friction: float, static: FloatArray
+) -> Change | None:
     """What changes most from one stretch of 2 s to the next; None where nothing does for sure.
 
     Args:
@@ -55,6 +60,7 @@ def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray
         base: what the model explains of them, and the weighted residual (n,).
         weights: of the chosen rows, shape (n,).
         friction: that the model takes for constant, in the effort's unit.
+        static: how much of it is static friction that has not fallen off yet, shape (n,).
     """
     sliding = dataset.regime[rows] == Regime.SLIDING  # near reversals nothing is constant
     labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
@@ -64,11 +70,50 @@ def change_of(dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray
     constants: Mapping[str, FloatArray] = {DRY_FRICTION: chosen * direction, OFFSET: chosen}
     power = float(np.sum((weights * dataset.effort[rows]) ** 2))
     moments = moments_of(dataset, rows)
-    found = [_change(what, base, column, stretch, len(labels), power, moments) for what, column in constants.items()]
+    slow = _by_stroke(dataset, rows, weights * static, MOST_STATIC * friction * weights)
+    beside = Base.of(slow.taken_out(base.basis), slow.taken_out(base.residual[:, None])[:, 0])
+    found = [
+        _change(what, beside, slow.taken_out(column[:, None])[:, 0], stretch, len(labels), power, moments)
+        for what, column in constants.items()
+    ]
     least = LEAST_SHARE * friction / max(rms(dataset.effort[rows]), np.finfo(float).tiny)
     judged = [replace(change, least=least) for change in found if change is not None]
     there = [change for change in judged if change.is_there]
     return max(there, key=lambda change: change.share, default=None)
+
+
+@dataclass(frozen=True)
+class _ByStroke:
+    """A column of each stroke of its own: its values (n,), the stroke of each row (n,), its power in each stroke."""
+
+    column: FloatArray
+    stroke: IntArray
+    power: FloatArray
+
+    def taken_out(self, values: FloatArray) -> FloatArray:
+        """What a fit of the column in every stroke leaves of values (n, k)."""
+        shares = [np.bincount(self.stroke, self.column * one, len(self.power)) / self.power for one in values.T]
+        left: FloatArray = values - self.column[:, None] * np.array(shares).T[self.stroke]
+        return left
+
+
+def _by_stroke(dataset: Dataset, rows: BoolArray, static: FloatArray, least: FloatArray) -> _ByStroke:
+    """Static friction of each stroke of its own: it is another one from stop to stop, which is no change.
+
+    Args:
+        dataset: of the rows.
+        rows: chosen, shape (N,).
+        static: friction that has not fallen off, weighted, shape (n,).
+        least: of it, for a stroke to show it, shape (n,).
+    """
+    direction = dataset.rows_of([trial.motion.direction for trial in dataset.trials])
+    turns = np.diff(np.sign(direction), prepend=0.0) != 0.0
+    starts = np.diff(dataset.trial_index, prepend=-1) != 0
+    _, stroke = np.unique(np.cumsum(turns | starts)[rows], return_inverse=True)
+    shows = np.bincount(stroke, static**2) > np.bincount(stroke, least**2)
+    column = np.where(shows[stroke], static, 0.0)
+    power = np.bincount(stroke, column**2)
+    return _ByStroke(column, stroke, np.where(power > 0.0, power, 1.0))
 
 
 def _change(

@@ -41,5 +41,9 @@ def left_over(gathered: Candidates) -> LeftOver:
     swing = swing_of(dataset, base.residual, rows)
     if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
-    change = change_of(dataset, rows, base, gathered.weights, friction) if steady else None
+    change = (
+        change_of(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
+        if steady
+        else None
+    )
     return LeftOver(remainder, change, swing)

@@ -18,6 +18,7 @@ from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
+STATIC = "stribeck"
 DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
 SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
 
@@ -88,6 +89,15 @@ class Fit:
     def dry_friction(self) -> float:
         """What the model takes off the effort, or adds to it, at the slowest, by the direction of motion alone."""
         return sum(float(term.coefficients[0]) for term in self.terms if term.effect.name in DRY)
+
+    @property
+    def static_friction(self) -> FloatArray:
+        """What static friction adds to the effort beyond that of sliding, until it has fallen off; shape (N,)."""
+        found = np.zeros(len(self.dataset.effort))
+        for term in self.terms:
+            if term.effect.name == STATIC:
+                found += self.dataset.columns(term.effect, term.shape) @ term.coefficients
+        return found
 
     @property
     def training_equations(self) -> tuple[FloatArray, FloatArray]:

@@ -23,7 +23,14 @@ def fitted(extra=None, seed=0, **bench):
 
 def change(fit):
     gathered = gather(fit)
-    return change_of(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights, fit.dry_friction)
+    return change_of(
+        fit.dataset,
+        gathered.rows,
+        gathered.bases[0],
+        gathered.weights,
+        fit.dry_friction,
+        fit.static_friction[gathered.rows],
+    )
 
 
 def jumping(of):
@@ -83,7 +90,27 @@ def test_what_follows_the_motion_is_no_change():
     assert change(fitted(lambda x: 0.01 * np.sin(5.0 * x.q))) is None
 
 
-def test_less_than_friction_scatters_is_not_told():
-    # 0.25 % of Coulomb friction, in next to no noise
-    assert change(fitted(lambda x: 0.01 * jumping(lambda y: np.sign(y.v))(x), noise=1e-4)) is None
+def test_less_than_is_worth_saying_is_not_told():
+    # 0.1 % and 2.5 % of dry friction, in next to no noise
+    assert change(fitted(lambda x: 0.005 * jumping(lambda y: np.sign(y.v))(x), noise=1e-4)) is None
     assert change(fitted(lambda x: 0.1 * jumping(lambda y: np.sign(y.v))(x), noise=1e-4)) is not None
+
+
+def stroke_by_stroke(of):
+    """Static friction that is another one after each stop, by 5 %, or all of dry friction that is."""
+    random = np.random.default_rng(11)
+
+    def extra(x):
+        stroke = np.cumsum(np.diff(np.sign(x.v), prepend=0.0) != 0.0)
+        scatter = 0.05 * random.standard_normal(stroke.max() + 1)
+        return scatter[stroke] * of(x) * np.sign(x.v)
+
+    return extra
+
+
+def test_static_friction_that_differs_from_stop_to_stop_is_no_change():
+    def falling(x):
+        return 0.12 * np.exp(-np.abs(x.v) / 0.25)
+
+    assert change(fitted(stroke_by_stroke(falling), noise=1e-3)) is None
+    assert change(fitted(stroke_by_stroke(lambda x: 0.12), noise=1e-3)) is not None
