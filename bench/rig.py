@@ -57,6 +57,7 @@ class Supply(Section):
     """Supply of the PWM stage."""
 
     voltage_v: Positive | None = None
+    is_nominal: bool = False  # the drive does not measure it: recordings hold this number, whatever the load does to it
 
 
 class Effort(Section):

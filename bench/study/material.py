@@ -107,6 +107,7 @@ def facts_of(rig: Rig) -> Facts:
         backlash_rad=rig.gear.backlash_rad,
         arm_m=rig.arm.length_m,
         arm_inertia_kg_m2=rig.arm.inertia_kg_m2,
+        supply_is_nominal=rig.supply.is_nominal or None,
         effort=rig.effort.quantity if rig.effort else None,
     )
 

@@ -139,6 +139,7 @@ def _fitted(quantity: EffortQuantity) -> Fit:
         gear_ratio=20.0,
         backlash_rad=0.01,
         arm_m=ARM_M,
+        supply_is_nominal=True,
         effort=quantity,
     )
     recordings = [_recording(load_kg, number) for number, load_kg in enumerate(LOADS_KG)]

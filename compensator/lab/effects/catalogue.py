@@ -7,6 +7,7 @@ from importlib.metadata import entry_points
 
 from compensator.lab.effects import (
     back_driving_friction,
+    back_emf_error,
     backlash,
     centre_of_mass_angle,
     cogging,
@@ -30,6 +31,7 @@ from compensator.lab.effects import (
     rate_dependent_breakaway,
     spring,
     stribeck,
+    supply_sag,
     torque_constant_saturation,
     viscous,
     viscous_asymmetry,
@@ -78,6 +80,8 @@ _OURS = (
     encoder_eccentricity,
     current_gain_asymmetry,
     dead_time,
+    supply_sag,
+    back_emf_error,
 )
 
 

@@ -20,6 +20,7 @@ class Facts:
         backlash_rad: free play at the joint; 0 where there is none, None where nobody measured it.
         arm_m: axis to the tip load [m], where the trial's conditions do not tell.
         arm_inertia_kg_m2: of the arm without load, about the axis.
+        supply_is_nominal: True where the supply voltage of the recordings is a number that nobody measured; else None.
         effort: the quantity that the models predict; None takes the best that every trial has.
     """
 
@@ -30,6 +31,7 @@ class Facts:
     backlash_rad: float | None = None
     arm_m: float | None = None
     arm_inertia_kg_m2: float | None = None
+    supply_is_nominal: bool | None = None
     effort: EffortQuantity | None = None
 
     @property

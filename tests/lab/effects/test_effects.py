@@ -123,6 +123,8 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
     "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
     "dead_time": ((0.02,), lambda m: [np.tanh(predicted(m) / (0.02 * 1.5))]),
+    "supply_sag": ((), lambda m: [predicted(m) ** 3 / 1.5**2]),
+    "back_emf_error": ((), lambda m: [m.velocity]),
     "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
     "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
     "frictional_lag": ((0.5,), lambda m: [m.acceleration * np.exp(-np.abs(m.velocity) / 0.5)]),

@@ -1,0 +1,59 @@
+"""A supply that sags while the effort is computed with its nominal voltage."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Joint, plans, recordings
+
+NOMINAL_V, SOURCE_OHM, WINDING_OHM, BACK_EMF_V_S, AMPERE_PER_N_M = 12.0, 1.2, 2.0, 0.4, 3.0
+
+
+def sagging(one: Recording, source_ohm: float) -> Recording:
+    """Duty x nominal supply of a stage that needs D (U - R_s D i) = R i + k_e w."""
+    torque, time_s = one.channels["torque_n_m"], one.channels["time_s"]
+    current_a = AMPERE_PER_N_M * torque
+    wanted_v = WINDING_OHM * current_a + BACK_EMF_V_S * np.gradient(one.channels["position_rad"], time_s)
+    duty = wanted_v / NOMINAL_V
+    for _ in range(50):
+        duty = wanted_v / (NOMINAL_V - source_ohm * duty * current_a)
+    rest = {name: values for name, values in one.channels.items() if name != "torque_n_m"}
+    return replace(one, channels={**rest, "duty": duty, "supply_v": np.full(len(duty), NOMINAL_V)})
+
+
+@pytest.fixture(scope="module")
+def trials() -> list[Recording]:
+    return recordings(Joint(), None, plans(loads_kg=(0.0, 0.1, 0.2, 0.3)), seed=5)
+
+
+def diagnosed(trials, facts, source_ohm=SOURCE_OHM):
+    dataset = make_dataset([sagging(one, source_ohm) for one in trials], facts, Processing())
+    return diagnose(fit_model(dataset, default_effects(facts)))
+
+
+def test_a_sagging_supply_is_in_the_first_class(trials):
+    found = diagnosed(trials, replace(FACTS, supply_is_nominal=True))
+    assert found.verdict == "missing"
+    assert "supply_sag" in found.classes[0]
+
+
+def test_where_the_supply_is_measured_it_cannot_be_missing(trials):
+    assert "supply_is_nominal" in diagnosed(trials, FACTS).left_out["supply_sag"]
+
+
+def test_a_stiff_supply_is_no_finding(trials):
+    found = diagnosed(trials, replace(FACTS, supply_is_nominal=True), source_ohm=0.0)
+    assert found.verdict == "nothing"
+
+
+def test_a_back_emf_error_hides_in_viscous_friction(trials):
+    told = diagnosed(trials, FACTS).left_out["back_emf_error"]
+    assert "viscous" in told
+    assert "coast-down" in told
