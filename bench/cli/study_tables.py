@@ -121,6 +121,8 @@ def diagnosis(found: Found) -> None:
     table(
         "Effects by evidence", ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#"], rows
     )
+    if found["provisional"]:
+        say(found["provisional"]["sentence"])
     for note in found["notes"]:
         say(note)
 

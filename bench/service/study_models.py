@@ -224,6 +224,20 @@ class Ranked(BaseModel):
     picture: Picture | None
 
 
+class ProvisionalTerm(BaseModel):
+    """A curve over the variable that something unknown varies with; held-out errors are relative (0..1)."""
+
+    effect: str = Field(description="to be added like any effect", examples=["curve_of_temperature_against_motion"])
+    title: str
+    held_out_before: float | None
+    held_out_after: float | None
+    gain: float | None
+    gain_low: float | None
+    gain_high: float | None
+    sentence: str
+    picture: Picture | None
+
+
 class Diagnosis(BaseModel):
     """Is anything missing, what is it called, and does it help?"""
 
@@ -238,6 +252,7 @@ class Diagnosis(BaseModel):
     data_problems: list[str]
     classes: list[EffectClass]
     ranking: list[Ranked]
+    provisional: ProvisionalTerm | None = Field(description="null unless the verdict is unknown-effect")
 
 
 class BeforeAfter(BaseModel):

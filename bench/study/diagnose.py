@@ -8,6 +8,7 @@ from bench.study.material import load_model
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
 from compensator.lab.diagnosis.diagnose import diagnose as diagnose_fit
+from compensator.lab.diagnosis.provisional import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import Fit
 from compensator.lab.rows.dataset import Dataset
@@ -39,6 +40,7 @@ def diagnosis_of(fit: Fit, study_id: int, model_id: int) -> dict[str, Any]:
         found = diagnose_fit(fit)
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
     left_out = [f"Not judged: {reason}." for reason in found.left_out.values()]
+    curve = provisional(fit, found) if found.verdict == "unknown-effect" else None
     return {
         "study_id": study_id,
         "model_id": model_id,
@@ -49,6 +51,26 @@ def diagnosis_of(fit: Fit, study_id: int, model_id: int) -> dict[str, Any]:
         "data_problems": found.data_problems,
         "classes": [_class(members) for members in found.classes[:1]] if named else [],
         "ranking": [] if found.too_short else [_ranked(fit.dataset, one, named) for one in found.candidates],
+        "provisional": None if curve is None else _provisional(fit.dataset, curve),
+    }
+
+
+def _provisional(dataset: Dataset, curve: Provisional) -> dict[str, Any]:
+    gain = curve.gain
+    return {
+        "effect": curve.effect.name,
+        "title": curve.effect.title,
+        "held_out_before": curve.before,
+        "held_out_after": curve.after,
+        "gain": gain.value,
+        "gain_low": gain.low,
+        "gain_high": gain.high,
+        "sentence": (
+            f"Until its physics is known, {curve.effect.name} can stand in the model as a provisional term: held-out "
+            f"error {curve.before:.2%} to {curve.after:.2%} (gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. "
+            f"{gain.high:.1%})."
+        ),
+        "picture": _picture(dataset, curve.picture),
     }
 
 

@@ -232,6 +232,7 @@ def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
         words.append(one["sentence"])
         if one["separating_trial"]:
             words.append(f"To tell them apart: {one['separating_trial']}.")
+    words += [found["provisional"]["sentence"]] if found["provisional"] else []
     words += [f"{one['title']}: {one['sentence']}" for one in found["ranking"][:PICTURES]]
     rows = [
         (
@@ -247,7 +248,8 @@ def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
         for one in found["ranking"]
     ]
     columns = ["effect", "named", "score#", "p#", "held out then#", "gain, 90 % interval", "d'#", "rivals"]
-    figures = [figure for one in found["ranking"][:PICTURES] if (figure := picture(one, compared["effort"]["unit"]))]
+    shown = [*([found["provisional"]] if found["provisional"] else []), *found["ranking"][:PICTURES]]
+    figures = [figure for one in shown if (figure := picture(one, compared["effort"]["unit"]))]
     return Section(title, [*words, *found["notes"]], [Table("Effects by evidence", columns, rows)], figures)
 
 

@@ -12,15 +12,17 @@ const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 export async function diagnosis(place, found, add) {
   const named = h("div", { class: "cards" });
   const others = h("div", { class: "cards" });
+  const curve = found.provisional && h("div", { class: "cards" });
   const more = h("details", {}, h("summary", {}, `${Math.max(0, found.ranking.length - SHOWN)} more effects`), h("div", { class: "cards" }));
   const notJudged = found.notes.filter((note) => NOT_JUDGED.test(note));
   const first = found.ranking.slice(0, SHOWN);
   replace(place, h("p", { class: "sentence", role: "status" }, found.sentence),
     found.data_problems.map((problem) => h("div", { class: "problem" }, problem)),
     found.notes.filter((note) => !NOT_JUDGED.test(note)).map((note) => h("p", { class: "soft" }, note)),
-    found.classes.map(className), named, first.some((one) => !one.in_class) && h("h3", {}, found.classes.length ? "Less likely" : "Tested"), others,
+    found.classes.map(className), curve, named, first.some((one) => !one.in_class) && h("h3", {}, found.classes.length ? "Less likely" : "Tested"), others,
     found.ranking.length > SHOWN && more,
     notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map((note) => h("p", { class: "soft" }, note))));
+  if (curve) await provisional(curve, found.provisional, add);
   for (const one of first) await card(one.in_class ? named : others, one, add);
   more.addEventListener("toggle", async () => {
     const rest = more.querySelector(".cards");
@@ -43,6 +45,18 @@ async function card(parent, one, add) {
   h("div", { class: "bars" }, bar("held-out now", one.held_out_before, highest, "purple"), bar("with the effect", one.held_out_after, highest, "blue")),
   h("p", {}, evidence(one)), one.picture && plot, button, answer));
   if (one.picture) await picture(plot, one);
+}
+
+// what has no formula: its curve, to stand in the model until somebody knows the physics
+async function provisional(parent, one, add) {
+  const plot = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${one.picture.driver} with the free curve` });
+  const answer = h("div");
+  const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
+  const button = h("button", { type: "button", class: "primary", onclick: () => add(one.effect, answer) }, "Add as a provisional term");
+  parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ", h("span", { class: "badge stale" }, "provisional")),
+    h("div", { class: "bars" }, bar("held-out now", one.held_out_before, highest, "purple"), bar("with the curve", one.held_out_after, highest, "blue")),
+    h("p", {}, one.sentence), plot, button, answer));
+  await picture(plot, one);
 }
 
 // the evidence in words, the numbers behind it in brackets

@@ -79,7 +79,7 @@ def _dropped(fit: Fit, known: list[_Coefficient]) -> Iterator[str]:
     size = np.linalg.norm(columns, axis=0)
     kept = _kept(fit)
     for one in known:
-        if kept[one.index] or size[one.index] == 0.0:
+        if kept[one.index] or size[one.index] == 0.0 or one.effect.provisional:
             continue
         shares = np.linalg.lstsq(columns[:, kept], columns[:, one.index], rcond=None)[0] * size[kept] / size[one.index]
         others = [known[index] for index in np.flatnonzero(kept)[np.abs(shares) > TAKES_PART]]

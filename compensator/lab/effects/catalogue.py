@@ -19,6 +19,7 @@ from compensator.lab.effects import (
     dwell_strengthening,
     elasticity,
     encoder_eccentricity,
+    free_curve,
     frictional_lag,
     gravity,
     inertia,
@@ -96,7 +97,7 @@ def catalogue() -> dict[str, Effect]:
 
 
 def effect_named(name: str) -> Effect:
-    """The effect of this name.
+    """The effect of this name: of the catalogue, or a provisional curve over a variable (`free_curve`).
 
     Raises:
         UnknownEffectError: there is none; the message lists near names.
@@ -104,7 +105,9 @@ def effect_named(name: str) -> Effect:
     known = catalogue()
     if name in known:
         return known[name]
-    near = difflib.get_close_matches(name, known, n=3) or list(known)
+    if (curve := free_curve.free_curve(name)) is not None:
+        return curve
+    near = difflib.get_close_matches(name, [*known, *free_curve.known()], n=3) or list(known)
     raise UnknownEffectError(f"effect '{name}' is not in the catalogue; known are for instance: {', '.join(near)}")
 
 

@@ -1,6 +1,6 @@
 """What an effect is: a named physical mechanism that adds columns to the regression of the effort."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -208,6 +208,8 @@ class Effect:
         dry_friction: it is friction that varies with something else than speed; see `discrepancy`.
         discrepancy: (motion, shape) -> array (k, n): what the truth may differ from the equation by; None for nothing.
         least_of_friction: lowest coefficient over the model's dry friction: what stands in its place is as large as it.
+        shape_over: (motions of all trials) -> the one shape that they give, in place of a scan; None: `shapes`.
+        provisional: no mechanism, but a curve that stands for one that nobody knows yet.
         ends_within_scan: what fits best at the upper end of its scan goes on beyond it, and is something else.
     """
 
@@ -240,6 +242,12 @@ class Effect:
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
     ends_within_scan: bool = False
+    shape_over: Callable[[Sequence[Motion]], Shape] | None = None
+    provisional: bool = False
+
+    def grid(self, motions: Sequence[Motion]) -> list[Shape]:
+        """Shapes to scan, given the motions of all trials."""
+        return self.shapes(motions[0]) if self.shape_over is None else [self.shape_over(motions)]
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
         """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""

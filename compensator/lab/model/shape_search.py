@@ -21,7 +21,8 @@ REFINEMENTS = 24  # evaluations between the grid's values
 
 def first_shapes(dataset: Dataset, effects: Sequence[Effect]) -> dict[str, Shape]:
     """The middle of every effect's grid."""
-    grids = {effect.name: effect.shapes(dataset.trials[0].motion) for effect in effects if effect.shape_names}
+    motions = [trial.motion for trial in dataset.trials]
+    grids = {effect.name: effect.grid(motions) for effect in effects if effect.shape_names}
     return {name: grid[len(grid) // 2] for name, grid in grids.items()}
 
 
@@ -65,7 +66,7 @@ class _Search:
         self._basis = orthonormal(self._weight * fixed)
         effort = weight * dataset.effort[rows]
         self._rest = effort - self._basis @ (self._basis.T @ effort)
-        self._grid = effect.shapes(dataset.trials[0].motion)
+        self._grid = effect.grid([trial.motion for trial in dataset.trials])
         parameters = effect.parameters
         self._signs = [1 if p.low >= 0.0 else -1 if p.high <= 0.0 else 0 for p in parameters]
 
