@@ -22,6 +22,7 @@ class FileError(BenchError, OSError):
 Json = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
 _MOST_COLUMNS = 200
 
+NO_SHARE = 1e-7  # less is rounding
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
 
 
@@ -72,7 +73,7 @@ def percent(share: float | None) -> str:
     """A share of 1 as per cent; a small one by its first two digits."""
     if share is None or math.isnan(share):
         return "-"
-    return f"{100 * share:.2g} %" if 0.0 < abs(share) < SMALL_SHARE else f"{100 * share:.2f} %"
+    return f"{100 * share:.2g} %" if NO_SHARE < abs(share) < SMALL_SHARE else f"{100 * share:.2f} %"
 
 
 def share_interval(value: float | None, low: float | None, high: float | None) -> str:

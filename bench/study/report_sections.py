@@ -8,6 +8,7 @@ from bench.store import Store
 from compensator.lab.chance import chance_cell
 
 Found = dict[str, Any]
+NO_SHARE = 1e-7  # less is rounding
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
 PICTURES = 3  # of a diagnosis, best effects first
 SHOWN_TRIALS = 2  # over time: the worst one that was fitted, and the worst one held out
@@ -326,7 +327,7 @@ def _number(value: float | None) -> float | None:
 def _percent(share: float | None) -> str:
     if share is None or not isfinite(share):
         return "-"
-    return f"{100 * share:.2g}%" if 0.0 < abs(share) < SMALL_SHARE else f"{share:.2%}"
+    return f"{100 * share:.2g}%" if NO_SHARE < abs(share) < SMALL_SHARE else f"{share:.2%}"
 
 
 def _interval(one: Found) -> str:

@@ -28,10 +28,12 @@ export function number(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+const ROUNDING = 1e-7;
+
 // a small one by its first two digits: those after the point would say next to nothing of it
 export function percent(share, digits = 2) {
   if (share === null || share === undefined) return "–";
-  const small = share !== 0 && Math.abs(100 * share) < 5 * 10 ** -digits;
+  const small = Math.abs(share) > ROUNDING && Math.abs(100 * share) < 5 * 10 ** -digits;
   return `${small ? number(100 * share, 2) : (100 * share).toFixed(digits)} %`;
 }
 

@@ -30,7 +30,7 @@ EFFECT = Effect(
         "both, the less voltage is there. Where the effort is computed with the nominal voltage, it is too large. "
         "A drive that measures its supply hides nothing."
     ),
-    equation=r"R_s D^2 i \approx s\,\hat\tau^3/\hat\tau_{max}^2",
+    equation=r"s\,\hat\tau^3/\hat\tau_m^2",
     columns=columns,
     parameters=(Parameter("share of the supply lost at the largest effort", "1", 0.0, 1.0),),
     driver="effort",
