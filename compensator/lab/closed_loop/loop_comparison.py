@@ -7,7 +7,7 @@ import numpy as np
 
 from compensator.lab.closed_loop.control_law import ControlLaw, LawSource
 from compensator.lab.closed_loop.simulation import Simulated, simulate
-from compensator.lab.model.fit import Fit, trained_trials, with_coefficients
+from compensator.lab.model.fit import Fit, trained_trials, with_terms
 from compensator.lab.model.intervals import without_each
 from compensator.lab.model.validation import FEWEST_TRIALS, rms
 from compensator.lab.recordings.differentiation import rate_of_change
@@ -98,7 +98,7 @@ def compare_coefficients(fit: Fit, coefficients: Fit, laws: Laws | None = None) 
     told = laws or [None] * len(dataset.trials)
     trained = trained_trials(dataset, fit.training)
     seen = [index in trained for index in range(len(dataset.trials))]
-    model = with_coefficients(fit, coefficients.coefficients)
+    model = with_terms(fit, coefficients.coefficients)
     runs = [simulate(model, trial, law) for trial, law in zip(dataset.trials, told, strict=True)]
     trials = tuple(
         TrialInLoop(
@@ -125,7 +125,7 @@ def _in_turn(fit: Fit, coefficients: Fit, told: Laws) -> LoopError | None:
     pairs = []
     for label, values in zip(labels.tolist(), without_each(coefficients), strict=True):
         trial = fit.dataset.trials[label]
-        pairs.append((trial, simulate(with_coefficients(fit, values), trial, told[label])))
+        pairs.append((trial, simulate(with_terms(fit, values), trial, told[label])))
     return _error(pairs, fit.dataset)
 
 

@@ -240,13 +240,19 @@ def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Sol
     )
 
 
-def with_coefficients(fit: Fit, coefficients: FloatArray) -> Fit:
-    """The fit with other coefficients (K,), and what the model then predicts."""
+def with_terms(fit: Fit, coefficients: FloatArray) -> Fit:
+    """The fit whose terms have other coefficients (K,), and nothing else: what its motions predict is still the old."""
     ends = np.cumsum([len(term.coefficients) for term in fit.terms])[:-1]
     parts = np.split(coefficients, ends)
     terms = tuple(replace(term, coefficients=part) for term, part in zip(fit.terms, parts, strict=True))
-    dataset = with_own_prediction(replace(fit, terms=terms))
-    return replace(fit, dataset=dataset, terms=terms, columns=dataset.columns_of_model(fit.effects, fit.shapes))
+    return replace(fit, terms=terms)
+
+
+def with_coefficients(fit: Fit, coefficients: FloatArray) -> Fit:
+    """The fit with other coefficients (K,), and what the model then predicts."""
+    changed = with_terms(fit, coefficients)
+    dataset = with_own_prediction(changed)
+    return replace(changed, dataset=dataset, columns=dataset.columns_of_model(fit.effects, fit.shapes))
 
 
 def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
