@@ -116,12 +116,15 @@ def limits_of(fit: Fit, windows: Windows, starts: BreakawayFit | None) -> Limits
 
 
 def _columns(fit: Fit, windows: Windows, way: float) -> FloatArray:
-    """The model's columns at rest, about to move one way, shape (W, K); effects with memory have none there."""
+    """The model's columns at rest, about to move one way, shape (W, K).
+
+    Effects with memory have none there, nor has the measuring chain, which makes something of rates of change only.
+    """
     parts = []
     for _, motion in _motions(fit, windows, way):
         blocks = [
             term.effect.columns(motion, term.shape)
-            if term.effect.rows == "sliding"
+            if term.effect.rows == "sliding" and not term.effect.pipeline
             else np.zeros((len(term.coefficients), len(motion.time_s)))
             for term in fit.terms
         ]

@@ -34,7 +34,7 @@ def left_over(gathered: Candidates) -> LeftOver:
     Near reversals a formula of memory that is nearly right leaves some in every stretch, so that nothing is asked to be
     constant there.
     """
-    dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.bases[WITH_CHAIN]
+    dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
     friction = gathered.fit.dry_friction
     steady = gathered.show_in == "sliding"
     remainder = remainder_of(dataset, base.residual / gathered.weights, rows)

@@ -33,7 +33,9 @@ def _partial_residual(gathered: Candidates, item: Evidence) -> tuple[FloatArray,
 
     The effect's whole column is drawn, not only its part that no other column explains: that is the shape one knows.
     """
-    base, columns = gathered.bases[item.block.base], item.block.columns
+    base, columns = gathered.as_measured(item.block.base), item.block.columns
+    if gathered.noise is not None:
+        columns = gathered.noise.as_measured(columns)
     projected = columns - base.basis @ (base.basis.T @ columns)
     coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
     curve = columns @ coefficients / gathered.weights

@@ -35,6 +35,10 @@ class Curves:
     def __init__(self, dataset: Dataset, weighted: Callable[[FloatArray], FloatArray]) -> None:
         self._dataset, self._weighted = dataset, weighted
 
+    def evened(self, noise: Noise) -> "Curves":
+        """The same, their blocks evened."""
+        return Curves(self._dataset, lambda columns: noise.evened(self._weighted(columns)))
+
     @cached_property
     def splines(self) -> dict[str, DriverBlock]:
         """By block name."""
@@ -56,7 +60,7 @@ class Candidates:
         show_in: which rows are tested.
         rows: tested, shape (N,).
         weights: of those rows, shape (n,).
-        bases: what blocks are judged on top of.
+        bases: what blocks are judged on top of; evened, as all blocks are, where the noise is known.
         named: blocks of catalogue effects, all shapes.
         curves: of every driver, free.
         left_out: effect name -> why it cannot be judged on these trials.
@@ -80,7 +84,28 @@ class Candidates:
     def with_columns(self, columns: FloatArray) -> "Candidates":
         """The same candidates judged on top of more columns, given over all rows, shape (N, k)."""
         tested = columns[self.rows] * self.weights[:, None]
+        if self.noise is not None:
+            tested = self.noise.evened(tested)
         return replace(self, bases=[base.extended(tested) for base in self.bases])
+
+    def evened(self, noise: Noise) -> "Candidates":
+        """The same candidates, judged against a noise: rows count by what it leaves sure."""
+        return replace(
+            self,
+            bases=[
+                Base.of(noise.evened(base.basis), noise.evened(base.residual[:, None])[:, 0]) for base in self.bases
+            ],
+            named=[replace(block, columns=noise.evened(block.columns)) for block in self.named],
+            curves=self.curves.evened(noise),
+            noise=noise,
+        )
+
+    def as_measured(self, index: int) -> Base:
+        """One of the bases on weighted rows, every one as it was measured."""
+        base = self.bases[index]
+        if self.noise is None:
+            return base
+        return Base.of(self.noise.as_measured(base.basis), self.noise.as_measured(base.residual[:, None])[:, 0])
 
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:

@@ -2,93 +2,143 @@
 
 A bound on how far chance goes needs the noise alone, so it is learnt from what is left once the best candidates are in
 the model. Residuals are coloured, by filters and by what drives them, so that how much a direction holds depends on how
-quickly it varies; one number of rows per independent row cannot say it (Priestley 1981, ch. 6).
+quickly it varies; one number of rows per independent row cannot say it (Priestley 1981, ch. 6). What friction makes of
+them lies along the path, and so lasts the longer the slower the motion: slow, middling and fast rows each have noise of
+their own colour, of one source (a filter that changes with the speed: Priestley 1965). Static friction scatters from
+stop to stop beside that (`stops`).
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.stats import f as fisher
 
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.screening.stops import StopToStop
 
 MEMORY_S = 2.0  # beyond which residuals are taken to be independent, as stretches are
+SPEEDS = 3  # kinds of rows, slow to fast, as many of each
 SHRINK_ROWS = 20  # a trial's own scale is drawn to that of all by so many rows
+STEADIEST = 0.1  # share of the noise, at any frequency, that is left to what does not last a stroke
+PASSES = 4  # of learning how much lasts a stroke, and what the rest is
 DRAWS = 9999
 
 
 @dataclass(frozen=True)
 class _Place:
-    """Where one trial's rows are: among all rows, and on the trial's even grid; and its noise over that of all."""
+    """Where one trial's rows are.
+
+    Attributes:
+        rows: among all rows.
+        grid: on the trial's even grid, from 0, shape (n,).
+        speed: kind of each row, 0 .. SPEEDS - 1, shape (n,).
+        power: of the trial's noise over that of all trials, of each kind, shape (SPEEDS,).
+    """
 
     rows: slice
-    grid: FloatArray
-    power: float
+    grid: IntArray
+    speed: IntArray
+    power: FloatArray
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Stationary noise of each trial's rows.
+    """Noise of each trial's rows, of one source, coloured by the speed; and from stop to stop.
 
     Attributes:
         places: of the trials.
-        autocovariance: by lag in rows, tapered to zero (Parzen), shape (lags,).
+        autocovariances: of each speed, by lag in rows, tapered to zero (Parzen), shape (SPEEDS, lags).
         known_from: independent stretches of MEMORY_S, less one: how well the noise is known.
         outweighed: what is missing is larger than the noise, so that what a formula leaves of it tells formulas apart
             better than the noise does.
+        strokes: between stops; None where static friction is not in the model.
+        from_stop_to_stop: variance of the factor of static friction.
+        evening: factors of strokes that make rows even, shape (S,); None where all are.
     """
 
     places: tuple[_Place, ...]
-    autocovariance: FloatArray
+    autocovariances: FloatArray
     known_from: int
     outweighed: bool
+    strokes: StopToStop | None = None
+    from_stop_to_stop: float = 0.0
+    evening: FloatArray | None = None
 
     @classmethod
-    def learnt(cls, dataset: Dataset, rows: BoolArray, residual: FloatArray, taken: int, before: float) -> "Noise":
+    def learnt(
+        cls,
+        dataset: Dataset,
+        rows: BoolArray,
+        left: tuple[FloatArray, FloatArray],
+        before: float,
+        strokes: StopToStop | None = None,
+    ) -> "Noise":
         """From what is left.
 
         Args:
             dataset: of the rows.
             rows: chosen, shape (N,).
-            residual: weighted, of the chosen rows, shape (n,).
-            taken: columns that were fitted to these rows.
+            left: basis (n, b) of what was fitted to the chosen rows, and the weighted residual (n,) that it left.
             before: power of what was left of these rows by the model alone.
+            strokes: of the chosen rows; None where static friction is not in the model.
         """
-        found, longest, start = [], 1, 0
-        for index, trial in enumerate(dataset.trials):
-            times_s = dataset.time_of(trial)
-            period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0
-            longest = max(longest, round(MEMORY_S / period_s))
-            chosen = rows[dataset.trial_index == index]
-            if chosen.any():
-                grid = np.round((times_s[chosen] - times_s[chosen][0]) / period_s).astype(np.int64)
-                found.append((slice(start, start + len(grid)), grid))
-                start += len(grid)
-        overall = float(np.mean(residual**2)) if len(residual) else 0.0
-        free = len(residual) / max(len(residual) - taken, 1)
-        places = tuple(_Place(own, grid, _power(residual[own], overall)) for own, grid in found)
-        autocovariance = free * _autocovariance([(residual[p.rows], p.grid) for p in places], longest)
+        basis, residual = left
+        found, longest = _places(dataset, rows, residual)
+        products, pairs = _products(((residual, place) for place in found), longest)
+        free = len(residual) / max(len(residual) - basis.shape[1], 1)
+        whole = _tapered(free * products, pairs)
         stretches = len(np.unique(dataset.block_index[rows]))
-        outweighed = before > 2.0 * overall * len(residual)
-        return cls(places, autocovariance, max(stretches - 1, 1), outweighed)
+        outweighed = before > 2.0 * float(residual @ residual)
+        noise = cls(tuple(found), whole, max(stretches - 1, 1), outweighed)
+        if strokes is None:
+            return noise
+        shared, _ = _products(((strokes.share, place) for place in _within(strokes, found)), longest)
+        cleared = strokes.scaled(residual[:, None], np.zeros(int(strokes.index.max()) + 1))[:, 0]
+        lasting_less, _ = _products(((cleared, place) for place in found), longest)
+        noise = replace(noise, autocovariances=_tapered(free * lasting_less, pairs))
+        variance = 0.0
+        for _ in range(PASSES):
+            variance = strokes.variance(basis, residual, noise.covariance)
+            noise = replace(noise, autocovariances=_less(whole, _tapered(variance * shared, pairs)))
+        if variance == 0.0:
+            return noise
+        evening = strokes.evening(variance, noise.covariance)
+        return replace(noise, strokes=strokes, from_stop_to_stop=variance, evening=evening)
+
+    def evened(self, values: FloatArray) -> FloatArray:
+        """Weighted rows of columns (n, k) as their evidence counts: of static friction in slow strokes, little."""
+        if self.strokes is None or self.evening is None:
+            return values
+        return self.strokes.scaled(values, self.evening)
+
+    def as_measured(self, values: FloatArray) -> FloatArray:
+        """What `evened` was given, from what it returned, (n, k)."""
+        if self.strokes is None or self.evening is None:
+            return values
+        return self.strokes.scaled(values, 1.0 / self.evening)
 
     def covariance(self, directions: FloatArray) -> FloatArray:
-        """Of what noise puts into each of the directions (n, k): shape (k, k)."""
+        """Of what noise puts into each of the directions (n, k) of evened rows: shape (k, k)."""
+        directions = self.evened(directions)
         total = np.zeros((directions.shape[1], directions.shape[1]))
         for place in self.places:
-            own = directions[place.rows]
-            span = int(place.grid[-1]) + 1
-            lags = min(len(self.autocovariance), span)
-            length = 2 * span
-            kernel = np.zeros(length)
-            kernel[:lags] = self.autocovariance[:lags]
-            kernel[length - lags + 1 :] = self.autocovariance[1:lags][::-1]
-            spread = np.zeros((length, own.shape[1]))
-            spread[place.grid] = own
-            spectrum = np.fft.rfft(spread, axis=0) * np.fft.rfft(kernel).real[:, None]
-            total += place.power * (own.T @ np.fft.irfft(spectrum, length, axis=0)[place.grid])
+            own, length = directions[place.rows], 2 * (int(place.grid[-1]) + 1)
+            passed = np.zeros((length // 2 + 1, own.shape[1]), dtype=complex)
+            for speed in np.unique(place.speed):
+                inside = place.speed == speed
+                spread = np.zeros((length, own.shape[1]))
+                spread[place.grid[inside]] = own[inside]
+                density = place.power[speed] * _spectrum(self.autocovariances[speed], length)
+                passed += np.sqrt(density)[:, None] * np.fft.rfft(spread, axis=0)
+            passed[1:-1] *= np.sqrt(2.0)  # negative frequencies, too
+            total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / length
+        if self.strokes is not None and self.from_stop_to_stop > 0.0:
+            sums = self.strokes.sums(directions)
+            total += self.from_stop_to_stop * (sums.T @ sums)
         symmetric: FloatArray = 0.5 * (total + total.T)
         return symmetric
 
@@ -125,25 +175,89 @@ def strength(share: FloatArray, covariance: FloatArray) -> float:
     return float(share @ np.linalg.lstsq(covariance, share, rcond=1e-9)[0])
 
 
-def _power(residual: FloatArray, overall: float) -> float:
-    if overall == 0.0:
-        return 1.0
-    return (float(residual @ residual) / overall + SHRINK_ROWS) / (len(residual) + SHRINK_ROWS)
+def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[list[_Place], int]:
+    """Places of the chosen rows, and how many rows MEMORY_S is at most."""
+    velocity = np.abs(dataset.rows_of([trial.motion.velocity for trial in dataset.trials])[rows])
+    speed = np.searchsorted(np.quantile(velocity, np.arange(1, SPEEDS) / SPEEDS), velocity)
+    overall = _power_by_kind(residual, speed) / np.maximum(np.bincount(speed, minlength=SPEEDS), 1)
+    found, longest, start = [], 1, 0
+    for index, trial in enumerate(dataset.trials):
+        times_s = dataset.time_of(trial)
+        period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0
+        longest = max(longest, round(MEMORY_S / period_s))
+        chosen = rows[dataset.trial_index == index]
+        if chosen.any():
+            grid = np.round((times_s[chosen] - times_s[chosen][0]) / period_s).astype(np.int64)
+            own = slice(start, start + len(grid))
+            found.append(_Place(own, grid, speed[own], _power(residual[own], speed[own], overall)))
+            start += len(grid)
+    return found, longest
 
 
-def _autocovariance(parts: list[tuple[FloatArray, FloatArray]], longest: int) -> FloatArray:
-    """Pooled over trials, of values (n,) on places (n,) of an even grid; lags of `longest` and more are none."""
-    products, pairs = np.zeros(longest), np.zeros(longest)
-    for values, grid in parts:
-        span = int(grid[-1]) + 1
-        filled = np.zeros((2, 2 * span))
-        filled[0, grid], filled[1, grid] = values, 1.0
-        spectra = np.abs(np.fft.rfft(filled, axis=1)) ** 2
+def _within(strokes: StopToStop, places: list[_Place]) -> Iterator[_Place]:
+    """The places cut at every stop."""
+    for place in places:
+        index = strokes.index[place.rows]
+        ends = [0, *(np.flatnonzero(np.diff(index)) + 1), len(index)]
+        for first, last in pairwise(int(end) for end in ends):
+            own = slice(place.rows.start + first, place.rows.start + last)
+            yield _Place(own, place.grid[first:last] - place.grid[first], place.speed[first:last], place.power)
+
+
+def _power_by_kind(residual: FloatArray, speed: IntArray) -> FloatArray:
+    return np.bincount(speed, residual**2, SPEEDS).astype(float)
+
+
+def _power(residual: FloatArray, speed: IntArray, overall: FloatArray) -> FloatArray:
+    """Of one trial's residual (n,) over that of all, by kind of row, drawn to 1; shape (SPEEDS,)."""
+    known = np.where(overall > 0.0, overall, 1.0)
+    count = np.bincount(speed, minlength=SPEEDS)
+    power: FloatArray = (_power_by_kind(residual, speed) / known + SHRINK_ROWS) / (count + SHRINK_ROWS)
+    return np.where(overall > 0.0, power, 1.0)
+
+
+def _products(parts: Iterator[tuple[FloatArray, _Place]], longest: int) -> tuple[FloatArray, FloatArray]:
+    """Sums of products of two values (n,) of one place and kind, by lag, and of how many; (SPEEDS, longest) each."""
+    products, pairs = np.zeros((SPEEDS, longest)), np.zeros((SPEEDS, longest))
+    for values, place in parts:
+        span = int(place.grid[-1]) + 1
         lags = min(longest, span)
-        found = np.fft.irfft(spectra, 2 * span, axis=1)[:, :lags]
-        products[:lags] += found[0]
-        pairs[:lags] += np.round(found[1])
+        for speed in np.unique(place.speed):
+            inside = place.speed == speed
+            filled = np.zeros((2, 2 * span))
+            filled[0, place.grid[inside]], filled[1, place.grid[inside]] = values[place.rows][inside], 1.0
+            spectra = np.abs(np.fft.rfft(filled, axis=1)) ** 2
+            found = np.fft.irfft(spectra, 2 * span, axis=1)[:, :lags]
+            products[speed, :lags] += found[0]
+            pairs[speed, :lags] += np.round(found[1])
+    return products, pairs
+
+
+def _tapered(products: FloatArray, pairs: FloatArray) -> FloatArray:
+    """Autocovariances (SPEEDS, lags) of sums of products; of the largest lag and more there is none (Parzen)."""
+    longest = products.shape[1]
     lag = np.arange(longest) / longest
     taper = np.where(lag <= 0.5, 1.0 - 6.0 * lag**2 * (1.0 - lag), 2.0 * (1.0 - lag) ** 3)
     tapered: FloatArray = taper * products / np.maximum(pairs, 1.0)
     return tapered
+
+
+def _less(whole: FloatArray, part: FloatArray) -> FloatArray:
+    """Autocovariances (SPEEDS, lags) without a part of them, still those of a noise: at no frequency below zero."""
+    lags = whole.shape[1]
+    kept = [
+        np.maximum(_spectrum(a - b, 2 * lags), STEADIEST * _spectrum(a, 2 * lags))
+        for a, b in zip(whole, part, strict=True)
+    ]
+    found: FloatArray = np.fft.irfft(np.array(kept), 2 * lags, axis=1)[:, :lags]
+    return found
+
+
+def _spectrum(autocovariance: FloatArray, length: int) -> FloatArray:
+    """Spectral density of an autocovariance (lags,) on so many places of an even grid, as rfft has it; none below 0."""
+    lags = min(len(autocovariance), length // 2)
+    kernel = np.zeros(length)
+    kernel[:lags] = autocovariance[:lags]
+    kernel[length - lags + 1 :] = autocovariance[1:lags][::-1]
+    density: FloatArray = np.maximum(np.fft.rfft(kernel).real, 0.0)
+    return density

@@ -1,5 +1,7 @@
 """Rest bounds the effort: a complete model holds, what is wrong at rest alone is found, with its side and its size."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -48,6 +50,17 @@ def test_a_bias_at_rest_that_sliding_does_not_have_is_found_on_its_side(bias):
     assert f"{'above' if bias > 0.0 else 'below'} only" in words
     assert "that is no friction" in words
     assert words in diagnose(fit).notes
+
+
+def test_an_encoder_off_its_centre_makes_nothing_of_rest():
+    geared = replace(HORIZONTAL, gear_ratio=20.0)
+    fit = fit_model(
+        make_dataset(ramp_recordings(), geared, Processing(cutoff_hz=12.0)), [*MODEL, "encoder_eccentricity"]
+    )
+    eccentric = next(term for term in fit.terms if term.effect.name == "encoder_eccentricity")
+    large = replace(eccentric, coefficients=np.full(len(eccentric.coefficients), 1.0))
+    off = replace(fit, terms=tuple(large if term is eccentric else term for term in fit.terms))
+    assert compare_at_rest(off).largest == pytest.approx(compare_at_rest(fit).largest)
 
 
 def test_an_offset_that_sliding_has_too_is_none():

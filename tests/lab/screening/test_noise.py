@@ -1,5 +1,6 @@
 """Noise that is learnt from what is left: its covariance, and chances that hold what they say."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,19 +10,29 @@ from scipy.signal import lfilter
 from compensator.lab.diagnosis.bursts import bursts_of
 from compensator.lab.screening.evidence import Base, Block, screen, screen_against_noise
 from compensator.lab.screening.noise import Noise
+from compensator.lab.screening.stops import StopToStop
 
 TRIALS, ROWS, PERIOD_S = 12, 120, 0.05  # 6 s each
+STROKE = 30  # rows between two stops
 
 
-def dataset() -> SimpleNamespace:
-    """As much of a dataset as noise and bursts look at."""
+def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
+    """As much of a dataset as noise and bursts look at; velocity of each trial."""
     time_s = PERIOD_S * np.arange(ROWS)
+    velocity = [speed()] * TRIALS if velocity is None else velocity
     return SimpleNamespace(
-        trials=tuple(range(TRIALS)),
+        trials=tuple(SimpleNamespace(motion=SimpleNamespace(velocity=one)) for one in velocity),
+        rows_of=np.concatenate,
         time_of=lambda _trial: time_s,
         trial_index=np.repeat(np.arange(TRIALS), ROWS),
         block_index=np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)]),
     )
+
+
+def speed() -> np.ndarray:
+    """Of one trial: strokes to and fro, the first two as slow as static friction lasts."""
+    way = np.sin(np.pi * (np.arange(ROWS) % STROKE + 0.5) / STROKE)
+    return np.repeat([0.1, -0.1, 3.0, -3.0], STROKE) * way
 
 
 def coloured(random: np.random.Generator, memory: float = 0.8) -> np.ndarray:
@@ -32,8 +43,26 @@ def coloured(random: np.random.Generator, memory: float = 0.8) -> np.ndarray:
 ALL = np.ones(TRIALS * ROWS, dtype=bool)
 
 
+NOTHING = np.zeros((TRIALS * ROWS, 0))
+
+
+STEADY = [np.full(ROWS, 0.1 + trial) for trial in range(TRIALS)]  # each trial of one speed
+
+
 def learnt(residual: np.ndarray) -> Noise:
-    return Noise.learnt(dataset(), ALL, residual, taken=1, before=float(residual @ residual))
+    return Noise.learnt(dataset(STEADY), ALL, (NOTHING, residual), before=float(residual @ residual))
+
+
+def from_stop_to_stop() -> StopToStop:
+    velocity = np.tile(speed(), TRIALS)
+    return StopToStop(np.sign(velocity) * np.exp(-np.abs(velocity)), np.arange(len(velocity)) // STROKE)
+
+
+def scattering(random: np.random.Generator, deviation: float) -> np.ndarray:
+    """Coloured noise, and static friction that is another one after every stop."""
+    strokes = from_stop_to_stop()
+    factor = deviation * random.standard_normal(TRIALS * ROWS // STROKE)
+    return 0.2 * coloured(random, 0.3) + strokes.share * factor[strokes.index]
 
 
 def test_the_covariance_of_a_direction_is_what_noise_puts_into_it():
@@ -51,7 +80,8 @@ def test_rows_left_out_count_for_nothing():
     random = np.random.default_rng(2)
     rows = random.random(len(ALL)) < 0.6
     residual = coloured(random)[rows]
-    noise = Noise.learnt(dataset(), rows, residual, taken=1, before=float(residual @ residual))
+    left = (np.zeros((len(residual), 0)), residual)
+    noise = Noise.learnt(dataset(STEADY), rows, left, before=float(residual @ residual))
     whole = learnt(coloured(random))
     share = np.ones((int(rows.sum()), 1)) / np.sqrt(rows.sum())
     assert float(noise.covariance(share)[0, 0]) == pytest.approx(
@@ -68,6 +98,71 @@ def test_noise_alone_is_as_strong_as_its_chance_says():
         p_values.append(screen_against_noise([base], blocks, learnt(base.residual)).p_value)
     assert np.mean(np.array(p_values) <= 0.05) <= 0.10
     assert np.mean(np.array(p_values) <= 0.5) == pytest.approx(0.5, abs=0.15)
+
+
+def test_slow_rows_have_noise_of_a_colour_of_their_own():
+    random = np.random.default_rng(8)
+    slow = np.tile(np.abs(speed()) <= np.quantile(np.abs(speed()), 1.0 / 3.0), TRIALS)
+    ramps = np.tile(np.linspace(-1.0, 1.0, STROKE), TRIALS * ROWS // STROKE)
+    directions = np.column_stack([one / np.linalg.norm(one) for one in (ramps * slow, ramps * ~slow, ramps)])
+
+    def noise() -> np.ndarray:
+        return np.where(slow, coloured(random, 0.9), random.standard_normal(len(ALL)))
+
+    shares = np.array([directions.T @ noise() for _ in range(400)])
+    found = []
+    for _ in range(20):
+        residual = noise()
+        one = Noise.learnt(dataset(), ALL, (NOTHING, residual), before=float(residual @ residual))
+        found.append(np.diag(one.covariance(directions)))
+    assert np.mean(found, axis=0) == pytest.approx(shares.var(axis=0), rel=0.25)
+    assert np.mean(found, axis=0)[0] > 3.0 * np.mean(found, axis=0)[1]
+
+
+def test_how_much_static_friction_differs_from_stop_to_stop_is_learnt():
+    random = np.random.default_rng(6)
+    for deviation in (0.0, 0.1, 0.3):
+        residuals = [scattering(random, deviation) for _ in range(8)]
+        left = [(NOTHING, residual) for residual in residuals]
+        noises = [Noise.learnt(dataset(), ALL, one, before=1.0, strokes=from_stop_to_stop()) for one in left]
+        found = np.sqrt(np.mean([noise.from_stop_to_stop for noise in noises]))
+        assert found == pytest.approx(deviation, abs=0.03, rel=0.25)
+
+
+def test_what_differs_between_slow_strokes_is_no_evidence_for_what_differs_between_trials():
+    random = np.random.default_rng(7)
+    strokes = from_stop_to_stop()
+    warmth = np.repeat(np.linspace(-1.0, 1.0, TRIALS), ROWS)
+    blocks = [Block("warmth", (strokes.share * warmth)[:, None], 0, 1)]
+    p_values: dict[bool, list[float]] = {True: [], False: []}
+    for _ in range(60):
+        base = Base.of(strokes.share[:, None], scattering(random, 0.3))
+        left = (base.basis, base.residual)
+        for known, found in p_values.items():
+            noise = Noise.learnt(dataset(), ALL, left, before=1.0, strokes=strokes if known else None)
+            even = Base.of(noise.evened(base.basis), noise.evened(base.residual[:, None])[:, 0])
+            evened = [replace(block, columns=noise.evened(block.columns)) for block in blocks]
+            found.append(screen_against_noise([even], evened, noise).p_value)
+    assert np.mean(np.array(p_values[True]) <= 0.05) <= 0.10
+    assert np.mean(np.array(p_values[True]) <= 0.5) == pytest.approx(0.5, abs=0.15)
+    assert np.mean(np.array(p_values[False]) <= 0.05) > 0.15  # else this test shows nothing
+
+
+def test_what_fast_rows_tell_of_friction_stands_beside_static_friction_that_scatters():
+    random = np.random.default_rng(9)
+    strokes = from_stop_to_stop()
+    warmth = np.repeat(np.linspace(-1.0, 1.0, TRIALS), ROWS)
+    way = np.sign(np.tile(speed(), TRIALS))  # all of dry friction: static friction in slow strokes, Coulomb's in fast
+    block = Block("warmth", (way * warmth)[:, None], 0, 1)
+    noise = Noise.learnt(dataset(), ALL, (NOTHING, scattering(random, 0.3)), before=1.0, strokes=strokes)
+    deviations = []
+    for evened in (lambda values: values, noise.evened):
+        direction = evened(block.columns)
+        share = np.linalg.solve(direction.T @ direction, direction.T)
+        scatter = [share @ evened(scattering(random, 0.3)[:, None]) for _ in range(40)]
+        deviations.append(float(np.std(scatter)))
+    assert deviations[1] < 0.6 * deviations[0]
+    assert noise.as_measured(noise.evened(block.columns)) == pytest.approx(block.columns)
 
 
 def test_what_three_stretches_hold_is_found_where_flips_cannot():
