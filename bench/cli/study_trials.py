@@ -121,8 +121,7 @@ class _Running:
             self.rounds[-1].update(extended=extended, diagnosis=diagnose(store, self._study_id))
         self._model_id = None  # the newest, from now on
         if not self._quiet:
-            tables.extended(extended)
-            say(self.rounds[-1]["diagnosis"]["sentence"])
+            tables.extended(extended)  # what it says comes with the next suggestion, or at the end
 
     def _note(self, found: "Experiment | None", outcome: str, reason: str) -> None:
         number = None if found is None else found.id
