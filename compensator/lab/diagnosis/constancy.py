@@ -19,8 +19,8 @@ from compensator.lab.rows.dataset import Dataset, IntArray
 from compensator.lab.screening.evidence import Base, inflation_of
 
 FEWEST_ROWS = 8  # of a stretch
-CHANCE = 1e-4  # of so much change in noise alone: friction scatters along its path, too, which moments do not know of
-LEAST_SHARE = 0.002  # of dry friction: what changes less is of no use to know
+CHANCE = 1e-4  # of so much change in noise alone
+LEAST_SHARE = 0.004  # of dry friction: what scatters by 2 % over 0.05 rad leaves so much of a mean over some 2 rad
 MOST_STATIC = 0.05  # share of dry friction, in a stroke: it scatters by some percent, of which this is next to nothing
 NEGLIGIBLE = 1e-6  # share of a column's power that the stretches leave: the base's own constants are sums of theirs
 
