@@ -11,7 +11,7 @@ from typing import Literal
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import Fit, fit_effects
+from compensator.lab.model.fit import Fit, fit_effects, widened
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 
@@ -114,7 +114,8 @@ def _drops(start: Fit, fit: Fit) -> list[Step]:
     for name in [name for name in fit.names if name not in start.names][:-1]:
         without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
         rows = fit.dataset.choice_for([effect_named(name)])
-        if held_out_gain(held_out(without, rows), held_out(fit, rows)).low <= 0.0:
+        alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
+        if held_out_gain(held_out(alike, rows), held_out(fit, rows)).low <= 0.0:
             fit = without
             steps.append(_step("drop", name, None, fit))
     return steps
