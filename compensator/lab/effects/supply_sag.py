@@ -12,9 +12,9 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
 
 
 def discrepancy(motion: Motion, _: Shape) -> FloatArray:
-    """What else the duty holds, the back-EMF: the first two terms of D^2 i with D U = R i + k_e w."""
+    """What else the duty holds, the back-EMF: the other terms of D^2 i with D U = R i + k_e w."""
     share = _of_largest(motion)
-    return np.array([motion.velocity * share**2, motion.velocity * np.abs(motion.velocity) * share])
+    return np.array([motion.velocity * share**2, motion.velocity**2 * share])
 
 
 def _of_largest(motion: Motion) -> FloatArray:
