@@ -68,6 +68,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _share("two effects of r >= 0.3, both and no other", 0.85, pairs, _is_exact),
         _mean("two effects of r >= 0.3, recall", "at least 95 %", [_recall(one) for one in pairs], 0.95),
         *_outside(answered),
+        *_withheld(singles),
         _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
         _share("the same, where two were named and no other", 0.05, exact, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
@@ -110,6 +111,22 @@ def _outside(answered: Sequence[Result]) -> list[Figure]:
     return [
         _share("outside the catalogue, flagged, r 0.3 .. 0.6", 0.8, middle, _flagged),
         _share("outside the catalogue, flagged, r >= 0.6", 0.95, large, _flagged),
+    ]
+
+
+def _withheld(singles: Sequence[Result]) -> list[Figure]:
+    """What the catalogue knows, asked as if it did not: whatever the lab names, it has to say that this is not all."""
+    asked = [one for one in singles if one.withheld is not None]
+
+    def says_so(one: Result) -> bool:
+        assert one.withheld is not None
+        return one.withheld.unknown
+
+    middle = [one for one in asked if 0.3 <= _standing(one).ratio < 0.6]
+    large = [one for one in asked if _standing(one).ratio >= 0.6]
+    return [
+        _share("withheld from the catalogue, flagged, r 0.3 .. 0.6", 0.8, middle, says_so),
+        _share("withheld from the catalogue, flagged, r >= 0.6", 0.95, large, says_so),
     ]
 
 

@@ -37,6 +37,7 @@ class Family:
         ratios: r of what is hidden, drawn from here (log), by scaling its size; None: it is what the size makes it.
         memory: recorded by motions that show what happens at rest and at reversals.
         imperfect: late, jittered and lossy recordings.
+        withheld: asked once more, as if the catalogue had no name for what is hidden.
         settled: recorded in a few trials; then the lab's own suggestions are recorded too.
     """
 
@@ -49,6 +50,7 @@ class Family:
     imperfect: bool = False
     settled: bool = False
     ratios: tuple[float, float] | None = None
+    withheld: bool = False
 
 
 FAMILIES: dict[str, Family] = {
@@ -56,7 +58,7 @@ FAMILIES: dict[str, Family] = {
     for family in (
         Family("complete", 2, (), 0),
         Family("imperfect", 1, (), 0, imperfect=True),
-        Family("single", 3, SINGLE, 1),
+        Family("single", 3, SINGLE, 1, withheld=True),
         Family("pair", 3, SINGLE, 2, LARGE),
         Family("outside", 1, OUTSIDE, 1, LARGE),
         Family("memory", 1, MEMORY, 1, LARGE, memory=True),

@@ -12,7 +12,7 @@ from bench.blind.rivals import RIVALS
 from bench.blind.settling import Settled, settle
 from bench.challenge.names import accepted
 from bench.challenge.owner import rig_of
-from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
 from compensator.lab.model.fit import Fit, fit_effects, widened
@@ -34,6 +34,7 @@ class Result:
         oracle_error: held-out, of the model with the truth in it.
         rivals: rival -> what it names.
         seconds: that the lab took.
+        withheld: answer of the lab to the same data where the catalogue has no name for the truth; None: not asked.
         settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
     """
 
@@ -50,6 +51,7 @@ class Result:
     seconds: float = 0.0
     refusal: str = ""
     settled: Settled | None = None
+    withheld: LabAnswer | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Nested dicts."""
@@ -61,11 +63,8 @@ class Result:
         made: dict[str, Any] = {
             key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
         }
-        if values["answer"] is not None:
-            answer = values["answer"]
-            named = tuple(tuple(names) for names in answer["named"])
-            lists = {name: tuple(answer[name]) for name in ("first", "ranked") if answer.get(name) is not None}
-            made["answer"] = LabAnswer(**{**answer, **lists, "named": named})
+        for which in ("answer", "withheld"):
+            made[which] = None if values.get(which) is None else LabAnswer.from_json(values[which])
         made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
         made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
         made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
@@ -93,6 +92,7 @@ def judge(item: Item) -> Result:
         standings, error = _oracle(fit, gathered, names)
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
         more_left = unexplained(item, found) if names == ("",) else None
+        unlisted = _unlisted(fit, truths) if FAMILIES[item.family].withheld else None
         settled = settle(bench_for(item, drawn), recordings, fit, names[0]) if FAMILIES[item.family].settled else None
     except LabError as refusal:
         empty = (None,) * len(truths)
@@ -101,8 +101,17 @@ def judge(item: Item) -> Result:
         )
     return Result(
         item.key, item.family, truths, names, sizes, answer, standings, more_left, error, rivals, seconds,
-        settled=settled,
+        settled=settled, withheld=unlisted,
     )  # fmt: skip
+
+
+def _unlisted(fit: Fit, truths: tuple[str, ...]) -> LabAnswer | None:
+    """What the lab says of a mechanism that it knows, as if nobody had written it yet."""
+    names = [name for truth in truths for name in accepted(truth)]
+    if not names:
+        return None
+    with withheld(names):
+        return ask_lab(fit, several=False)
 
 
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:

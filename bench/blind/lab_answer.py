@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from bench.rig import Rig
 from bench.study.material import facts_of
@@ -41,6 +42,13 @@ class LabAnswer:
     detectability: float
     error: float
     ranked: tuple[str, ...] | None = None
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> "LabAnswer":
+        """From a dict of lists."""
+        named = tuple(tuple(names) for names in values["named"])
+        lists = {name: tuple(values[name]) for name in ("first", "ranked") if values.get(name) is not None}
+        return cls(**{**values, **lists, "named": named})
 
 
 def base_fit(recordings: Sequence[Recording], rig: Rig) -> Fit:

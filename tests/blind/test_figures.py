@@ -52,6 +52,29 @@ def test_what_must_be_named_and_what_must_not() -> None:
     assert _figure(results, "over the oracle's, mean").measured == pytest.approx(1.05)
 
 
+def test_what_was_withheld_has_to_be_flagged_whatever_is_named_instead() -> None:
+    def asked(ratio: float, withheld: LabAnswer | None) -> Result:
+        return replace(_result("single", "spring", ("spring",), ratio, 9.0), withheld=withheld)
+
+    wrong_and_flagged = LabAnswer("missing", ("cogging",), (("cogging",),), True, 0.001, 9.0, 0.03)
+    wrong = replace(wrong_and_flagged, unknown=False)
+    results = [
+        asked(0.4, wrong_and_flagged),
+        asked(0.4, wrong),
+        asked(0.9, wrong_and_flagged),
+        asked(0.1, wrong),  # too little to be asked for
+        asked(0.9, None),  # of a run by an older version
+    ]
+    middle, large = (
+        _figure(results, "withheld from the catalogue, flagged, r 0.3"),
+        _figure(results, "flagged, r >= 0.6"),
+    )
+    assert (middle.items, middle.measured) == (2, 0.5)
+    assert _figure(results, "withheld from the catalogue, flagged, r >= 0.6").items == 1
+    assert large.items == 0  # of nothing that the catalogue does not have
+    assert Result.from_json(json.loads(json.dumps(results[0].to_json()))) == results[0]
+
+
 def test_what_theory_cannot_find_in_so_few_rows_is_counted_apart() -> None:
     hard = replace(_result("single", "spring", (), 0.2, 2.0), standings=(Standing(0.2, 2.0, "cogging", 0.25),))
     results = [_result("single", "spring", ("spring",), 0.3, 9.0), hard]

@@ -1,7 +1,9 @@
 """The catalogue of effects: ours, and those that other packages offer as entry points."""
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from importlib.metadata import entry_points
 
@@ -117,7 +119,21 @@ def default_effects(facts: Facts) -> tuple[str, ...]:
     return ("inertia", *gravity_names, "offset", "coulomb", "viscous", "stribeck")
 
 
+_WITHHELD: ContextVar[frozenset[str]] = ContextVar("withheld", default=frozenset())
+
+
+@contextmanager
+def withheld(names: Iterable[str]) -> Iterator[None]:
+    """Within this, effects of these names are no candidates: what would the lab say if nobody had written them yet?"""
+    token = _WITHHELD.set(_WITHHELD.get() | frozenset(names))
+    try:
+        yield
+    finally:
+        _WITHHELD.reset(token)
+
+
 def candidates(present: Sequence[str], facts: Facts) -> list[Effect]:
     """Effects of the catalogue that a model does not have yet and that this joint can have."""
     impossible = {"gravity", "centre_of_mass_angle"} if facts.horizontal or facts.joint == "linear" else set()
-    return [effect for name, effect in catalogue().items() if name not in present and name not in impossible]
+    unknown = {*present, *impossible, *_WITHHELD.get()}
+    return [effect for name, effect in catalogue().items() if name not in unknown]

@@ -6,7 +6,7 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects import catalogue as module
-from compensator.lab.effects.catalogue import candidates, catalogue, default_effects, effect_named
+from compensator.lab.effects.catalogue import candidates, catalogue, default_effects, effect_named, withheld
 from compensator.lab.errors import NotApplicableError, UnknownEffectError
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.facts import Facts
@@ -100,3 +100,16 @@ def test_an_effect_that_the_trials_cannot_show_says_why(effect, temperature_c, w
         dataset.check_applicable(effect_named(effect))
     with pytest.raises(NotApplicableError, match=words):
         fit_model(dataset, ["viscous", effect])
+
+
+def test_what_is_withheld_is_no_candidate_and_comes_back():
+    def names() -> set[str]:
+        return {effect.name for effect in candidates((), FACTS)}
+
+    everything = names()
+    with withheld(["spring"]):
+        with withheld(["cogging"]):
+            assert names() == everything - {"spring", "cogging"}
+        assert names() == everything - {"spring"}
+        assert effect_named("spring").name == "spring"  # who knows it may still fit it
+    assert names() == everything
