@@ -21,6 +21,7 @@ from compensator.lab.screening.evidence import Base, inflation_of
 FEWEST_ROWS = 8  # of a stretch
 CHANCE = 1e-4  # of so much change in noise alone
 LEAST_SHARE = 0.004  # of dry friction: what scatters by 2 % over 0.05 rad leaves so much of a mean over some 2 rad
+LEAST_OF_EFFORT = 0.005  # as little, of all that the motor gives, is nothing to repeat a trial for
 MOST_STATIC = 0.05  # share of dry friction, in a stroke: it scatters by some percent, of which this is next to nothing
 NEGLIGIBLE = 1e-6  # share of a column's power that the stretches leave: the base's own constants are sums of theirs
 
@@ -41,7 +42,7 @@ class Change:
     what: str
     chance: float
     share: float
-    least: float = LEAST_SHARE
+    least: float = LEAST_OF_EFFORT
 
     @property
     def is_there(self) -> bool:
@@ -76,7 +77,8 @@ def change_of(
         _change(what, beside, slow.taken_out(column[:, None])[:, 0], stretch, len(labels), power, moments)
         for what, column in constants.items()
     ]
-    least = LEAST_SHARE * friction / max(rms(dataset.effort[rows]), np.finfo(float).tiny)
+    of_friction = LEAST_SHARE * friction / max(rms(dataset.effort[rows]), np.finfo(float).tiny)
+    least = max(of_friction, LEAST_OF_EFFORT)
     judged = [replace(change, least=least) for change in found if change is not None]
     there = [change for change in judged if change.is_there]
     return max(there, key=lambda change: change.share, default=None)
