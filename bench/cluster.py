@@ -52,5 +52,9 @@ def cluster_executor(address: str) -> Iterator[tuple[Executor, int]]:
             raise ClusterError(
                 f"cluster {address}: it has no worker; start some with 'dask worker {address} --nthreads 1'"
             ) from error
-        with client.get_executor(pure=False) as executor:
+        executor = client.get_executor(pure=False)
+        try:
             yield executor, max(1, sum(client.nthreads().values()))
+        finally:
+            # what was wanted has come; an item whose worker was lost may never end for Dask, and nobody waits for it
+            executor.shutdown(wait=False)

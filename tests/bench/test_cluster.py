@@ -2,6 +2,7 @@
 
 import os
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,11 @@ def _takes_its_worker_with_it_once(mark: Path) -> int:
         mark.touch()
         os._exit(1)
     return len(mark.name)
+
+
+def _after(seconds: float) -> float:
+    time.sleep(seconds)
+    return seconds
 
 
 def test_results_are_those_of_this_machine_in_the_same_order(address):
@@ -86,3 +92,12 @@ def test_diagnoses_are_the_same_as_here(address, tmp_path):
         there = diagnose_many(store, made, lambda *done: shown.append(done), cluster=address)
         assert there == diagnose_many(store, made, lambda *_: None, workers=1)
         assert shown[-1] == (2, 2)
+
+
+def test_who_leaves_early_does_not_wait_for_what_still_runs(address):
+    """Last in this file: a worker of its cluster is busy for a while afterwards."""
+    results = as_they_end(_after, [0.0, 30.0], cluster=address)
+    assert next(results) == 0.0
+    began = time.monotonic()
+    results.close()
+    assert time.monotonic() - began < 20.0
