@@ -57,7 +57,7 @@ class Supply(Section):
     """Supply of the PWM stage."""
 
     voltage_v: Positive | None = None
-    is_nominal: bool = False  # the drive does not measure it: recordings hold this number, whatever the load does to it
+    is_nominal: bool | None = None  # true: nobody measures it, and recordings hold this number whatever the load does
 
 
 class Effort(Section):
