@@ -9,6 +9,7 @@ from tests.calibration.conftest import SEARCH, SWEEP
 pytestmark = pytest.mark.browser
 # the simulated joint's friction grows with its load; the first model of a study does not know that
 TOLD = {"loads_kg": [0.0, 0.05, 0.1], "waveforms": ["multisine"], "duration_s": 6, "repeats": 2}
+LOADED = re.compile("(Load|Weight)-dependent friction")  # so few trials may call it by either formula
 
 
 @pytest.fixture(scope="module")
@@ -37,13 +38,13 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
 
     page.get_by_role("link", name="All studies").click()
     page.get_by_label(f"{excited}: excitation").check()
-    held.get_by_label("0.05 kg").check()
+    held.get_by_label("2", exact=True).check()
     page.get_by_label("Name").fill("simulated")
     page.get_by_role("button", name="Create study").click()
-    page.get_by_text("4 training trials, 2 held out").wait_for()
+    page.get_by_text("3 training trials, 3 held out").wait_for()
     page.get_by_role("button", name="Diagnose").click()
     named = page.locator("article").filter(has_text="candidate")
-    named.filter(has_text="Load-dependent friction").first.wait_for()
+    named.filter(has_text=LOADED).first.wait_for()
 
     page.get_by_role("button", name="Suggest trials").click()
     page.get_by_role("button", name="Queue all of them").click()
@@ -55,14 +56,14 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
         deadline -= 1
         assert deadline, queue
     page.get_by_role("button", name="Add the recorded trials to the study").click()
-    page.get_by_text(re.compile(r"^([5-9]|\d\d) training trials, 2 held out")).wait_for()
+    page.get_by_text(re.compile(r"^([4-9]|\d\d) training trials, \d+ held out")).wait_for()
 
     page.get_by_role("button", name="Record the next round").click()
     page.get_by_text(re.compile(r"\d in the queue\. When they have ended|Nothing is queued")).wait_for()
     service.client.delete("/queue").raise_for_status()
 
     page.get_by_role("button", name="Diagnose").click()
-    named.filter(has_text="Load-dependent friction").first.get_by_role("button", name="Add").click()
+    named.filter(has_text=LOADED).first.get_by_role("button", name="Add").click()
     page.get_by_role("button", name="Undo this change").wait_for()
     *_, before, after = held_out_errors(page)
     assert after < before
