@@ -189,7 +189,8 @@ def _sentence(refinement: Refinement, unit: str) -> str:
     return (
         f"Refined in {refinement.passes} passes: in closed loop the error of the position goes from "
         f"{judged[0].position:.3g} to {judged[1].position:.3g} {unit}, that of the effort from "
-        f"{judged[0].effort_relative:.2%} to {judged[1].effort_relative:.2%}, {kind}."
+        f"{judged[0].effort_relative:.2%} to {judged[1].effort_relative:.2%}, {kind}. "
+        + ("It helps." if judged[1].effort < judged[0].effort else "It does not help there: least squares are better.")
     )
 
 

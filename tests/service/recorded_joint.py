@@ -5,6 +5,8 @@ import zipfile
 
 import numpy as np
 
+from tests.service.running_service import RunningService
+
 RIG = 'name = "known joint"\nhorizontal = true\n'
 INERTIA_KG_M2, VISCOUS_N_M_S, ASYMMETRY_N_M_S, COULOMB_N_M, NOISE_N_M = 0.02, 0.03, 0.012, 0.05, 0.004
 RATE_HZ, DURATION_S = 200.0, 8.0
@@ -39,3 +41,11 @@ def _trial(amplitude_rad: float, seed: int) -> str:
     torque += COULOMB_N_M * np.sign(velocity) + NOISE_N_M * random.standard_normal(len(time_s))
     lines = [f"{row[0]:.4f},{row[1]!r},{row[2]!r}" for row in np.column_stack([time_s, position, torque]).tolist()]
     return "time_s,position_rad,torque_n_m\n" + "\n".join(lines) + "\n"
+
+
+def study_path(service: RunningService, name: str) -> str:
+    """Import the set, make a study of it, and return the study's path."""
+    headers = {"Content-Type": "application/zip"}
+    made = service.client.post(f"/recording-sets?name={name}", content=recording_set_zip(), headers=headers).json()
+    body = {"name": name, "experiment_ids": [made["experiment_id"]]}
+    return f"/studies/{service.client.post('/studies', json=body).json()['study_id']}"

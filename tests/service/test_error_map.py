@@ -2,15 +2,12 @@
 
 import pytest
 
-from tests.service.recorded_joint import recording_set_zip
+from tests.service.recorded_joint import study_path
 
 
 @pytest.fixture(scope="module")
 def path(service) -> str:
-    headers = {"Content-Type": "application/zip"}
-    answer = service.client.post("/recording-sets?name=mapped+joint", content=recording_set_zip(), headers=headers)
-    body = {"name": "map", "experiment_ids": [answer.json()["experiment_id"]]}
-    return f"/studies/{service.client.post('/studies', json=body).json()['study_id']}"
+    return study_path(service, "mapped")
 
 
 def test_a_cell_of_the_map_leads_to_its_moments(service, path):

@@ -4,7 +4,7 @@ import { get } from "./api.js";
 import { facts, h, panel, replace, table } from "./dom.js";
 import { errorMap } from "./errormap.js";
 import { closedLoop } from "./closedloop.js";
-import { chance, conditions, interval, nameOf, number, percent } from "./format.js";
+import { chanceCell, conditions, interval, nameOf, number, percent } from "./format.js";
 import { momentList } from "./moments.js";
 import { band, colour, draw } from "./plot.js";
 import { attempt } from "./problem.js";
@@ -90,7 +90,7 @@ function restTable({ at_rest: atRest, effort }) {
     { title: "Side", cell: (one) => one.side },
     { title: "Outside", number: true, cell: (one) => percent(one.outside) },
     { title: `Largest [${effort.unit}]`, number: true, cell: (one) => number(one.largest, 3) },
-    { title: "p", number: true, cell: (one) => chance(one.p_value) },
+    { title: "p", number: true, cell: (one) => chanceCell(one.p_value) },
     { title: "Surest in", cell: (one) => one.trial },
   ], atRest.sides), h("p", { class: "soft" }, atRest.sentence)];
 }

@@ -66,7 +66,13 @@ export function when(iso) {
 
 const LEAST_P = 0.001; // stands for that and less: no smaller chance can be known
 
-export function chance(p) {
+// of a table whose heading says p
+export function chanceCell(p) {
   if (p === null || p === undefined) return "–";
-  return p <= LEAST_P ? `≤ ${LEAST_P}` : `= ${number(p, 2)}`;
+  return p <= LEAST_P ? `≤ ${LEAST_P}` : number(p, 2);
+}
+
+// behind "p", in a sentence
+export function chance(p) {
+  return p === null || p === undefined || p <= LEAST_P ? chanceCell(p) : `= ${chanceCell(p)}`;
 }

@@ -111,21 +111,23 @@ def compare_coefficients(fit: Fit, coefficients: Fit, laws: Laws | None = None) 
     return LoopComparison(
         trials=trials,
         training=_error([pair for pair, known in zip(pairs, seen, strict=True) if known], dataset),
-        held_out=_error(outside, dataset) if outside else _in_turn(fit, coefficients, told),
+        held_out=_error(outside, dataset) if outside else _in_turn(fit, coefficients, told, pairs),
         left_out=tuple(term.effect.name for term in fit.terms if term.effect.pipeline),
     )
 
 
-def _in_turn(fit: Fit, coefficients: Fit, told: Laws) -> LoopError | None:
-    """Each trial with the coefficients that all others give; None where there are too few of them."""
-    rows = coefficients.dataset.trial_index[coefficients.training]
-    labels = np.unique(rows)
+def _in_turn(fit: Fit, coefficients: Fit, told: Laws, runs: Sequence[tuple[Trial, Simulated]]) -> LoopError | None:
+    """Each trial with the coefficients that all others give; None where there are too few of them.
+
+    A trial of which no row was fitted is unknown to the coefficients as it is.
+    """
+    labels = np.unique(coefficients.dataset.trial_index[coefficients.training])
     if len(labels) < FEWEST_TRIALS:
         return None
-    pairs = []
+    pairs = list(runs)
     for label, values in zip(labels.tolist(), without_each(coefficients), strict=True):
         trial = fit.dataset.trials[label]
-        pairs.append((trial, simulate(with_terms(fit, values), trial, told[label])))
+        pairs[label] = trial, simulate(with_terms(fit, values), trial, told[label])
     return _error(pairs, fit.dataset)
 
 

@@ -1,5 +1,7 @@
 """Errors of motion and effort in closed loop, and coefficients refined by them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,18 @@ def test_each_trial_in_turn_is_unknown_to_the_coefficients(fit):
     compared = compare_in_loop(mixed)
     assert compared.held_out is not None
     assert compared.held_out.effort > 1.05 * compared.training.effort
+
+
+def test_a_trial_that_was_never_fitted_is_judged_too(fit):
+    """Errors held out and of training are of the same trials, though one holds no row that counts."""
+    trials = tuple(_without_rows(trial, index == 2) for index, trial in enumerate(fit.dataset.trials))
+    compared = compare_in_loop(fit_model(replace(fit.dataset, trials=trials, cache={}), MODEL))
+    assert compared.held_out is not None
+    assert compared.held_out.samples == compared.training.samples
+
+
+def _without_rows(trial, wanted):
+    return replace(trial, picked=trial.picked[:0], regime=trial.regime[:0]) if wanted else trial
 
 
 def test_too_few_trials_are_not_held_out():
