@@ -1,5 +1,6 @@
 """The commissioning move: two small pushes that tell whether a drive's signs and scales are those of the joint."""
 
+from collections.abc import Iterator
 from functools import partial
 from math import ceil
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 from bench.configuration import BenchConfiguration
 from bench.cycle import OFF, Procedure, Reading
 from bench.errors import ExperimentError, LimitError, quantity_message
-from bench.experiments.commissioning_checks import Push, findings
+from bench.experiments.commissioning_checks import Finding, Push, findings
 from bench.experiments.conditions import conditions
 from bench.experiments.joint import Joint, Part
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
@@ -17,6 +18,7 @@ from bench.quantities import quantity
 from drivers.contract import Command, Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
+LONGEST_RAD = 0.6
 STILL_CYCLES = 10
 NAME = "commissioning"
 
@@ -24,7 +26,13 @@ NAME = "commissioning"
 class CommissioningParameters(Parameters):
     """Parameters of the commissioning move."""
 
-    excursion_rad: float = quantity(0.15, "rad", "Way of each push, after which the power is taken away", gt=0, le=0.5)
+    excursion_rad: float = quantity(
+        0.15,
+        "rad",
+        "Way of each push, after which the power is taken away; longer where it does not tell",
+        gt=0,
+        le=0.5,
+    )
     rate_a_s: float = quantity(0.3, "A/s", "How fast the current rises until the joint moves", gt=0, le=10)
     coast_s: float = quantity(3.0, "s", "Longest wait for the joint to stand again", gt=0, le=30)
 
@@ -57,10 +65,15 @@ def commission(parameters: CommissioningParameters, configuration: BenchConfigur
     """
     joint = Joint(configuration)
     yield from joint.wake()
-    forward = yield from _push(joint, 1, parameters, configuration)
-    back = yield from _push(joint, -1, parameters, configuration)
-    pushes = (forward, back)
-    found = findings(pushes, configuration.rig)
+    pushes: list[Push] = []
+    found: list[Finding] = []
+    for longer in _lengthened(parameters, configuration):
+        forward = yield from _push(joint, 1, longer, configuration)
+        back = yield from _push(joint, -1, longer, configuration)
+        pushes = [forward, back]
+        found = findings(pushes, configuration.rig)
+        if not any(finding.asks_for_more for finding in found):
+            break
     wrong = [f"{finding.name}: {finding.sentence}" for finding in found if finding.passed is False]
     if wrong:
         raise ExperimentError("; ".join(wrong))
@@ -70,6 +83,22 @@ def commission(parameters: CommissioningParameters, configuration: BenchConfigur
         "not_checked": [finding.name for finding in found if finding.passed is None],
         "sentences": [f"{finding.name}: {finding.sentence}" for finding in found],
     }
+
+
+def _lengthened(
+    parameters: CommissioningParameters, configuration: BenchConfiguration
+) -> Iterator[CommissioningParameters]:
+    """As asked, then twice and four times as far, as long as the limits leave room.
+
+    Encoder counts four times too large end a push after a quarter of the way, too slow to be told by it.
+    """
+    yield parameters
+    limits = configuration.limits
+    room_rad = min(limits.position_max_rad, -limits.position_min_rad) - MARGIN_RAD
+    for factor in (2.0, 4.0):
+        excursion_rad = factor * parameters.excursion_rad
+        if excursion_rad <= min(room_rad, LONGEST_RAD):
+            yield parameters.model_copy(update={"excursion_rad": excursion_rad})
 
 
 def _push(

@@ -22,11 +22,13 @@ class Finding(NamedTuple):
         name: "sign", "velocity", "current", "ratio".
         passed: None where the drive does not measure what it takes.
         sentence: what was found, what is wanted, and what to correct.
+        asks_for_more: whether a longer push would tell, as the joint gets faster on it.
     """
 
     name: str
     passed: bool | None
     sentence: str
+    asks_for_more: bool = False
 
 
 class Push(NamedTuple):
@@ -106,7 +108,8 @@ def check_ratio(pushes: Sequence[Push], rig: Rig) -> Finding:
     matrix = np.column_stack([current_a, motor_rad_s])
     (found_ohm, found_v_s_rad), *_ = np.linalg.lstsq(matrix, voltage_v, rcond=None)
     if np.max(np.abs(found_v_s_rad * motor_rad_s)) < LEAST_SHARE * np.max(np.abs(voltage_v)):
-        return Finding("ratio", None, "not checked: the joint did not get fast enough for its back-EMF to show")
+        sentence = "not checked: the joint did not get fast enough for its back-EMF to show; ask for a longer excursion"
+        return Finding("ratio", None, sentence, asks_for_more=True)
     ratios = found_ohm / resistance_ohm, found_v_s_rad / back_emf_v_s_rad
     text = (
         f"the motor behaves like {found_ohm:.3g} ohm and {found_v_s_rad:.3g} V s/rad, {ratios[0]:.2f} and "

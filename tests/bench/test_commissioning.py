@@ -81,6 +81,30 @@ def test_the_move_on_the_simulated_bench():
     assert ran.channel(0, "enabled")[-1] == 0.0
 
 
+def measuring_current():
+    """The simulated bench, whose drive measures current here: the ratio can be checked."""
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    return parse_configuration(
+        values | {"drive": {"kind": "sim", "plant": {"current_sensor": {"present": True}}}}, "bench.toml"
+    )
+
+
+def test_a_push_too_short_for_the_ratio_is_made_again_longer():
+    ran = Ran(measuring_current(), "commissioning", excursion_rad=0.02)
+    assert ran.summary["passed"] == ["sign", "velocity", "current", "ratio"]
+    assert 0.039 < ran.summary["travel_rad"][0] < 0.1
+    assert ran.channel(0, "enabled")[-1] == 0.0
+
+
+def test_no_push_is_longer_than_the_limits_leave_room_for():
+    configuration = measuring_current()
+    limits = configuration.limits.model_copy(update={"position_max_rad": 0.53, "position_min_rad": -0.53})
+    ran = Ran(configuration.model_copy(update={"limits": limits}), "commissioning", excursion_rad=0.02)
+    assert ran.summary["not_checked"] == ["ratio"]
+    assert "ask for a longer excursion" in ran.summary["sentences"][-1]
+    assert ran.summary["travel_rad"][0] < 0.039
+
+
 def test_a_joint_that_is_held_ends_the_move_and_says_so():
     configuration = default_configuration()
     search = configuration.search.model_copy(update={"ceiling_a": 0.02})

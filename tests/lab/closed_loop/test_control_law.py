@@ -64,6 +64,14 @@ def test_an_effort_that_no_law_explains_is_not_forced_into_one():
     assert found({**channels, "torque_n_m": noise}).source == "stand-in"
 
 
+def test_a_law_that_explains_only_half_is_none():
+    channels = run(Joint())
+    torque_n_m, random = channels["torque_n_m"], np.random.default_rng(3)
+    slow = np.convolve(random.normal(size=len(torque_n_m)), np.ones(50), "same")
+    added = torque_n_m + np.std(torque_n_m) / np.std(slow) * slow
+    assert found({**channels, "torque_n_m": added}).source == "stand-in"
+
+
 def test_what_the_bench_says_goes_before():
     told = ControlLaw(39.0, 0.0, 1.4, "bench", 0.004)
     assert found(run(Joint()), told) == told
