@@ -180,7 +180,9 @@ def parse_configuration(values: dict[str, Any], source: str) -> BenchConfigurati
     try:
         return BenchConfiguration.model_validate(values)
     except ValidationError as error:
-        raise ConfigurationError("\n".join(f"{source}: {problem}" for problem in problems(error))) from error
+        raise ConfigurationError(
+            "\n".join(f"{source}: {problem}" for problem in problems(error, model=BenchConfiguration))
+        ) from error
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

@@ -59,9 +59,9 @@ def _at_rest(found: Found, unit: str) -> None:
         for one in found["sides"]
     ]
     columns = ["side", "outside#", f"largest [{unit}]#", "p#", "surest in", "at [s]#"]
-    table(
-        f"At rest, {found['stretches']} stretches of {found['rests']} rests: beyond what friction holds", columns, rows
-    )
+    if found["outside"]:
+        rests = f"{found['rests']} rest{'s' if found['rests'] != 1 else ''}"
+        table(f"At rest, {found['stretches']} stretches of {rests}: beyond what friction holds", columns, rows)
     say(found["sentence"])
 
 
@@ -100,7 +100,8 @@ def diagnosis(found: Found) -> None:
     """The verdict and the ranking."""
     say(found["sentence"])
     for problem in found["data_problems"]:
-        say(f"data: {problem}")
+        if problem not in found["sentence"]:
+            say(f"data: {problem}")
     for one in found["classes"]:
         say(one["sentence"])
         if one["separating_trial"]:
@@ -118,9 +119,9 @@ def diagnosis(found: Found) -> None:
         )
         for one in found["ranking"]
     ]
-    table(
-        "Effects by evidence", ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#"], rows
-    )
+    if rows:
+        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#"]
+        table("Effects by evidence", columns, rows)
     if found["provisional"]:
         say(found["provisional"]["sentence"])
     for note in found["notes"]:

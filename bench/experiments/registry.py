@@ -69,4 +69,4 @@ def parse_parameters(kind: ExperimentKind, values: dict[str, Any]) -> Parameters
     try:
         return kind.parameters.model_validate(values)
     except ValidationError as error:
-        raise ParameterError(f"{kind.name}: " + "; ".join(problems(error))) from error
+        raise ParameterError(f"{kind.name}: " + "; ".join(problems(error, model=kind.parameters))) from error

@@ -25,4 +25,6 @@ def read_campaign(path: Path) -> Campaign:
     try:
         return Campaign.model_validate({"name": path.stem} | values)
     except ValidationError as error:
-        raise ConfigurationError("\n".join(f"{path}: {problem}" for problem in problems(error))) from error
+        raise ConfigurationError(
+            "\n".join(f"{path}: {problem}" for problem in problems(error, model=Campaign))
+        ) from error

@@ -39,7 +39,7 @@ def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
         raise RecordingSetError(file, f"is no TOML: {error}") from error
     except ValidationError as error:
         lines = [line_of(text, detail["loc"]) for detail in error.errors(include_url=False)]
-        first, *others = problems(error)
+        first, *others = problems(error, model=model)
         more = "".join(f"\n{file}, line {line}: {problem}" for line, problem in zip(lines[1:], others, strict=True))
         raise RecordingSetError(file, first + more, lines[0]) from error
 

@@ -11,8 +11,8 @@ from compensator.lab.at_rest.rest_comparison import at_rest_in_words
 from compensator.lab.chance import stated
 from compensator.lab.comparison import comparison
 from compensator.lab.comparison.null_space import left_open
-from compensator.lab.comparison.run_to_run import by_run_in_words, friction_by_run
 from compensator.lab.diagnosis.data_checks import data_problems
+from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
 from compensator.lab.model.fit import Fit
 from compensator.lab.model.intervals import ParameterEstimate, estimates
 from compensator.lab.recordings.recording import FloatArray
@@ -187,10 +187,9 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
         notes.append("Too few trials to hold one out: stretches of 2 s are left out instead, which flatters the model.")
     if found.floor is None:
         notes.append("No trial repeats another: how well any model could do is unknown. Repeat at least one trial.")
-    by_run = friction_by_run(found.fit, found.held_out)
-    if by_run is not None:
-        notes.append(by_run_in_words(by_run, material.dataset.effort_definition.unit))
-    return notes
+    unit = material.dataset.effort_definition.unit
+    by_run = differences_by_run(found.fit, found.held_out)
+    return [*notes, *(by_run_in_words(one, unit) for one in by_run)]
 
 
 def _list(values: FloatArray) -> list[float]:

@@ -228,7 +228,8 @@ def _bins(against: Found, prefix: str) -> list[Points]:
 
 def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
     """The answer, the evidence in words, the ranking, and the pictures of the best effects."""
-    words = [found["sentence"], *(f"Data: {problem}" for problem in found["data_problems"])]
+    problems = [f"Data: {problem}" for problem in found["data_problems"] if problem not in found["sentence"]]
+    words = [found["sentence"], *problems]
     for one in found["classes"]:
         words.append(one["sentence"])
         if one["separating_trial"]:
@@ -251,7 +252,8 @@ def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
     columns = ["effect", "named", "score#", "p#", "held out then#", "gain, 90 % interval", "d'#", "rivals"]
     shown = [*([found["provisional"]] if found["provisional"] else []), *found["ranking"][:PICTURES]]
     figures = [figure for one in shown if (figure := picture(one, compared["effort"]["unit"]))]
-    return Section(title, [*words, *found["notes"]], [Table("Effects by evidence", columns, rows)], figures)
+    tables = [Table("Effects by evidence", columns, rows)] if rows else []
+    return Section(title, [*words, *found["notes"]], tables, figures)
 
 
 def picture(ranked: Found, unit: str) -> Figure | None:

@@ -119,6 +119,11 @@ BAD: dict[str, tuple[str, str]] = {
     "scale of zero": ('[columns.duty]\nfrom = "x"\nscale = 0\n', "mapping.toml, line 3: columns.duty.scale: found 0"),
     "no source": ("[columns.duty]\nscale = 1.0\n", "mapping.toml, line 1: columns.duty.from: missing"),
     "unknown key": ('colums = "x"\n', "mapping.toml, line 1: colums: unknown key"),
+    "unknown key of a column": (
+        '[columns.position_rad]\nfrom = "x"\nunit = "deg"\n',
+        "mapping.toml, line 3: columns.position_rad.unit: unknown key; remove it or correct its spelling "
+        "(allowed: from, scale, offset)",
+    ),
     "signs the same": ('delimiter = ","\ndecimal = ","\n', "delimiter and decimal are both ','"),
     "condition without value": (
         '[[trials]]\nfile = "a.csv"\nconditions = { load_kg = nan }\n',

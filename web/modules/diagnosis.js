@@ -17,7 +17,7 @@ export async function diagnosis(place, found, add) {
   const notJudged = found.notes.filter((note) => NOT_JUDGED.test(note));
   const first = found.ranking.slice(0, SHOWN);
   replace(place, h("p", { class: "sentence", role: "status" }, found.sentence),
-    found.data_problems.map((problem) => h("div", { class: "problem" }, problem)),
+    found.data_problems.filter((problem) => !found.sentence.includes(problem)).map((problem) => h("div", { class: "problem" }, problem)),
     found.notes.filter((note) => !NOT_JUDGED.test(note)).map((note) => h("p", { class: "soft" }, note)),
     found.classes.map(className), curve, named, first.some((one) => !one.in_class) && h("h3", {}, found.classes.length ? "Less likely" : "Tested"), others,
     found.ranking.length > SHOWN && more,

@@ -20,6 +20,7 @@ from compensator.lab.recordings.recording import FloatArray
 
 SIGNIFICANT = 0.01
 FEWEST_WINDOWS = 5
+MOSTLY = 0.1  # more stretches beyond friction than that, though it is no evidence: the model itself is too uncertain
 
 
 @dataclass(frozen=True)
@@ -128,9 +129,15 @@ def _side(fit: Fit, windows: Windows, beyond: FloatArray, deviation: FloatArray,
 def at_rest_in_words(found: RestComparison, unit: str) -> str:
     """One sentence; what to do where the violations are no chance."""
     if not found.is_evidence:
+        stretches = f"At rest: of {found.windows} stretches of 0.1 s"
+        if found.outside == 0.0:
+            return f"{stretches}, all lie within what friction holds."
+        beyond = f"{stretches}, {found.outside:.1%} lie beyond what friction holds, by up to {found.largest:.3g} {unit}"
+        if found.outside <= MOSTLY:
+            return f"{beyond}: no more than chance."
         return (
-            f"At rest: of {found.windows} stretches of 0.1 s, {found.outside:.1%} lie beyond what friction holds, by "
-            f"up to {found.largest:.3g} {unit}: no more than chance."
+            f"{beyond}: no more than what the model leaves while the joint slides, so that rest tells nothing; mend "
+            "the model there first."
         )
     both = max(found.above.chance, found.below.chance) <= SIGNIFICANT
     surest = min(found.above, found.below, key=lambda side: side.chance)
@@ -146,5 +153,5 @@ def at_rest_in_words(found: RestComparison, unit: str) -> str:
         )
     return (
         f"{told}: that is no friction. Gravity, an offset or the constant that makes efforts of currents is wrong at "
-        "rest; hold the joint there, come from either side, and compare with the power off."
+        "rest, or the joint leans against a stop; hold it there, come from either side, and compare with the power off."
     )

@@ -16,11 +16,13 @@ from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems,
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import FORMULA_SHARE, Answer, answer_of
+from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import candidates, catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import Fit, widened
+from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
@@ -68,7 +70,9 @@ def diagnose(fit: Fit) -> Diagnosis:
         return _data_problem(fit, problems[0])
     others = [answer for answer in families if answer is not first]
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
-    notes = [answer.sentence for answer in others if answer.verdict == "missing"]
+    notes = [*first.notes, *(answer.sentence for answer in others if answer.verdict == "missing")]
+    if rest is not None and rest is not first:
+        notes += rest.notes
     return Diagnosis(
         verdict=first.verdict,
         sentence=first.sentence,
@@ -77,7 +81,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         candidates=ranked,
         driver=first.driver,
         data_problems=data_problems(fit),
-        notes=[*first.notes, *notes, *(rest.notes if rest is not None and rest is not first else []), *_at_rest(fit)],
+        notes=[*notes, *_at_rest(fit), *_by_run(fit)],
         left_out={**gathered.left_out, **not_judged, **not_at_rest},
         too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
         remains=first.remains or (first.verdict == "nothing" and steady.remains),
@@ -112,6 +116,12 @@ def _at_rest(fit: Fit) -> list[str]:
     if found is None or not found.is_evidence:
         return []
     return [at_rest_in_words(found, fit.dataset.effort_definition.unit)]
+
+
+def _by_run(fit: Fit) -> list[str]:
+    """What differs from run to run: a floor, or the work of what is missing."""
+    unit = fit.dataset.effort_definition.unit
+    return [by_run_in_words(one, unit) for one in differences_by_run(fit, held_out(fit))]
 
 
 def _memory(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:

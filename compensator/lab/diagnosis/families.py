@@ -107,7 +107,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
             names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
             sentence, remains = bursts_in_words(bursts, names, share, p_value), True
         elif left.is_more_than_noise:
-            sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value), True
+            sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value, stretches), True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 
 

@@ -72,8 +72,11 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float) -> str:
+def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, stretches: int) -> str:
     """The answer where something is left that no effect and no curve explains."""
+    none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
+    if least_p_value(stretches) > SIGNIFICANT:
+        none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
     if left.change is not None:
         how = changing_in_words(left.change)
     elif left.swing is not None:
@@ -83,9 +86,8 @@ def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float) -> 
     else:
         how = "it varies with nothing that is measured"
     return (
-        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
-        f"{left.remainder.share:.1%} of the effort, is more than noise; {how}. Repeat a trial: what comes again is the "
-        "joint's, what does not has changed since."
+        f"{none}, yet what is left, {left.remainder.share:.1%} of the effort, is more than noise; {how}. "
+        "Repeat a trial: what comes again is the joint's, what does not has changed since."
     )
 
 

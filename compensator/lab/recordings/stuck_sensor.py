@@ -1,7 +1,8 @@
 """A position that stands still while the joint moves on: a sensor that is stuck, which looks like friction or cogging.
 
 Friction and end stops hold a joint, too, and the position does not change either. Two things tell the sensor: the
-drive's speed goes on, or the position comes back in one leap, which no joint does that starts from rest.
+drive's speed goes on, by more than a filter that makes it late would have it fade away, or the position comes back in
+one leap, which no joint does that starts from rest.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,6 +16,9 @@ from compensator.lab.recordings.recording import FloatArray, Recording
 SHORTEST_S = 0.1  # less is a sample or two that were lost and filled up with the last one
 FEWEST_SAMPLES = 10
 LATE_S = 0.1  # by which the drive's speed may lag behind its position, or precede it
+LAG_WINDOW_S = 0.1  # over which ways are compared to find a filter's time constant
+MOST_LAG_S = 1.0  # of a filter
+LEAST_EXPLAINED = 0.5  # of what position and speed differ by: a filter explains as much, or there is none
 MISSED = 10.0  # times the step that 19 in 20 samples in motion stay below: what the speed covers meanwhile
 LEAP = 10.0  # times the step that 19 in 20 samples in motion stay below
 ALONE = 3.0  # times the steps after it: a joint that starts goes on
@@ -55,7 +59,7 @@ def _stuck(recording: Recording, unit: str) -> Iterator[tuple[float, float, str]
     for first, last in _standing(step, gap):
         if last - first < FEWEST_SAMPLES or time_s[last] - time_s[first] < SHORTEST_S:
             continue
-        missed, fast = (0.0, 0.0) if speed is None else _covered(time_s[first : last + 1], speed[first : last + 1])
+        missed, fast = (0.0, 0.0) if speed is None else _covered(time_s, position, speed, slice(first, last + 1))
         if missed > MISSED * typical and fast > LEAST_SHARE * typical / float(np.median(period_s)):
             yield time_s[first], time_s[last], f"velocity_{unit}_s covers {missed:.3g} {unit} meanwhile"
         elif last < len(step) and not gap[last] and _is_leap(step[last:], typical):
@@ -70,14 +74,46 @@ def _standing(step: FloatArray, gap: "np.ndarray[tuple[int], np.dtype[np.bool_]]
         yield int(first), int(last)
 
 
-def _covered(time_s: FloatArray, speed: FloatArray) -> tuple[float, float]:
-    """How far the speed goes one way and how fast, less what it may be late by at either end."""
+def _covered(time_s: FloatArray, position: FloatArray, speed: FloatArray, standing: slice) -> tuple[float, float]:
+    """How far the speed goes one way and how fast, less what it may be late by at either end, and fade away in."""
+    lag_s = _lag_s(time_s, position, speed, standing)
+    time_s, speed = time_s[standing], speed[standing]
     within = (time_s >= time_s[0] + LATE_S) & (time_s <= time_s[-1] - LATE_S) & np.isfinite(speed)
     if int(within.sum()) < 2:
         return 0.0, 0.0
     time_s, speed = time_s[within], speed[within]
-    way = np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time_s))
-    return float(np.ptp(np.append(0.0, way))), float(np.quantile(np.abs(speed), 0.95))
+    way = np.append(0.0, _way(time_s, speed)) + lag_s * (speed - speed[0])
+    return float(np.ptp(way)), float(np.quantile(np.abs(speed), 0.95))
+
+
+def _lag_s(time_s: FloatArray, position: FloatArray, speed: FloatArray, standing: slice) -> float:
+    """Time constant of a first-order filter that the speed went through [s]; 0 where it shows none.
+
+    Through such a filter q' = v + lag v', and over a window the way is that of the speed and lag times its change.
+    The stretch in question is left out: there the position may be wrong.
+    """
+    known = np.isfinite(time_s) & np.isfinite(position) & np.isfinite(speed)
+    known[standing] = False
+    if int(known.sum()) < FEWEST_SAMPLES:
+        return 0.0
+    time_s, position, speed = time_s[known], position[known], speed[known]
+    hop = max(1, round(LAG_WINDOW_S / max(float(np.median(np.diff(time_s))), np.finfo(float).tiny)))
+    ends = np.arange(0, len(time_s), hop)
+    whole = np.diff(time_s[ends]) < 2.0 * LAG_WINDOW_S  # none across what is left out
+    way = np.append(0.0, _way(time_s, speed))
+    differs = (np.diff(position[ends]) - np.diff(way[ends]))[whole]
+    change = np.diff(speed[ends])[whole]
+    if not np.any(change):
+        return 0.0
+    lag_s = float(np.clip(change @ differs / (change @ change), 0.0, MOST_LAG_S))
+    explained = 1.0 - float(np.sum((differs - lag_s * change) ** 2)) / max(float(differs @ differs), 1e-300)
+    return lag_s if explained >= LEAST_EXPLAINED else 0.0
+
+
+def _way(time_s: FloatArray, speed: FloatArray) -> FloatArray:
+    """The way so far after each step, by trapezoids, shape (n - 1,)."""
+    way: FloatArray = np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time_s))
+    return way
 
 
 def _is_leap(step: FloatArray, typical: float) -> bool:

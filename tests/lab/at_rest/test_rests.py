@@ -1,11 +1,12 @@
 """Rest bounds the effort: a complete model holds, what is wrong at rest alone is found, with its side and its size."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at_rest
+from compensator.lab.at_rest.rest_comparison import RestComparison, Side, at_rest_in_words, compare_at_rest
 from compensator.lab.comparison.comparison import compare
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.model.fit import Fit, fit_model
@@ -36,7 +37,20 @@ def test_a_complete_model_holds_at_rest(seed):
     assert found.by_starts
     assert not found.is_evidence
     assert found.largest < 0.1 * STATIC
-    assert "no more than chance" in at_rest_in_words(found, "N m")
+    assert re.search("no more than chance|all lie within", at_rest_in_words(found, "N m"))
+
+
+def test_what_a_poor_model_says_of_rest_is_not_called_chance():
+    def said(outside, largest):
+        side = Side(outside, largest, 1.0, "one", 2.0)
+        return at_rest_in_words(RestComparison(40, 2, side, replace(side, outside=0.0), 0.01, 0.5, False), "A")
+
+    assert said(0.9, 0.6).endswith(
+        "no more than what the model leaves while the joint slides, so that rest tells "
+        "nothing; mend the model there first."
+    )
+    assert "no more than chance" in said(0.02, 0.01)
+    assert said(0.0, 0.0) == "At rest: of 40 stretches of 0.1 s, all lie within what friction holds."
 
 
 @pytest.mark.parametrize("bias", [0.03, -0.03])

@@ -1,5 +1,7 @@
 """What a model leaves: more than noise, or not."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -83,3 +85,17 @@ def test_noise_that_rises_with_frequency_does_not_swing(seed):
     assert found.share > 0.01
     assert not found.is_more_than_noise
     assert swing_of(fit.dataset, noise[fit.training], fit.training) is None
+
+
+def test_too_few_stretches_to_name_anything_are_told_beside_what_is_left():
+    random = np.random.default_rng(2)
+    slow = np.convolve(random.normal(size=4000), np.ones(60), "same")
+
+    def extra(x):
+        return 0.02 * slow[: len(x.time_s)] / slow.std()
+
+    made = recordings(Joint(extra=extra), Bench(duration_s=9.0), plans((0.0,), temperatures_c=(25.0,))[:1], seed=1)
+    fit = fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+    answer = diagnose(fit)
+    assert (answer.verdict, answer.remains, answer.too_short) == ("nothing", True, True)
+    assert re.match(r"[2-9] stretches of 2 s are too few to name an effect, yet what is left, .*%", answer.sentence)

@@ -59,6 +59,23 @@ def late(speed: np.ndarray) -> np.ndarray:
     return np.roll(speed, round(0.08 * RATE_HZ))
 
 
+def filtered(speed: np.ndarray, lag_s: float) -> np.ndarray:
+    """The speed as a drive's filter of first order gives it."""
+    share, value, found = 1.0 / (RATE_HZ * lag_s), speed[0], []
+    for one in speed:
+        value += share * (one - value)
+        found.append(value)
+    return np.array(found)
+
+
+AT_STOP = np.minimum(SWING, 0.3)  # which the joint runs into at speed
+FADING = filtered(np.gradient(AT_STOP, TIME_S), 0.3)
+
+
+def test_behind_a_filter_a_stuck_sensor_is_told_all_the_same():
+    assert stuck_positions([recording(held(SWING, 4.0, 6.0), filtered(SPEED, 0.3))], FACTS)
+
+
 def filled_up(position: np.ndarray) -> np.ndarray:
     """Samples that were lost, three in a row, and stand for as long as the last one before."""
     return position[np.arange(len(position)) // 4 * 4]
@@ -73,6 +90,7 @@ def filled_up(position: np.ndarray) -> np.ndarray:
         recording(with_rests(1.5)[0]),
         recording(with_rests(0.3)[0], late(with_rests(0.3)[1])),
         recording(with_rests(3.0)[0], with_rests(3.0)[1] + 0.1),
+        recording(AT_STOP, FADING),
         recording(filled_up(SWING), SPEED),
         recording(np.round(SWING / 0.05) * 0.05, SPEED),
         recording(0.0 * SWING, 1e-3 * np.random.default_rng(0).standard_normal(len(SWING))),
@@ -80,6 +98,7 @@ def filled_up(position: np.ndarray) -> np.ndarray:
     ],
     ids=[
         "motion", "motion without speed", "rests", "rests without speed", "late speed", "speed with a wrong zero",
+        "speed that fades away at a stop",
         "lost samples", "coarse encoder", "no motion", "gaps",
     ],
 )  # fmt: skip

@@ -1,11 +1,12 @@
-"""Dry friction that differs from run to run is told with its size, and nothing is told where it does not."""
+"""Dry friction or a zero that differs from run to run is told with its size, and nothing where neither does."""
 
 import re
 
 import numpy as np
 import pytest
 
-from compensator.lab.comparison.run_to_run import FrictionByRun, by_run_in_words, friction_by_run
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.run_to_run import CONSTANT, DRY_FRICTION, ByRun, by_run_in_words, differences_by_run
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.validation import held_out
@@ -16,24 +17,31 @@ from tests.lab.synthetic import FACTS, Joint, plans, recordings
 COULOMB_N_M = Joint().coulomb
 
 
-def fitted(differences_n_m: dict[int, float], held: tuple[int, ...] = ()) -> Fit:
-    """Trials with so much more dry friction each; those held do not train."""
+def fitted(
+    differences_n_m: dict[int, float], held: tuple[int, ...] = (), zeros_n_m: dict[int, float] | None = None
+) -> Fit:
+    """Trials with so much more dry friction each, and their effort's zero so far off; those held do not train."""
     made = recordings(trials=plans((0.0, 0.2), temperatures_c=(25.0,)), seed=11)
     for index, difference in differences_n_m.items():
         channels = made[index].channels
         channels["torque_n_m"] += difference * np.tanh(np.gradient(channels["position_rad"], channels["time_s"]) / 0.02)
+    for index, zero in (zeros_n_m or {}).items():
+        made[index].channels["torque_n_m"] += zero
     dataset = make_dataset(made, FACTS, Processing(8.0))
     return fit_model(dataset, default_effects(FACTS), dataset.counted & ~np.isin(dataset.trial_index, held))
 
 
-def by_run(fit: Fit) -> FrictionByRun | None:
-    return friction_by_run(fit, held_out(fit))
+def by_run(fit: Fit) -> ByRun | None:
+    """What alone differs; None where nothing does."""
+    found = differences_by_run(fit, held_out(fit))
+    assert len(found) <= 1
+    return found[0] if found else None
 
 
 def test_one_run_with_more_friction():
     fit = fitted({4: 0.05 * COULOMB_N_M}, held=(4,))
     found, name = by_run(fit), fit.dataset.trials[4].signals.recording.name
-    assert found.trial == name
+    assert (found.what, found.trial) == (DRY_FRICTION, name)
     assert found.difference == pytest.approx(0.05 * COULOMB_N_M, rel=0.2)
     assert found.share == pytest.approx(0.05, rel=0.25)
     assert 0.0 < found.floor < held_out(fit).relative
@@ -41,6 +49,24 @@ def test_one_run_with_more_friction():
         rf"Dry friction differs from run to run by .* N m, .*% of Coulomb friction, in '{name}' \(\+0.00",
         by_run_in_words(found, "N m"),
     )
+
+
+def test_one_run_with_another_zero():
+    fit = fitted({}, held=(4,), zeros_n_m={4: -0.05})
+    found, name = by_run(fit), fit.dataset.trials[4].signals.recording.name
+    assert (found.what, found.trial) == (CONSTANT, name)
+    assert found.difference == pytest.approx(-0.05, rel=0.1)
+    words = by_run_in_words(found, "N m")
+    assert re.search(rf"^A constant force, or the zero of the effort, differs .* in '{name}' \(-0.0", words)
+    assert words.endswith("a floor for any model with one zero for all runs, unless what is missing makes it.")
+    assert words in diagnose(fit).notes
+
+
+def test_first_what_makes_more_of_the_error():
+    fit = fitted({4: 0.004}, held=(4,), zeros_n_m={4: 0.05})
+    found = differences_by_run(fit, held_out(fit))
+    assert [one.what for one in found] == [CONSTANT, DRY_FRICTION]
+    assert found[0].floor > found[1].floor > 0.0
 
 
 def test_runs_that_scatter_with_each_left_out_in_turn():
