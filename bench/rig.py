@@ -36,6 +36,7 @@ class Gear(Section):
 
     ratio: Positive | None = None  # motor turns per joint turn
     backlash_rad: NotNegative | None = None  # total free play at the joint
+    stiffness_n_m_rad: Positive | None = None  # torsional, of gear and shaft at the joint, the motor held
 
 
 class Arm(Section):

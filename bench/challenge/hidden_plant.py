@@ -8,7 +8,7 @@ from typing import Any
 
 from sim_backend.challenge.draw import DrawnPlant, Wanted, draw_hidden, draw_plant, hide
 from sim_backend.challenge.mechanisms import MECHANISMS
-from sim_backend.challenge.ranges import DATA_SHEET, JOINT, Range
+from sim_backend.challenge.ranges import DATA_SHEET, GEAR_SHEET, JOINT, Range
 
 __all__ = ["MECHANISMS", "DrawnPlant", "Wanted", "draw_hidden", "draw_plant", "hide", "range_tables"]
 
@@ -26,7 +26,7 @@ def range_tables() -> list[RangeTable]:
     sizes: dict[str, Any] = {f"{one.name}: {one.measure}": one.size for one in MECHANISMS.values()}
     return [
         RangeTable("The joint", _rows(JOINT)),
-        RangeTable("What the data sheet may be off by, as a share of the true value", _rows(DATA_SHEET)),
+        RangeTable("What the data sheet may be off by, as a share of the true value", _rows(DATA_SHEET | GEAR_SHEET)),
         RangeTable("What may be hidden, and how much of it", _rows(sizes)),
     ]
 

@@ -19,7 +19,7 @@ def rig_of(drawn: DrawnPlant) -> Rig:
     Nothing hidden is in it: it is made of the joint without its mechanisms.
     """
     tables, off = drawn.joint.tables, drawn.sheet
-    motor, arm = tables["motor"], tables["arm"]
+    motor, gear, arm = tables["motor"], tables["gear"], tables["arm"]
     constant = _sheet(motor, "torque_constant_n_m_a", off)
     return Rig.model_validate(
         {
@@ -30,7 +30,11 @@ def rig_of(drawn: DrawnPlant) -> Rig:
                 "back_emf_v_s_rad": constant,
                 "rotor_inertia_kg_m2": _sheet(motor, "rotor_inertia_kg_m2", off),
             },
-            "gear": {"ratio": tables["gear"]["ratio"], "backlash_rad": _sheet(tables["gear"], "backlash_rad", off, 2)},
+            "gear": {
+                "ratio": gear["ratio"],
+                "backlash_rad": _sheet(gear, "backlash_rad", off, 2),
+                "stiffness_n_m_rad": _sheet(gear, "stiffness_n_m_rad", off, 2),
+            },
             "arm": {
                 "length_m": _sheet(arm, "length_m", off),
                 "mass_kg": _sheet(arm, "mass_kg", off),

@@ -12,7 +12,7 @@ from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import Fit, fit_model
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, Facts
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing, RowChoice
@@ -105,11 +105,19 @@ def facts_of(rig: Rig) -> Facts:
         torque_per_current_n_m_a=(motor.torque_constant_n_m_a or 0.0) * (ratio or 0.0) if known else None,
         gear_ratio=ratio,
         backlash_rad=rig.gear.backlash_rad,
+        stiffness_n_m_rad=rig.gear.stiffness_n_m_rad,
         arm_m=rig.arm.length_m,
         arm_inertia_kg_m2=rig.arm.inertia_kg_m2,
+        arm_moment_n_m=_arm_moment_n_m(rig),
         supply_is_nominal=rig.supply.is_nominal or None,
         effort=rig.effort.quantity if rig.effort else None,
     )
+
+
+def _arm_moment_n_m(rig: Rig) -> float | None:
+    """Weight of the arm without load, at 90 degrees; None where the rig does not tell."""
+    mass_kg, centre_m = rig.arm.mass_kg, rig.arm.centre_of_mass_m
+    return None if mass_kg is None or centre_m is None else mass_kg * STANDARD_GRAVITY_M_S2 * centre_m
 
 
 def load(store: Store, study_id: int) -> Material:

@@ -7,7 +7,7 @@ import numpy as np
 
 from sim_backend.challenge.joint import Joint, Tables, draw_joint
 from sim_backend.challenge.mechanisms import MECHANISMS, Mechanism
-from sim_backend.challenge.ranges import DATA_SHEET
+from sim_backend.challenge.ranges import DATA_SHEET, GEAR_SHEET
 
 SENSOR_SHARE = 0.5  # of the drives that measure their current
 
@@ -71,11 +71,13 @@ class Wanted:
 
 def draw_plant(seed: int, wanted: Wanted) -> DrawnPlant:
     """Draw joint, mechanisms and data sheet, each from a stream of its own: a joint looks alike whatever it hides."""
-    joints, choices, sheets = np.random.SeedSequence(seed).spawn(3)
+    joints, choices, sheets, gears = np.random.SeedSequence(seed).spawn(4)
     joint = draw_joint(np.random.default_rng(joints))
     hidden = draw_hidden(joint, wanted, np.random.default_rng(choices))
     sheet = np.random.default_rng(sheets)
     tolerance = {name: range_.draw(sheet) for name, range_ in DATA_SHEET.items()}
+    gear = np.random.default_rng(gears)
+    tolerance |= {name: range_.draw(gear) for name, range_ in GEAR_SHEET.items()}
     measures = bool(sheet.random() < SENSOR_SHARE)
     for one in hidden:
         asked = MECHANISMS[one.name].current

@@ -75,3 +75,8 @@ DATA_SHEET: dict[str, Range] = {
     "backlash_rad": Range(0.0, 0.3, "1", "data sheets give the most that is shipped"),
 }
 """How far the value that the owner knows is from the true one, as a share of it."""
+
+GEAR_SHEET: dict[str, Range] = {
+    "stiffness_n_m_rad": Range(-0.2, 0.2, "1", "gear catalogues: typical value"),
+}
+"""The same, drawn from a stream of its own: what else is drawn stays what it was."""

@@ -105,6 +105,11 @@ class Motion:
         return self.load_kg * STANDARD_GRAVITY_M_S2 * self.arm_m
 
     @property
+    def moment_n_m(self) -> float:
+        """Gravity moment of arm and tip load at 90 degrees [N m], as far as it is told; 0 for a balanced arm."""
+        return 0.0 if self.conditions.get("balanced") else self.load_moment_n_m + (self.facts.arm_moment_n_m or 0.0)
+
+    @property
     def load_inertia_kg_m2(self) -> float:
         """Inertia of the tip load about the axis [kg m^2], as a point mass."""
         return self.load_kg * self.arm_m**2

@@ -3,12 +3,21 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, parting_on_a_spring
 from compensator.lab.recordings.recording import FloatArray
 
 # of critical: material and teeth alone; with the arm's bearings and what it drags. A column that swings more than the
 # joint does would take a share of the load that is far too small
 DAMPINGS = (0.06, 0.25)
+
+
+def known_hz(facts: Facts) -> float | None:
+    """Anti-resonance [Hz] of the arm without load on the stiffness that is known; None where either is not."""
+    stiffness, arm_kg_m2 = facts.stiffness_n_m_rad, facts.arm_inertia_kg_m2
+    if facts.joint == "linear" or not stiffness or not arm_kg_m2:
+        return None
+    return float(np.sqrt(stiffness / arm_kg_m2) / (2.0 * np.pi))
 
 
 def shapes(motion: Motion) -> list[Shape]:

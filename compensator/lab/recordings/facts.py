@@ -18,8 +18,10 @@ class Facts:
         torque_per_current_n_m_a: joint torque per motor ampere, torque constant x gear ratio [N m/A].
         gear_ratio: motor turns per joint turn.
         backlash_rad: free play at the joint; 0 where there is none, None where nobody measured it.
+        stiffness_n_m_rad: torsional, of what drives the arm; None where nobody told.
         arm_m: axis to the tip load [m], where the trial's conditions do not tell.
         arm_inertia_kg_m2: of the arm without load, about the axis.
+        arm_moment_n_m: weight of the arm without load, at 90 degrees; None where nobody told.
         supply_is_nominal: True where the supply voltage of the recordings is a number that nobody measured; else None.
         effort: the quantity that the models predict; None takes the best that every trial has.
     """
@@ -29,8 +31,10 @@ class Facts:
     torque_per_current_n_m_a: float | None = None
     gear_ratio: float | None = None
     backlash_rad: float | None = None
+    stiffness_n_m_rad: float | None = None
     arm_m: float | None = None
     arm_inertia_kg_m2: float | None = None
+    arm_moment_n_m: float | None = None
     supply_is_nominal: bool | None = None
     effort: EffortQuantity | None = None
 

@@ -189,7 +189,7 @@ def _carried(motion: Motion) -> FloatArray:
     facts = motion.facts
     if not facts.backlash_rad or facts.joint == "linear":
         return np.zeros(len(motion.time_s))
-    moment = 0.0 if facts.horizontal else motion.load_moment_n_m
+    moment = 0.0 if facts.horizontal else motion.moment_n_m
     inertia = motion.load_inertia_kg_m2 + (facts.arm_inertia_kg_m2 or 0.0)
     return moment * np.sin(motion.position) + inertia * motion.acceleration
 

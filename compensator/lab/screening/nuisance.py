@@ -4,9 +4,11 @@ They stand in every diagnosis. A small delay looks like jerk; a sign smoothed by
 difference of steep sigmoids. An effect that means one of these (see `Effect.standing_in`) is judged without it.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from compensator.lab.effects import backlash, measurement_delay
+from compensator.lab.effects import backlash, elasticity, measurement_delay
 from compensator.lab.effects.effect import Motion, MotionRows
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import FloatArray
@@ -14,15 +16,21 @@ from compensator.lab.rows.dataset import Dataset
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
 KNOWN_PLAY = {"known_play_less": 0.6, "known_play": 1.0, "known_play_more": 1.6}  # of what the owner knows: not missing
+STIFFNESS_TOLD = ((1.0, 0.1),)  # share of what the owner knows, damping: in steady sliding, far below any resonance
+STIFFNESS_ABOUT = tuple((share, damping) for share in (0.8, 1.25) for damping in elasticity.DAMPINGS)  # tolerance
 
 
 def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[str, FloatArray]:
     """Each nuisance column by name, shape (N,).
 
-    Near reversals a delay looks like memory: there its own column stands too, and that of the free play that is known.
+    The far side of teeth and shaft is not where the motor side is that is measured: what follows from the free play
+    and the stiffness that are known is not missing. Near reversals a delay looks like memory: there its own column
+    stands too, and that of flying through the free play.
     """
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
     named = dict(zip(NAMES, stack.T, strict=True))
+    named |= _far_side_weight(dataset)
+    named |= _known_stiffness(dataset, STIFFNESS_TOLD if show_in == "sliding" else STIFFNESS_ABOUT)
     if show_in == "sliding":
         return named
     named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
@@ -31,6 +39,36 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
         found = dataset.unchecked_columns(backlash.EFFECT, gaps)
         named |= {name: columns[:, 0] for name, columns in zip(KNOWN_PLAY, found, strict=True)}
     return named
+
+
+def _known_stiffness(dataset: Dataset, shares: Sequence[tuple[float, float]]) -> dict[str, FloatArray]:
+    """What the gear carries less for winding up, for shares of the stiffness that is known and dampings."""
+    known_hz = elasticity.known_hz(dataset.facts)
+    if known_hz is None:
+        return {}
+    shapes = [(known_hz * np.sqrt(share), damping) for share, damping in shares]
+    found = dataset.unchecked_columns(elasticity.EFFECT, shapes)
+    return {f"known_stiffness_{index}": columns[:, 0] for index, columns in enumerate(found)}
+
+
+def _far_side_weight(dataset: Dataset) -> dict[str, FloatArray]:
+    """How much less the arm weighs for being behind the motor side; none where nothing is known of that."""
+    facts = dataset.facts
+    if facts.horizontal or facts.joint == "linear" or not (facts.backlash_rad or facts.stiffness_n_m_rad):
+        return {}
+    return {"far_side_weight": dataset.stack(far_side_weight(trial.motion)[None] for trial in dataset.trials)[:, 0]}
+
+
+def far_side_weight(motion: Motion) -> FloatArray:
+    """Weight [N m] that the arm lacks for being half the free play, and what it winds up, behind, shape (n,)."""
+    facts, carried = motion.facts, motion.load_effort
+    behind_rad = 0.5 * (facts.backlash_rad or 0.0) * np.sign(carried)
+    known_kg_m2 = motion.load_inertia_kg_m2 + (facts.arm_inertia_kg_m2 or 0.0)
+    if facts.stiffness_n_m_rad and known_kg_m2 > 0.0 and motion.inertia_beyond > 0.0:
+        effort_per_n_m = motion.inertia_beyond / known_kg_m2
+        behind_rad = behind_rad + carried / (effort_per_n_m * facts.stiffness_n_m_rad)
+    lacking: FloatArray = motion.moment_n_m * np.cos(motion.position) * behind_rad
+    return lacking
 
 
 def _columns(motion: Motion, rate_hz: float) -> FloatArray:

@@ -102,6 +102,16 @@ def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
     assert found.candidates[0].gain.low > 0.0
 
 
+@pytest.mark.parametrize(("share", "named"), [(0.9, False), (5.0, True)])
+def test_only_what_gives_more_than_the_stiffness_that_is_known_is_missing(share, named):
+    made = recordings(Joint(extra=twisting), trials=[*plans(), *SHAKEN], seed=4)
+    stiffness = share * ARM_KG_M2 * 50.0**2
+    told = replace(FACTS, arm_inertia_kg_m2=1.1 * ARM_KG_M2, stiffness_n_m_rad=stiffness)
+    found = diagnose(fit_model(make_dataset(made, told, Processing()), DEFAULT))
+    elastic = found.verdict == "missing" and found.candidates[0].effect.name == "elasticity"
+    assert elastic == named, found.sentence
+
+
 @pytest.mark.parametrize(("bend_rad", "torque_n_m"), [(0.3, 0.02), (0.6, 0.1)])
 def test_a_hose_that_bends_along_is_not_called_pre_sliding(bend_rad, torque_n_m):
     def hose(x):
