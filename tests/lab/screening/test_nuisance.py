@@ -56,6 +56,13 @@ def test_without_free_play_and_stiffness_nothing_is_behind():
     assert "far_side_weight" not in nuisance_columns(dataset_of(level))
 
 
+def test_which_columns_stand_there_is_a_matter_of_the_joint_not_of_the_trials():
+    told = replace(FACTS, backlash_rad=GAP_RAD, stiffness_n_m_rad=STIFFNESS_N_M_RAD, arm_inertia_kg_m2=0.012)
+    unloaded = dataset_of(told, TRIALS[:1])
+    for show_in in ("sliding", "moving"):
+        assert [*nuisance_columns(unloaded, show_in)] == [*nuisance_columns(dataset_of(told), show_in)]
+
+
 def dataset_of(facts: Facts, trials: list[Plan] = TRIALS) -> Dataset:
     return make_dataset(recordings(trials=trials, seed=5), facts, Processing())
 
