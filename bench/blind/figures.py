@@ -124,10 +124,19 @@ def _withheld(singles: Sequence[Result]) -> list[Figure]:
 
     middle = [one for one in asked if 0.3 <= _standing(one).ratio < 0.6]
     large = [one for one in asked if _standing(one).ratio >= 0.6]
+    same = "the same, where theory finds what is left beside the name nine times in ten"
     return [
         _share("withheld from the catalogue, flagged, r 0.3 .. 0.6", 0.8, middle, says_so),
+        _share(same, 0.8, [one for one in middle if _can_be_flagged(one)], says_so),
         _share("withheld from the catalogue, flagged, r >= 0.6", 0.95, large, says_so),
+        _share(same, 0.95, [one for one in large if _can_be_flagged(one)], says_so),
     ]
+
+
+def _can_be_flagged(one: Result) -> bool:
+    """Whether what is withheld leaves as much beside the formula named in its place as theory can find."""
+    left = one.withheld_left
+    return left is not None and left.ratio >= left.smallest
 
 
 def _unexplained_ratio(one: Result) -> float:

@@ -35,6 +35,7 @@ class Result:
         rivals: rival -> what it names.
         seconds: that the lab took.
         withheld: answer of the lab to the same data where the catalogue has no name for the truth; None: not asked.
+        withheld_left: standing of the truth beside what was named in its place; None where the oracle cannot say.
         settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
     """
 
@@ -52,6 +53,7 @@ class Result:
     refusal: str = ""
     settled: Settled | None = None
     withheld: LabAnswer | None = None
+    withheld_left: Standing | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Nested dicts."""
@@ -66,6 +68,8 @@ class Result:
         for which in ("answer", "withheld"):
             made[which] = None if values.get(which) is None else LabAnswer.from_json(values[which])
         made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
+        left = values.get("withheld_left")
+        made["withheld_left"] = None if left is None else Standing(**left)
         made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
         made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
         return cls(**made)
@@ -93,6 +97,7 @@ def judge(item: Item) -> Result:
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
         more_left = unexplained(item, found) if names == ("",) else None
         unlisted = _unlisted(fit, truths) if FAMILIES[item.family].withheld else None
+        left = None if unlisted is None else _left(fit, gathered, names[0], unlisted.first[:1])
         settled = settle(bench_for(item, drawn), recordings, fit, names[0]) if FAMILIES[item.family].settled else None
     except LabError as refusal:
         empty = (None,) * len(truths)
@@ -101,7 +106,7 @@ def judge(item: Item) -> Result:
         )
     return Result(
         item.key, item.family, truths, names, sizes, answer, standings, more_left, error, rivals, seconds,
-        settled=settled, withheld=unlisted,
+        settled=settled, withheld=unlisted, withheld_left=left,
     )  # fmt: skip
 
 
@@ -112,6 +117,13 @@ def _unlisted(fit: Fit, truths: tuple[str, ...]) -> LabAnswer | None:
         return None
     with withheld(names):
         return ask_lab(fit, several=False)
+
+
+def _left(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -> Standing | None:
+    """How far a truth stands out of the model with what was named in its place: all that is left to be flagged."""
+    if not _can_be_seen(fit, name):
+        return None
+    return standing(_judged(fit, base, list(named), name), name)
 
 
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:

@@ -75,6 +75,26 @@ def test_what_was_withheld_has_to_be_flagged_whatever_is_named_instead() -> None
     assert Result.from_json(json.loads(json.dumps(results[0].to_json()))) == results[0]
 
 
+def test_of_what_was_withheld_only_what_the_name_in_its_place_leaves_can_be_flagged() -> None:
+    flagged, passed_over = (LabAnswer("nothing", (), (), unknown, 0.5, 0.0, 0.02) for unknown in (True, False))
+
+    def asked(ratio: float, withheld: LabAnswer, left: float | None) -> Result:
+        beside = None if left is None else Standing(left, 1.0, "cogging", 0.2)
+        one = _result("single", "spring", ("spring",), ratio, 9.0)
+        return replace(one, withheld=withheld, withheld_left=beside)
+
+    results = [
+        asked(0.8, flagged, 0.5),
+        asked(0.8, passed_over, 0.1),
+        asked(0.8, passed_over, None),
+        asked(0.4, passed_over, 0.3),
+    ]
+    middle, large = [one for one in figures(results) if "left beside the name" in one.what]
+    assert (large.items, large.measured) == (1, pytest.approx(1.0))
+    assert (middle.items, middle.measured) == (1, pytest.approx(0.0))
+    assert Result.from_json(json.loads(json.dumps(results[0].to_json()))) == results[0]
+
+
 def test_what_theory_cannot_find_in_so_few_rows_is_counted_apart() -> None:
     hard = replace(_result("single", "spring", (), 0.2, 2.0), standings=(Standing(0.2, 2.0, "cogging", 0.25),))
     results = [_result("single", "spring", ("spring",), 0.3, 9.0), hard]

@@ -16,7 +16,7 @@ from compensator.lab.diagnosis.examination import (
     is_too_small,
     is_within_bounds,
 )
-from compensator.lab.diagnosis.left_over import left_over
+from compensator.lab.diagnosis.left_over import LeftOver, left_over
 from compensator.lab.diagnosis.remainder import LEAST_SHARE
 from compensator.lab.diagnosis.wording import (
     answer_in_words,
@@ -25,6 +25,7 @@ from compensator.lab.diagnosis.wording import (
     changing_in_words,
     swinging_in_words,
     unexplained_in_words,
+    wandering_in_words,
 )
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.model.fit import Fit, fit_effects, with_columns
@@ -104,10 +105,12 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         left, bursts = left_over(gathered), _bursts(gathered)
         share = left.remainder.share
         if bursts.are_there and share * np.sqrt(bursts.share) > LEAST_SHARE:
-            names = [fit.dataset.trials[index].signals.recording.name for index in bursts.trials]
+            names = [_trial_names(fit)[index] for index in bursts.trials]
             sentence, remains = bursts_in_words(bursts, names, share, p_value), True
         elif left.is_more_than_noise:
-            sentence, remains = unexplained_in_words(left, _nearest_driver(generic), p_value, stretches), True
+            wanders = _wanders(fit, left)
+            sentence = unexplained_in_words(left, _nearest_driver(generic), p_value, stretches, wanders)
+            remains = True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 
 
@@ -166,6 +169,17 @@ def _bursts(gathered: Candidates) -> Bursts:
     return bursts_of(dataset, residual[rows] * row_weights(dataset, residual, rows), rows)
 
 
+def _wanders(fit: Fit, left: LeftOver) -> str:
+    """What is another one for seconds, in words; empty where nothing is."""
+    if left.wandering is None:
+        return ""
+    return wandering_in_words(left.wandering, _trial_names(fit), fit.dataset.effort_definition.unit)
+
+
+def _trial_names(fit: Fit) -> list[str]:
+    return [trial.signals.recording.name for trial in fit.dataset.trials]
+
+
 def _nearest_driver(generic: Screening) -> str | None:
     """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
     best = generic.evidence[0] if generic.evidence else None
@@ -188,6 +202,8 @@ def _what_remains(fit: Fit, gathered: Candidates, best: Evidence) -> list[str]:
         return [f"After {name}, {changing_in_words(left.change)}; repeat a trial to see whether it comes again."]
     if left.swing is not None:
         return [f"After {name}, what is left {swinging_in_words(left.swing)}."]
+    if wanders := _wanders(fit, left):
+        return [f"After {name}, {wanders}; repeat a trial to see whether it comes again."]
     return [
         f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "
         "has structure over no variable that is measured; add it and diagnose again."

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from compensator.lab.diagnosis.constancy import Change, change_of
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
+from compensator.lab.diagnosis.wandering import Wandering, wandering_of
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
 
@@ -16,16 +17,19 @@ class LeftOver:
         remainder: how much it is, and whether it follows the motion.
         change: that something constant is another one in each stretch; None where nothing is for sure.
         swing: that it swings at one frequency; None where it does not for sure.
+        wandering: that dry friction is another one for seconds, however little; None where it is not for sure.
     """
 
     remainder: Remainder
     change: Change | None
     swing: Swing | None
+    wandering: Wandering | None = None
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        return self.remainder.is_more_than_noise or self.change is not None or self.swing is not None
+        found = self.change is not None or self.swing is not None or self.wandering is not None
+        return self.remainder.is_more_than_noise or found
 
 
 def left_over(gathered: Candidates) -> LeftOver:
@@ -41,9 +45,8 @@ def left_over(gathered: Candidates) -> LeftOver:
     swing = swing_of(dataset, base.residual, rows)
     if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
-    change = (
-        change_of(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
-        if steady
-        else None
-    )
-    return LeftOver(remainder, change, swing)
+    if not steady:
+        return LeftOver(remainder, None, swing)
+    constants = (dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
+    change = change_of(*constants)
+    return LeftOver(remainder, change, swing, wandering_of(*constants) if change is None else None)

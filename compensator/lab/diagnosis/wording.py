@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis.bursts import Bursts
-from compensator.lab.diagnosis.constancy import Change
+from compensator.lab.diagnosis.constancy import DRY_FRICTION, Change
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.left_over import LeftOver
 from compensator.lab.diagnosis.swinging import Swing
+from compensator.lab.diagnosis.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.evidence import least_p_value
@@ -72,8 +73,16 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, stretches: int) -> str:
-    """The answer where something is left that no effect and no curve explains."""
+def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, stretches: int, wanders: str = "") -> str:
+    """The answer where something is left that no effect and no curve explains.
+
+    Args:
+        left: what it is.
+        driver: that it varies with most; None where it varies with none.
+        p_value: as in a diagnosis.
+        stretches: independent stretches of BLOCK_S that it rests on.
+        wanders: what is another one for seconds, in words; empty where nothing is.
+    """
     none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
     if least_p_value(stretches) > SIGNIFICANT:
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
@@ -81,6 +90,8 @@ def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, str
         how = changing_in_words(left.change)
     elif left.swing is not None:
         how = f"it {swinging_in_words(left.swing)}"
+    elif wanders:
+        how = wanders
     elif driver is not None:
         how = f"it varies with {driver}, most of all that is measured"
     else:
@@ -100,6 +111,16 @@ def swinging_in_words(swing: Swing) -> str:
 def changing_in_words(change: Change) -> str:
     """What is not as constant as the model takes it for."""
     return f"{change.what} changes from one stretch of {BLOCK_S:g} s to the next, by {change.share:.1%} of the effort"
+
+
+def wandering_in_words(wandering: Wandering, trials: Sequence[str], unit: str) -> str:
+    """What is another one for seconds, by how much, and where to look for that."""
+    moments = " and ".join(f"{trials[index]} at {at_s:.1f} s" for index, at_s in wandering.changes)
+    of = "it" if wandering.what == DRY_FRICTION else "the effort"
+    return (
+        f"{wandering.what} is another one for seconds at a time, by {wandering.size:.2g} {unit}, {wandering.share:.1%} "
+        f"of {of}; it changes most in {moments}"
+    )
 
 
 def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: float) -> str:

@@ -1,0 +1,122 @@
+"""Dry friction that is another one for seconds is told however little it is; what scatters in any joint is not."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis import wandering
+from compensator.lab.diagnosis.constancy import DRY_FRICTION, OFFSET, change_of
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.wandering import _likelihood, _Trial, wandering_of
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import gather
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+COULOMB_N_M = 0.08
+
+
+def fitted(extra=None, seed=0, **bench):
+    made = recordings(Joint(extra=extra), Bench(**{"duration_s": 6.0, "noise": 0.003, **bench}), plans(), seed)
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+
+
+def judged(fit, by=wandering_of):
+    gathered = gather(fit)
+    static = fit.static_friction[gathered.rows]
+    return by(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights, fit.dry_friction, static)
+
+
+def jumping(share, of=lambda x: np.sign(x.v)):
+    """What is larger or smaller, by a share of dry friction, from a moment on that differs from trial to trial."""
+    random = np.random.default_rng(5)
+
+    def extra(x):
+        at_s, way = random.uniform(1.5, 4.5), random.choice([-1.0, 1.0])
+        return share * way * COULOMB_N_M * np.where(x.time_s > at_s, 1.0, -1.0) * of(x)
+
+    return extra
+
+
+def along_the_path(share):
+    """Dry friction that wanders along the path, alike over 0.05 rad of it."""
+    random = np.random.default_rng(7)
+
+    def extra(x):
+        steps = np.abs(np.diff(x.q, prepend=x.q[0]))
+        value, found = random.standard_normal(), np.empty(len(x.q))
+        for i, step in enumerate(steps):
+            alike = np.exp(-step / 0.05)
+            value = alike * value + np.sqrt(1.0 - alike**2) * random.standard_normal()
+            found[i] = value
+        return share * COULOMB_N_M * found * np.sign(x.v)
+
+    return extra
+
+
+def from_stop_to_stop(share):
+    """Static friction that is another one after each stop."""
+    random = np.random.default_rng(11)
+
+    def extra(x):
+        stroke = np.cumsum(np.diff(np.sign(x.v), prepend=0.0) != 0.0)
+        scatter = share * random.standard_normal(stroke.max() + 1)
+        return scatter[stroke] * 0.12 * np.exp(-np.abs(x.v) / 0.25) * np.sign(x.v)
+
+    return extra
+
+
+@pytest.mark.parametrize(
+    ("what", "of"),
+    [(DRY_FRICTION, lambda x: np.sign(x.v)), (OFFSET, lambda x: np.ones_like(x.v))],
+    ids=["dry", "offset"],
+)
+def test_a_jump_that_is_too_small_for_stretches_is_told_with_its_size_and_where_it_is(what, of):
+    fit = fitted(jumping(0.03, of))
+    assert judged(fit, change_of) is None
+    found = judged(fit)
+    assert found is not None
+    assert found.what == what
+    assert found.size == pytest.approx(0.03 * COULOMB_N_M, rel=0.5)
+    whole = fit.dry_friction if what == DRY_FRICTION else np.sqrt(np.mean(fit.dataset.effort[fit.training] ** 2))
+    assert found.share == pytest.approx(found.size / whole, rel=1e-3)
+    assert all(1.0 < at_s < 5.0 for _, at_s in found.changes)
+
+
+def test_the_answer_names_what_wanders_and_where():
+    fit = fitted(jumping(0.03))
+    found, answer = judged(fit), diagnose(fit)
+    assert answer.remains
+    assert "dry friction is another one for seconds at a time" in answer.sentence
+    assert fit.dataset.trials[found.changes[0][0]].signals.recording.name in answer.sentence
+
+
+@pytest.mark.parametrize("extra", [None, along_the_path(0.03), from_stop_to_stop(0.05)], ids=["noise", "path", "stops"])
+@pytest.mark.parametrize("seed", range(2))
+def test_what_any_joint_has_is_no_wandering(extra, seed):
+    assert judged(fitted(extra, seed)) is None
+
+
+def test_the_gradient_of_the_likelihood_is_its_slope():
+    random = np.random.default_rng(2)
+    root = random.standard_normal((2, 9, 9))
+    kernels = np.array([np.eye(9), *(one @ one.T for one in root)])
+    trial = _Trial(0, np.arange(9.0), random.standard_normal((9, 2)), random.standard_normal(9), np.ones(9), kernels)
+    at, step = np.array([0.7, 0.2, 0.4]), 1e-6
+    found = _likelihood(at, [kernels], [trial])
+    for index in range(3):
+        beyond = at + step * np.eye(3)[index]
+        slope = (_likelihood(beyond, [kernels], [trial]).value - found.value) / step
+        assert found.gradient[index] == pytest.approx(slope, rel=1e-3, abs=1e-4)
+
+
+def test_long_trials_have_longer_cells_and_of_many_trials_some_are_looked_at(monkeypatch):
+    gathered = gather(fitted())
+    monkeypatch.setattr(wandering, "MOST_CELLS", 10)
+    monkeypatch.setattr(wandering, "MOST_TRIALS", 3)
+    weights = gathered.weights
+    trials = wandering._cells(gathered.fit.dataset, gathered.rows, gathered.bases[0], weights, weights)
+    strokes = max(len(np.unique(trial.motion.strokes.index)) for trial in gathered.fit.dataset.trials)
+    assert len(trials) <= 3
+    assert max(len(trial.residual) for trial in trials) <= 11 + strokes
