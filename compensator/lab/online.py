@@ -83,6 +83,7 @@ class OnlineFriction:
             predicted=nothing,
             effort_rate=nothing,
             largest_effort=0.0,
+            bend=nothing,
             temperature_c=temperature_c * ones,
             supply_v=np.nan * ones,
             position_span=self.scales.position_span,

@@ -118,7 +118,7 @@ def _mirrored_trials(fit: Fit) -> list[str]:
     """
     dataset, found = fit.dataset, []
     kept = np.concatenate([term.kept for term in fit.terms])
-    bounds, columns, effort = fit.bounds.of(kept), fit.columns[:, kept], dataset.effort
+    bounds, columns, effort = fit.bounds.of(kept), fit.columns[:, kept], fit.target
     trained = columns[fit.training]
     whole = trained.T @ trained, trained.T @ effort[fit.training]
     for index, trial in enumerate(dataset.trials):

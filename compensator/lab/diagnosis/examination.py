@@ -29,8 +29,10 @@ VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
     rows = gathered.show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
-    before = held_out(fit, rows)
-    afters = [held_out(_with_effect(fit, item), rows) for item in evidence]
+    # near reversals a part of the whole error is asked for, since every chain leaves a little there
+    steady = fit.dataset.steadiness if gathered.show_in == "sliding" else None
+    before = held_out(fit, rows, steady)
+    afters = [held_out(_with_effect(fit, item), rows, steady) for item in evidence]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
     candidates = []

@@ -160,13 +160,15 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidenc
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
-    return best if held_out_gain(held_out(fit), held_out(with_curve)).low > 0.0 else None
+    steady = fit.dataset.steadiness
+    return best if held_out_gain(held_out(fit, None, steady), held_out(with_curve, None, steady)).low > 0.0 else None
 
 
 def _bursts(gathered: Candidates) -> Bursts:
     """Stretches that leave far more than others of like motion."""
     dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
-    return bursts_of(dataset, residual[rows] * row_weights(dataset, residual, rows), rows)
+    weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
+    return bursts_of(dataset, residual[rows] * weights, rows)
 
 
 def _wanders(fit: Fit, left: LeftOver) -> str:

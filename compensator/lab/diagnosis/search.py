@@ -102,7 +102,8 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
             swapped = fit_effects(
                 fit.dataset, [better if other == name else other for other in fit.names], fit.training
             )
-            if held_out(swapped).rms < held_out(fit).rms:
+            steady = without.dataset.steadiness
+            if held_out(swapped, weight=steady).rms < held_out(fit, weight=steady).rms:
                 fit = swapped
                 steps.append(_step("swap", str(better), name, fit))
     return steps
@@ -115,7 +116,8 @@ def _drops(start: Fit, fit: Fit) -> list[Step]:
         without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
-        if held_out_gain(held_out(alike, rows), held_out(fit, rows)).low <= 0.0:
+        steady = without.dataset.steadiness
+        if held_out_gain(held_out(alike, rows, steady), held_out(fit, rows, steady)).low <= 0.0:
             fit = without
             steps.append(_step("drop", name, None, fit))
     return steps

@@ -8,7 +8,7 @@ from compensator.lab.recordings.recording import FloatArray
 
 def shapes(_: Motion) -> list[Shape]:
     """Shares of the largest effort below which the predicted effort is too uncertain to tell its sign."""
-    return [(0.01,), (0.02,), (0.05,)]
+    return [(0.0025,), (0.005,), (0.01,), (0.02,), (0.05,)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
@@ -20,6 +20,12 @@ def discrepancy(motion: Motion, shape: Shape) -> FloatArray:
     """Where the current is zero, as it is not known as well as effort: derivatives of tanh(i + i_0 + F sgn v + D v)."""
     near_zero = 1.0 - np.tanh(_over_uncertain(motion, shape)) ** 2
     return np.array([near_zero, near_zero * motion.direction, near_zero * motion.velocity])
+
+
+def slope(motion: Motion, shape: Shape) -> FloatArray:
+    """Derivative of the smooth sign by the predicted effort."""
+    width = shape[0] * (motion.largest_effort or 1.0)
+    return (1.0 - np.tanh(_over_uncertain(motion, shape)) ** 2)[None] / width
 
 
 def _over_uncertain(motion: Motion, shape: Shape) -> FloatArray:
@@ -48,4 +54,5 @@ EFFECT = Effect(
     efforts=("terminal_voltage", "current_estimate"),
     builds_on="effort",
     discrepancy=discrepancy,
+    slope=slope,
 )

@@ -33,6 +33,7 @@ class Motion:
         parting: acceleration at which the motor side would leave what hangs beyond the gear behind, were it not driven.
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
+        bend: what effects of the model with a `slope` add for each unit of effort that is predicted more.
         temperature_c, supply_v: NaN where not measured.
         position_span: range of position over all trials of the study.
         session_span_s: from the first trial's start to the last one's end, as far as the conditions tell.
@@ -55,6 +56,7 @@ class Motion:
     predicted: FloatArray
     effort_rate: FloatArray
     largest_effort: float
+    bend: FloatArray
     temperature_c: FloatArray
     supply_v: FloatArray
     position_span: float
@@ -215,6 +217,9 @@ class Effect:
         least_of_friction: lowest coefficient over the model's dry friction: what stands in its place is as large as it.
         shape_over: (motions of all trials) -> the one shape that they give, in place of a scan; None: `shapes`.
         provisional: no mechanism, but a curve that stands for one that nobody knows yet.
+        misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
+        slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
+            that the column cannot be taken for fixed while the rest is fitted.
         ends_within_scan: what fits best at the upper end of its scan goes on beyond it, and is something else.
     """
 
@@ -249,6 +254,8 @@ class Effect:
     ends_within_scan: bool = False
     shape_over: Callable[[Sequence[Motion]], Shape] | None = None
     provisional: bool = False
+    misreads: Callable[[Motion, Shape], FloatArray] | None = None
+    slope: Callable[[Motion, Shape], FloatArray] | None = None
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:
         """Shapes to scan, given the motions of all trials."""

@@ -21,9 +21,14 @@ def columns(motion: Motion, shape: Shape) -> FloatArray:
 
 
 def discrepancy(motion: Motion, shape: Shape) -> FloatArray:
-    """The second order in the angle that is misread, which goes round twice as often."""
-    rate = 1.0 / motion.step_s
-    return np.array([motion.inertia * rate_of_change(speed, rate) for speed in _rates(motion, 2.0 * shape[0])])
+    """The second and third order in the angle that is misread, which go round two and three times as often."""
+    return np.concatenate([columns(motion, (order * shape[0],)) for order in (2.0, 3.0)])
+
+
+def misreads(motion: Motion, shape: Shape) -> FloatArray:
+    """Cosine and sine of the encoder's turn; what goes by speed is no angle."""
+    phase = shape[0] * motion.position
+    return np.array([np.cos(phase), np.sin(phase)])
 
 
 def _rates(motion: Motion, order: float) -> list[FloatArray]:
@@ -57,4 +62,5 @@ EFFECT = Effect(
     pipeline=True,
     builds_on="inertia",
     discrepancy=discrepancy,
+    misreads=misreads,
 )

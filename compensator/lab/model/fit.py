@@ -52,6 +52,7 @@ class Fit:
         terms: the fitted effects, in the model's order.
         columns: of all terms, shape (N, K).
         weight: of each row in the fit, shape (N,).
+        target: what the columns were fitted to, shape (N,): the effort, or that of the model's tangent where it bends.
     """
 
     dataset: Dataset
@@ -59,6 +60,7 @@ class Fit:
     terms: tuple[Term, ...]
     columns: FloatArray
     weight: FloatArray
+    target: FloatArray
 
     @property
     def coefficients(self) -> FloatArray:
@@ -101,19 +103,19 @@ class Fit:
 
     @property
     def training_equations(self) -> tuple[FloatArray, FloatArray]:
-        """Weighted columns (n, K) and effort (n,) of the training rows."""
+        """Weighted columns (n, K) and target (n,) of the training rows."""
         weight = self.weight[self.training]
-        return weight[:, None] * self.columns[self.training], weight * self.dataset.effort[self.training]
+        return weight[:, None] * self.columns[self.training], weight * self.target[self.training]
 
     @property
     def predicted(self) -> FloatArray:
         """Predicted effort of every row, shape (N,)."""
-        return self.columns @ self.coefficients
+        return self.dataset.effort - self.residual
 
     @property
     def residual(self) -> FloatArray:
         """Measured minus predicted effort of every row, shape (N,)."""
-        return self.dataset.effort - self.predicted
+        return self.target - self.columns @ self.coefficients
 
 
 def fit_model(
@@ -186,16 +188,19 @@ def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -
 def _fit(
     dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
 ) -> Fit:
+    dataset = dataset.straightened()
     plain = [effect for effect in effects if not effect.uses_prediction]
     shapes = find_shapes(dataset, plain or effects, rows, kept, weight)
     fit = fit_linear(dataset, plain or effects, rows, shapes, weight)
     if len(plain) == len(effects):
         return fit
-    fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept})
-    return _settle(fit, effects, find_shapes(with_own_prediction(fit), effects, rows, kept, weight, fit.shapes))
+    fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept}, weight)
+    own = with_own_prediction(fit)
+    shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, fit.shapes)
+    return _settle(fit, effects, shapes, weight)
 
 
-def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) -> Fit:
+def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], weight: FloatArray) -> Fit:
     """Refit until the load that the model predicts is the load that its own terms are built from.
 
     Teeth that meet a little sooner or later leave a rest that does not shrink any more: there, too, it ends.
@@ -203,7 +208,7 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) ->
     last = np.inf
     for _ in range(MOST_PASSES):
         before = fit.predicted
-        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes, fit.weight)
+        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes, weight)
         change = float(np.linalg.norm(fit.predicted - before))
         if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or change >= last:
             break
@@ -214,15 +219,16 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape]) ->
 def fit_linear(
     dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, shapes: Mapping[str, Shape], weight: FloatArray
 ) -> Fit:
-    """Fit the coefficients of effects of given shapes to the given rows, weighted (N,)."""
+    """Fit the coefficients of effects of given shapes to the given rows, weighted (N,), and by their steadiness."""
+    weight = weight * dataset.steadiness
     columns = dataset.columns_of_model(effects, shapes)
     if int(rows.sum()) < 2 * columns.shape[1]:
         raise UnusableDataError(
             f"{int(rows.sum())} training rows for {columns.shape[1]} coefficients; record longer or more trials"
         )
     inside = weight[rows]
-    solution = solve(inside[:, None] * columns[rows], inside * dataset.effort[rows], bounds_of(effects, dataset))
-    return Fit(dataset, rows, _terms(effects, shapes, solution), columns, weight)
+    solution = solve(inside[:, None] * columns[rows], inside * dataset.target[rows], bounds_of(effects, dataset))
+    return Fit(dataset, rows, _terms(effects, shapes, solution), columns, weight, dataset.target)
 
 
 def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Solution) -> tuple[Term, ...]:
@@ -252,7 +258,8 @@ def with_coefficients(fit: Fit, coefficients: FloatArray) -> Fit:
     """The fit with other coefficients (K,), and what the model then predicts."""
     changed = with_terms(fit, coefficients)
     dataset = with_own_prediction(changed)
-    return replace(changed, dataset=dataset, columns=dataset.columns_of_model(fit.effects, fit.shapes))
+    columns = dataset.columns_of_model(fit.effects, fit.shapes)
+    return replace(changed, dataset=dataset, columns=columns, target=dataset.target)
 
 
 def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
@@ -265,12 +272,12 @@ def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
     """
     unit = "{effort}"
     parameters = tuple(Parameter(f"knot {index + 1}", unit) for index in range(columns.shape[1]))
-    curve = Effect(name, name, "", "", _no_columns, parameters, "time", "", "")
+    curve = Effect(name, name, "", "", _no_columns, parameters, "time", "", "", builds_on="effort")  # no part of that
     wide = np.column_stack([fit.columns, columns])
     effects = [*(term.effect for term in fit.terms), curve]
     inside = fit.weight[fit.training]
-    effort = inside * fit.dataset.effort[fit.training]
-    solution = solve(inside[:, None] * wide[fit.training], effort, bounds_of(effects, fit.dataset))
+    target = inside * fit.target[fit.training]
+    solution = solve(inside[:, None] * wide[fit.training], target, bounds_of(effects, fit.dataset))
     shapes = {**fit.shapes, name: ()}
     return replace(fit, terms=_terms(effects, shapes, solution), columns=wide)
 

@@ -5,14 +5,17 @@ inertia is accelerated before the teeth. It is always the model's prediction, ne
 measurement, a load-dependent term would explain the effort with itself.
 """
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
+from compensator.lab.recordings.recording import FloatArray
 
 if TYPE_CHECKING:
-    from compensator.lab.model.fit import Fit
+    from compensator.lab.model.fit import Fit, Term
     from compensator.lab.rows.dataset import Dataset
 
 
@@ -37,7 +40,39 @@ def with_own_prediction(fit: "Fit") -> "Dataset":
         loads.append(load + known * trial.motion.acceleration)
         totals.append(total)
         wholes.append(whole)
-    return fit.dataset.with_prediction(loads, totals, beyond, wholes)
+    dataset = fit.dataset.with_prediction(loads, totals, beyond, wholes)
+    steep = [term for term in fit.terms if term.effect.slope is not None and np.any(term.coefficients)]
+    return dataset.with_bend([_bend(steep, trial.motion) for trial in dataset.trials]) if steep else dataset
+
+
+def beyond_tangent(fit: "Fit", index: int, coefficients: FloatArray) -> FloatArray:
+    """What a model that bends predicts with other coefficients (K,), less what its columns make of them.
+
+    Returns:
+        Of the rows of one trial, shape (n,).
+    """
+    trial = fit.dataset.trials[index]
+    ends = np.cumsum([len(term.coefficients) for term in fit.terms])[:-1]
+    parts = list(zip(fit.terms, np.split(coefficients, ends), strict=True))
+    shares = [part @ t.effect.columns(trial.motion, t.shape) for t, part in parts if t.effect.builds_on != "effort"]
+    total = np.sum(shares, axis=0)
+    moved = replace(trial.motion, predicted=total)
+    found = trial.motion.bend * (trial.motion.predicted - total)
+    for term, part in parts:
+        if term.effect.slope is not None:
+            found = found + part @ (
+                term.effect.columns(moved, term.shape) - term.effect.columns(trial.motion, term.shape)
+            )
+    return replace(fit.dataset, trials=(trial,), cache={}).stack([found[None]])[:, 0]
+
+
+def _bend(steep: Sequence["Term"], motion: Motion) -> FloatArray:
+    """What steep terms add for each unit of effort that is predicted more, shape (n,)."""
+    bend = np.zeros(len(motion.time_s))
+    for term in steep:
+        assert term.effect.slope is not None
+        bend += term.coefficients @ term.effect.slope(motion, term.shape)
+    return bend
 
 
 def effort_per_torque(fit: "Fit") -> float | None:

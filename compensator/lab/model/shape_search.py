@@ -64,7 +64,7 @@ class _Search:
     ) -> None:
         self._dataset, self._effect, self._rows, self._weight = dataset, effect, rows, weight[:, None]
         self._basis = orthonormal(self._weight * fixed)
-        effort = weight * dataset.effort[rows]
+        effort = weight * dataset.target[rows]
         self._rest = effort - self._basis @ (self._basis.T @ effort)
         self._grid = effect.grid([trial.motion for trial in dataset.trials])
         parameters = effect.parameters

@@ -30,24 +30,30 @@ class Sums:
     """Normal equations of some rows.
 
     Attributes:
-        gram: shape (k, k); moment: shape (k,), of columns and effort.
-        power: sum of squared efforts.
+        gram: shape (k, k); moment: shape (k,), of columns and target.
+        power: sum of squared targets; effort_power: of squared efforts.
         rows: how many.
     """
 
     gram: FloatArray
     moment: FloatArray
     power: float
+    effort_power: float
     rows: int
 
     @classmethod
-    def of(cls, columns: FloatArray, effort: FloatArray) -> "Sums":
-        """Of columns (n, k) and effort (n,)."""
-        return cls(columns.T @ columns, columns.T @ effort, float(effort @ effort), len(effort))
+    def of(cls, columns: FloatArray, target: FloatArray, effort: FloatArray) -> "Sums":
+        """Of columns (n, k), what they are fitted to (n,), and effort (n,)."""
+        powers = float(target @ target), float(effort @ effort)
+        return cls(columns.T @ columns, columns.T @ target, *powers, len(effort))
 
     def __add__(self, other: "Sums") -> "Sums":
         return Sums(
-            self.gram + other.gram, self.moment + other.moment, self.power + other.power, self.rows + other.rows
+            self.gram + other.gram,
+            self.moment + other.moment,
+            self.power + other.power,
+            self.effort_power + other.effort_power,
+            self.rows + other.rows,
         )
 
     def residual_power(self, coefficients: FloatArray) -> float:
@@ -117,8 +123,8 @@ def fit_streamed(fit: Fit, recordings: Iterable[Recording]) -> Streamed:
         trials=len(trials),
         rows=whole.rows,
         samples=samples,
-        training=float(np.sqrt(whole.residual_power(inside) / whole.power)),
-        held_out=float(np.sqrt(np.sum(outside) / whole.power)),
+        training=float(np.sqrt(whole.residual_power(inside) / whole.effort_power)),
+        held_out=float(np.sqrt(np.sum(outside) / whole.effort_power)),
         skipped=skipped,
     )
 
@@ -159,7 +165,7 @@ def _sums(fit: Fit, recording: Recording, kept: BoolArray) -> Sums:
     made = dataset.columns_of_effects([(term.effect, [term.shape]) for term in fit.terms])
     columns = np.concatenate([block for (block,) in made], axis=1)[:, kept]
     rows = dataset.in_regimes(dataset.choice_for(fit.effects))
-    return Sums.of(columns[rows], dataset.effort[rows])
+    return Sums.of(columns[rows], dataset.target[rows], dataset.effort[rows])
 
 
 def _total(parts: list[Sums]) -> Sums:

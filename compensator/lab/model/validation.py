@@ -4,13 +4,14 @@ Held-out trials where the study names some; else each training trial is left out
 per trial, so leaving one out costs one small solve. Nonlinear shapes stay those of the whole training set.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from compensator.lab.model.fit import Fit, trained_trials
 from compensator.lab.model.linear import solve_without
+from compensator.lab.model.prediction import beyond_tangent
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import IntArray, RowChoice
@@ -42,6 +43,13 @@ class HeldOut:
     relative: float
     rms: float
 
+    def weighted(self, weight: FloatArray) -> "HeldOut":
+        """The same, each of these rows multiplied by a weight."""
+        residual, effort = weight * self.residual, weight * self.effort
+        return replace(
+            self, residual=residual, effort=effort, relative=relative_error(residual, effort), rms=rms(residual)
+        )
+
     def power_by_unit(self) -> FloatArray:
         """Sum of squared residuals of each independent unit, in order of its label."""
         return self._by_unit(self.residual)
@@ -66,7 +74,7 @@ def rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")
 
 
-def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
+def held_out(fit: Fit, rows: RowChoice | None = None, weight: FloatArray | None = None) -> HeldOut:
     """The held-out error of a fit: on the trials it was not trained on, or by leaving one out in turn.
 
     With fewer than four training trials and none held out, stretches of BLOCK_S are left out instead: an optimistic
@@ -75,8 +83,14 @@ def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
     Args:
         fit: to be judged.
         rows: that are judged; None takes the study's.
+        weight: of each row's residual and effort, shape (N,), for models to be held against each other by what they
+            know well (see `Dataset.steadiness`); None: all count alike.
     """
-    judged = fit.dataset.in_regimes(rows or fit.dataset.rows)
+    found = _held_out(fit, fit.dataset.in_regimes(rows or fit.dataset.rows))
+    return found if weight is None else found.weighted(weight[found.rows])
+
+
+def _held_out(fit: Fit, judged: BoolArray) -> HeldOut:
     trials = fit.dataset.trial_index
     trained = trained_trials(fit.dataset, fit.training)
     outside = judged & ~np.isin(trials, trained)
@@ -106,8 +120,18 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
         inside = columns[own]
         rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
         seen = rows & (units == label)
-        residual[seen] = fit.dataset.effort[seen] - fit.columns[seen][:, kept] @ rest
+        residual[seen] = fit.target[seen] - fit.columns[seen][:, kept] @ rest
+        if fit.dataset.is_bent and seen.any():
+            residual[seen] -= _beyond_tangent(fit, kept, rest, seen)
     return _result(fit, kind, rows, residual[rows], units[rows])
+
+
+def _beyond_tangent(fit: Fit, kept: BoolArray, coefficients: FloatArray, rows: BoolArray) -> FloatArray:
+    """What straight columns miss where the model bends, with other coefficients (k,), on chosen rows (N,)."""
+    trials = fit.dataset.trial_index
+    whole = np.zeros(len(kept))
+    whole[kept] = coefficients
+    return np.concatenate([beyond_tangent(fit, i, whole)[rows[trials == i]] for i in np.unique(trials[rows])])
 
 
 def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:

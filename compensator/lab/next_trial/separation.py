@@ -219,7 +219,8 @@ class Separation(Rivalry):
         columns = [dataset.unchecked_columns(term.effect, [term.shape])[0] for term in self._fit.terms]
         counted = dataset.in_regimes(self._show_in)
         fit = replace(planned, dataset=dataset, columns=np.concatenate(columns, axis=1))
-        stacked = self._columns(fit, self._weights.of(dataset, counted), counted)
+        weights = self._weights.of(dataset, counted) * dataset.steadiness[counted]
+        stacked = self._columns(fit, weights, counted)
         return Equations(len(stacked), stacked.T @ stacked)
 
     def _columns(self, fit: Fit, weights: FloatArray, rows: BoolArray) -> FloatArray:

@@ -160,6 +160,7 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
         predicted=nothing,
         effort_rate=nothing,
         largest_effort=0.0,
+        bend=nothing,
         temperature_c=signals.temperature_c,
         supply_v=signals.supply_v,
         position_span=scales.position_span,

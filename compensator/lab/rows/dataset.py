@@ -98,6 +98,31 @@ class Dataset:
         return self.cache[kept]
 
     @cached_property
+    def bent_effort(self) -> FloatArray:
+        """What the model's bend adds for all of the predicted effort, filtered, shape (N,); see `with_bend`."""
+        if not self.is_bent:
+            return np.zeros(len(self.effort))
+        return self.stack([(trial.motion.bend * trial.motion.predicted)[None] for trial in self.trials])[:, 0]
+
+    @cached_property
+    def target(self) -> FloatArray:
+        """Filtered effort that columns are fitted to, shape (N,): where the model bends, that of its tangent."""
+        return self.effort + self.bent_effort
+
+    @cached_property
+    def steadiness(self) -> FloatArray:
+        """Weight of each row, shape (N,): where the model bends, whatever it misses comes multiplied."""
+        if not self.is_bent:
+            return np.ones(len(self.effort))
+        bends = self.stack([np.abs(trial.motion.bend)[None] for trial in self.trials])[:, 0]
+        return 1.0 / (1.0 + np.maximum(bends, 0.0))
+
+    @cached_property
+    def is_bent(self) -> bool:
+        """Whether any column carries what an effect with a slope makes of it."""
+        return any(bool(np.any(trial.motion.bend)) for trial in self.trials)
+
+    @cached_property
     def trial_index(self) -> IntArray:
         """Which trial each row belongs to, shape (N,)."""
         return np.concatenate([np.full(len(t.picked), i, dtype=np.int64) for i, t in enumerate(self.trials)])
@@ -181,16 +206,17 @@ class Dataset:
         A filter's call costs more than its work on a short trial, so that many columns cost little more than one.
         Unchecked: see `unchecked_columns`.
         """
-        missing = [(e, shape) for e, shapes in wanted for shape in shapes if (e.name, shape) not in self.cache]
+        cache = {} if self.is_bent else self.cache  # what is kept knows of no bend
+        missing = [(e, shape) for e, shapes in wanted for shape in shapes if (e.name, shape) not in cache]
         made: dict[tuple[str, Shape], FloatArray] = {}
         for some in self._portions(missing):
             ends = np.cumsum([len(effect.parameters) for effect, _ in some])[:-1]
-            full_rate = (np.concatenate([e.columns(t.motion, shape) for e, shape in some]) for t in self.trials)
+            full_rate = (np.concatenate([_passed_on(e, t.motion, shape) for e, shape in some]) for t in self.trials)
             blocks = np.split(self.stack(full_rate), ends, axis=1)
             made.update({(effect.name, shape): block for (effect, shape), block in zip(some, blocks, strict=True)})
-            self.cache.update({(e.name, shape): made[e.name, shape] for e, shape in some if not e.uses_prediction})
+            cache.update({(e.name, shape): made[e.name, shape] for e, shape in some if not e.uses_prediction})
         return [
-            [made[e.name, shape] if (e.name, shape) in made else self.cache[e.name, shape] for shape in shapes]
+            [made[e.name, shape] if (e.name, shape) in made else cache[e.name, shape] for shape in shapes]
             for e, shapes in wanted
         ]
 
@@ -238,6 +264,7 @@ class Dataset:
                     predicted=total,
                     effort_rate=rate_of_change(total, trial.signals.rate_hz),
                     largest_effort=largest,
+                    bend=np.zeros(len(total)),
                 ),
             )
             for trial, load, total, (part, parting), whole in zip(
@@ -245,6 +272,22 @@ class Dataset:
             )
         )
         return replace(self, trials=trials)
+
+    def with_bend(self, bends: Sequence[FloatArray]) -> "Dataset":
+        """The same rows of a model f(p) + p that is steep in what it predicts, p, linearised about that (Gauss-Newton).
+
+        Every column that p is made of carries 1 + f'(p), and f'(p) p is added to the effort that they are fitted to.
+
+        Args:
+            bends: f'(p) of each trial's motion, shape (n,).
+        """
+        motions = [replace(trial.motion, bend=bend) for trial, bend in zip(self.trials, bends, strict=True)]
+        trials = tuple(replace(trial, motion=motion) for trial, motion in zip(self.trials, motions, strict=True))
+        return replace(self, trials=trials)
+
+    def straightened(self) -> "Dataset":
+        """The same rows, for a model that is still to be fitted: nothing bends."""
+        return self.with_bend([np.zeros(len(trial.motion.time_s)) for trial in self.trials]) if self.is_bent else self
 
     def check_applicable(self, effect: Effect) -> None:
         """Raise NotApplicableError, in words, where the recordings lack what the effect needs."""
@@ -276,3 +319,9 @@ class Dataset:
 
     def _filtered(self, trial: Trial, full_rate: FloatArray) -> FloatArray:
         return low_pass(full_rate, self.cutoff_hz, trial.signals.rate_hz)[:, trial.picked]
+
+
+def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:
+    """The effect's columns (k, n), and what the model makes of them where it bends."""
+    columns = effect.columns(motion, shape)
+    return columns if effect.builds_on == "effort" else columns * (1.0 + motion.bend)

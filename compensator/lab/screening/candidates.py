@@ -129,7 +129,7 @@ def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
     dataset = with_own_prediction(fit)
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
-    weights = row_weights(dataset, fit.residual, rows)
+    weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
     weights = weights * bounded_influence(fit.residual[rows], weights)
     builder = _Builder(fit, show_in, rows, weights)
     return Candidates(fit, show_in, rows, weights, builder.bases, [], Curves(dataset, builder.weighted), {}), builder
@@ -182,7 +182,7 @@ class _Builder:
             kept = [column for name, column in self._nuisance.items() if name not in nuisances]
             columns = np.column_stack([self._model, *kept])
             self._index[nuisances] = len(self.bases)
-            effort = self._weights * self._fit.dataset.effort[self._rows]
+            effort = self._weights * self._fit.target[self._rows]
             self.bases.append(Base.of(self.weighted(columns), effort))
         return self._index[nuisances]
 

@@ -5,18 +5,21 @@ beside noise, and then whatever effect of the catalogue is most like it would be
 discrepancy). So candidates are judged on top of
 
 - the tangent of every fitted shape,
-- columns that an effect itself says its truth may differ by (`Effect.discrepancy`), and
+- columns that an effect itself says its truth may differ by (`Effect.discrepancy`),
+- what all other effects make of an angle that one of them says is misread (`Effect.misreads`), and
 - the product of every two shares of dry friction, and of one with the other's tangents: what changes friction changes
   all of it, be it the weight, the angle or the grease, and an interaction of effects that are there is likelier than
   one more effect (Hamada, Wu 1992: effect heredity).
 """
 
+from dataclasses import replace
 from itertools import chain, combinations
 
 import numpy as np
 
 from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fit import Fit, Term
+from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import FloatArray
 
 TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
@@ -32,7 +35,8 @@ def discrepancy_columns(fit: Fit) -> FloatArray:
     """What formulas leave open beside their shapes, over all rows, shape (N, k)."""
     dataset = fit.dataset
     terms = [term for term in fit.terms if np.any(term.coefficients)]
-    full_rate = (np.array([*_own(terms, trial.motion), *_products(terms, trial.motion)]) for trial in dataset.trials)
+    motions = [trial.motion for trial in dataset.trials]
+    full_rate = (np.array([*_own(terms, m), *_misread(terms, m), *_products(terms, m)]) for m in motions)
     first = next(full_rate)  # the others one by one: all of them at the full rate would need much memory
     return dataset.stack(chain([first], full_rate)) if len(first) else np.empty((len(dataset.effort), 0))
 
@@ -51,6 +55,43 @@ def _own(terms: list[Term], motion: Motion) -> list[FloatArray]:
     """What effects say of themselves, (n,) each."""
     found = [term.effect.discrepancy(motion, term.shape) for term in terms if term.effect.discrepancy is not None]
     return [column for columns in found for column in columns]
+
+
+def _misread(terms: list[Term], motion: Motion) -> list[FloatArray]:
+    """What all other terms make of an angle that is misread; (n,) each.
+
+    As it was found, to second order: the angle is misread at where the joint is, not at where it seems to be. And of
+    that size in every phase, since what was found is not exact.
+    """
+    found = []
+    for term in terms:
+        if term.effect.misreads is None:
+            continue
+        others = [other for other in terms if other is not term and other.effect.builds_on is None]
+        angles = term.effect.misreads(motion, term.shape)
+        own = term.coefficients[: len(angles)]
+        nearer = _at_angle(motion, motion.position + own @ angles)
+        corrected = own @ term.effect.misreads(nearer, term.shape)
+        for angle in (*(float(np.linalg.norm(own)) * angles), corrected):
+            moved = _at_angle(motion, motion.position + angle)
+            changes = [_share(one, moved, one.shape) - _share(one, motion, one.shape) for one in others]
+            found.append(np.sum(changes, axis=0))
+    return found
+
+
+def _at_angle(motion: Motion, position: FloatArray) -> Motion:
+    """The motion as it would be with another position; the way that it goes stays."""
+    rate = 1.0 / motion.step_s
+    moved = position - motion.position
+    speed = rate_of_change(moved, rate)
+    acceleration = rate_of_change(speed, rate)
+    return replace(
+        motion,
+        position=position,
+        velocity=motion.velocity + speed,
+        acceleration=motion.acceleration + acceleration,
+        jerk=motion.jerk + rate_of_change(acceleration, rate),
+    )
 
 
 def _products(terms: list[Term], motion: Motion) -> list[FloatArray]:

@@ -37,6 +37,7 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
         predicted=0.7 * np.cos(q) - 0.3,
         effort_rate=4.0 * v,
         largest_effort=1.5,
+        bend=np.zeros(41),
         temperature_c=20.0 + 5.0 * time_s,
         supply_v=np.full(41, 12.0),
         position_span=2.0,

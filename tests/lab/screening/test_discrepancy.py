@@ -1,6 +1,7 @@
 """What a formula in the model misses is not named as one more effect."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
 from compensator.lab.effects.effect import Motion
 from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.discrepancy import discrepancy_columns
@@ -16,6 +18,7 @@ from tests.lab.effects.test_effects import motion, predicted, slope
 from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, Truth, recordings
 
 ORDER = 7.0
+MISREAD, TURNS = 0.004, 12.0
 
 
 def fitted(joint: Joint, *added: str) -> Fit:
@@ -102,10 +105,26 @@ def test_what_is_left_open_is_the_change_to_a_truth_near_by(name):
         assert np.corrcoef(found[clear], change[clear])[0, 1] > 0.999
 
 
-def test_an_angle_that_is_misread_has_a_second_order():
+def test_an_angle_that_is_misread_has_a_second_and_third_order():
     found = effect_named("encoder_eccentricity").discrepancy(motion(), (2.0,))
-    wanted = [0.3 * slope(slope(part(4.0 * motion().position))) for part in (np.cos, np.sin)]
+    rates = [[slope(part(order * motion().position)) for part in (np.cos, np.sin)] for order in (4.0, 6.0)]
+    wanted = [column for pair in rates for column in (*(0.3 * slope(rate) for rate in pair), *pair)]
     assert found == pytest.approx(np.array(wanted))
+
+
+def misread(one: Recording) -> Recording:
+    """The same, read by an encoder off its centre."""
+    position = one.channels["position_rad"]
+    return replace(one, channels={**one.channels, "position_rad": position + MISREAD * np.sin(TURNS * position)})
+
+
+def test_what_all_effects_make_of_a_misread_angle_is_no_effect():
+    joint = Joint(static_excess=0.08, stribeck_speed=0.4)
+    recorded = [misread(one) for one in recordings(joint, Bench(noise=0.002, quantum=0.0), seed=5)]
+    dataset = make_dataset(recorded, replace(FACTS, gear_ratio=TURNS), Processing())
+    fit = fit_model(dataset, [*default_effects(FACTS), "encoder_eccentricity"])
+    found = diagnose(fit)
+    assert found.verdict != "missing", found.sentence
 
 
 def test_every_effect_that_leaves_something_open_is_tested_here():

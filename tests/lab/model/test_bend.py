@@ -1,0 +1,99 @@
+"""A model with a steep effect, as a power stage's dead time is: fitted by its tangent, judged by what it predicts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnose import best_named
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit, fit_model, with_coefficients
+from compensator.lab.model.prediction import beyond_tangent
+from compensator.lab.model.validation import held_out
+from compensator.lab.recordings.recording import Recording
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, Truth, recordings
+
+LOST, ORDER, WAVE = 0.1, 6.0, 0.03
+DEFAULT = default_effects(FACTS)
+
+
+def wavy(x: Truth) -> np.ndarray:
+    return WAVE * np.cos(ORDER * x.q) * np.sign(x.v)
+
+
+def estimated(one: Recording) -> Recording:
+    """The same where the current is estimated from a duty of which a part is lost against the current."""
+    rest = {name: values for name, values in one.channels.items() if name != "torque_n_m"}
+    current = one.channels["torque_n_m"]
+    return replace(one, channels={**rest, "current_estimate_a": current + LOST * np.sign(current)})
+
+
+@pytest.fixture(scope="module")
+def alone() -> Fit:
+    recorded = [estimated(one) for one in recordings(Joint(extra=wavy), Bench(noise=0.003), seed=3)]
+    return fit_model(make_dataset(recorded, FACTS, Processing()), [*DEFAULT, "dead_time"])
+
+
+@pytest.fixture(scope="module")
+def both(alone: Fit) -> Fit:
+    kept = {**alone.shapes, "position_periodic_friction": (ORDER,)}
+    return fit_model(alone.dataset, [*alone.names, "position_periodic_friction"], shapes=kept)
+
+
+def test_every_effect_beside_a_steep_one_has_its_size(both):
+    found = {term.effect.name: term.coefficients for term in both.terms}
+    assert found["dead_time"] == pytest.approx([LOST], rel=0.1)
+    assert found["coulomb"] == pytest.approx([0.08], rel=0.15)
+    assert found["position_periodic_friction"] == pytest.approx([WAVE, 0.0], abs=0.1 * WAVE)
+
+
+def test_what_is_fitted_is_what_the_model_predicts(both):
+    assert both.dataset.is_bent
+    again = with_coefficients(both, both.coefficients)
+    assert np.abs(again.residual - both.residual).max() < 1e-5 * np.abs(both.dataset.effort).max()
+
+
+def test_far_from_the_tangent_the_model_itself_is_asked(both):
+    changed = both.coefficients + 0.02 * (np.arange(len(both.coefficients)) == 3)  # of Coulomb friction
+    wanted = with_coefficients(both, changed).predicted
+    tangent = both.columns @ changed - both.dataset.bent_effort
+    more = np.concatenate([beyond_tangent(both, index, changed) for index in range(len(both.dataset.trials))])
+    assert np.linalg.norm(tangent + more - wanted) < 0.1 * np.linalg.norm(tangent - wanted)
+
+
+def test_leaving_one_out_is_refitting_without_it(both):
+    trials = both.dataset.trial_index
+    own = trials == 4
+    rest = fit_model(both.dataset, both.names, both.training & ~own, both.shapes)
+    found = held_out(both)
+    assert found.residual[found.unit == 4] == pytest.approx(rest.residual[own & both.training], abs=0.1 * LOST)
+
+
+def test_a_trial_without_a_judged_row_is_passed_over(both):
+    trials = list(both.dataset.trials)
+    trials[4] = replace(trials[4], regime=np.full_like(trials[4].regime, Regime.TRANSIENT))
+    dataset = replace(both.dataset, trials=tuple(trials))
+    found = held_out(fit_model(dataset, both.names, dataset.in_regimes("moving"), both.shapes), "sliding")
+    assert set(found.unit) == set(range(len(trials))) - {4}
+
+
+def test_where_the_model_is_steep_rows_count_less(alone):
+    steady = alone.dataset.steadiness
+    current = alone.predicted - LOST * np.sign(alone.predicted)
+    assert np.median(steady[np.abs(current) < 0.02]) < 0.6 < 0.95 < np.median(steady[np.abs(current) > 0.1])
+    assert (fit_model(alone.dataset, DEFAULT).weight == 1.0).all()
+
+
+def test_a_second_effect_is_found_beside_it(alone, both):
+    steady = alone.dataset.steadiness
+    assert held_out(both, weight=steady).rms < 0.5 * held_out(alone, weight=steady).rms
+    assert best_named(alone, "sliding") == "position_periodic_friction"
+
+
+def test_weights_go_over_residual_and_effort(both):
+    half = held_out(both).weighted(np.full(int(both.training.sum()), 0.5))
+    assert half.rms == pytest.approx(0.5 * held_out(both).rms)
+    assert half.relative == pytest.approx(held_out(both).relative)
