@@ -144,9 +144,11 @@ def is_physical(gathered: Candidates, item: Evidence) -> bool:
 def is_possible(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
 
-    What the measuring chain makes near reversals is nothing physical.
+    What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
     """
     fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
+    if effect_named(item.block.name).told(gathered.fit.dataset.facts, _shape(item)):
+        return False
     return fits and not is_made_by_chain(gathered, item)
 
 

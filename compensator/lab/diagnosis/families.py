@@ -34,7 +34,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates, gather_curves
-from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen, screen_against_noise
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
@@ -153,15 +153,26 @@ def _ties(item: Evidence, best: Evidence) -> bool:
 
 
 def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
-    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
+    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error.
+
+    Its flips are of few stretches, and their own scatter is known no better: the noise of all rows must say the same.
+    """
     if generic is None or among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
         return None
     best = generic.evidence[0]
-    if best.score <= 0.0 or best.p_value > SIGNIFICANT:
+    if best.score <= 0.0 or best.p_value > SIGNIFICANT or _noise_draws_curves(gathered):
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     steady = fit.dataset.steadiness
     return best if held_out_gain(held_out(fit, None, steady), held_out(with_curve, None, steady)).low > 0.0 else None
+
+
+def _noise_draws_curves(gathered: Candidates) -> bool:
+    """Whether noise alone, where it is known, would bring free curves as sure as these."""
+    if gathered.noise is None:
+        return False
+    against = screen_against_noise(gathered.bases, gathered.curves.blocks, gathered.noise)
+    return among_all(against.p_value) > SIGNIFICANT
 
 
 def _bursts(gathered: Candidates) -> Bursts:

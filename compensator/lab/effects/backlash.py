@@ -3,7 +3,8 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, parting_in_free_play
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, parting_in_free_play
 from compensator.lab.recordings.recording import FloatArray
 
 
@@ -15,6 +16,11 @@ def shapes(motion: Motion) -> list[Shape]:
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """What the gear carries less while the far side flies through the gap, and the blow that ends it; shape (gap,)."""
     return -motion.inertia_beyond * parting_in_free_play(motion.parting, shape[0], motion.step_s)[None]
+
+
+def told(facts: Facts, shape: Shape) -> bool:
+    """Whether the gap is hardly more than the free play that is known."""
+    return shape[0] <= TOLD * (facts.backlash_rad or 0.0)
 
 
 EFFECT = Effect(
@@ -41,4 +47,5 @@ EFFECT = Effect(
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     builds_on="load",
     rows="moving",
+    told=told,
 )

@@ -141,6 +141,10 @@ def _no_shapes(_: Motion) -> list[Shape]:
     return [()]
 
 
+def _nothing_told(_facts: Facts, _shape: Shape) -> bool:
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Onset:
     """Moments at which one trial's joint breaks away: what breakaway columns are computed from. Arrays have shape (e,).
@@ -220,6 +224,7 @@ class Effect:
         misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
+        told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         ends_within_scan: what fits best at the upper end of its scan goes on beyond it, and is something else.
     """
 
@@ -256,6 +261,7 @@ class Effect:
     provisional: bool = False
     misreads: Callable[[Motion, Shape], FloatArray] | None = None
     slope: Callable[[Motion, Shape], FloatArray] | None = None
+    told: Callable[[Facts, Shape], bool] = _nothing_told
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:
         """Shapes to scan, given the motions of all trials."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, parting_on_a_spring
+from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, parting_on_a_spring
 from compensator.lab.recordings.recording import FloatArray
 
 # of critical: material and teeth alone; with the arm's bearings and what it drags. A column that swings more than the
@@ -18,6 +18,12 @@ def known_hz(facts: Facts) -> float | None:
     if facts.joint == "linear" or not stiffness or not arm_kg_m2:
         return None
     return float(np.sqrt(stiffness / arm_kg_m2) / (2.0 * np.pi))
+
+
+def told(facts: Facts, shape: Shape) -> bool:
+    """Whether the joint hardly gives more than the stiffness that is known lets it."""
+    hz = known_hz(facts)
+    return hz is not None and TOLD * shape[0] ** 2 >= hz**2
 
 
 def shapes(motion: Motion) -> list[Shape]:
@@ -58,5 +64,6 @@ EFFECT = Effect(
     confused_with=("measurement_delay", "inertia"),
     builds_on="load",
     rows="moving",
+    told=told,
     ends_within_scan=True,
 )

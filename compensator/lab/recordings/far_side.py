@@ -12,6 +12,8 @@ from compensator.lab.recordings.recording import FloatArray
 
 # of the load that drawings and weights tell: far from 1, it is the shadow of something else
 PLAUSIBLE_SHARE = (0.3, 3.0)
+# of free play or compliance: up to so many times what the owner tells, teeth that bounce and data sheets explain it
+TOLD = 2.0
 
 
 def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> FloatArray:

@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import binom
 
 from compensator.lab.diagnosis import diagnose as diagnose_module
+from compensator.lab.diagnosis import families as families_module
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
@@ -17,6 +18,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.evidence import Screening
 from tests.lab.far_side import ARM_KG_M2, loose_teeth, twisting
 from tests.lab.synthetic import FACTS, Bench, Joint, Law, Plan, at_temperature, plans, recordings
 
@@ -112,6 +114,15 @@ def test_only_what_gives_more_than_the_stiffness_that_is_known_is_missing(share,
     assert elastic == named, found.sentence
 
 
+@pytest.mark.parametrize(("told_rad", "named"), [(0.0165, False), (0.005, True)])
+def test_only_more_free_play_than_is_known_is_missing(told_rad, named):
+    made = recordings(Joint(extra=loose_teeth), seed=4)
+    told = replace(FACTS, arm_inertia_kg_m2=1.1 * ARM_KG_M2, backlash_rad=told_rad, arm_moment_n_m=ARM_N_M)
+    found = diagnose(fit_model(make_dataset(made, told, Processing()), DEFAULT))
+    loose = found.verdict == "missing" and found.candidates[0].effect.name == "backlash"
+    assert loose == named, found.sentence
+
+
 @pytest.mark.parametrize(("bend_rad", "torque_n_m"), [(0.3, 0.02), (0.6, 0.1)])
 def test_a_hose_that_bends_along_is_not_called_pre_sliding(bend_rad, torque_n_m):
     def hose(x):
@@ -198,6 +209,12 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
     assert driver in found.sentence
     assert found.p_value <= 0.01
     assert f"p = {found.p_value:.3g}" in found.sentence
+
+
+def test_a_curve_that_the_noise_of_all_rows_would_draw_is_none(monkeypatch):
+    made = recordings(Joint(extra=lambda x: 0.02 * np.sign(x.v) * (x.time_s > 6.0)), seed=3)
+    monkeypatch.setattr(families_module, "screen_against_noise", lambda *_: Screening([], 0.5))
+    assert diagnosis_of(made).verdict != "unknown-effect"
 
 
 def with_luck(monkeypatch, p_value):

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import is_confirmed, is_within_bounds
+from compensator.lab.diagnosis.examination import is_confirmed, is_possible, is_within_bounds
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.screening.evidence import Base, Block, Evidence
 
 
@@ -58,3 +59,23 @@ def test_a_size_beyond_its_bounds_for_sure_cannot_be(share, noncentrality, possi
         bases=[Base(np.zeros((200, 1)), share * column)], fit=SimpleNamespace(dataset=dataset)
     )
     assert is_within_bounds(gathered, item) == possible
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "possible"),
+    [
+        ("backlash", (0.009,), False),  # the data sheet says 5 mrad
+        ("backlash", (0.011,), True),
+        ("elasticity", (8.0, 0.06), False),  # and 10 Hz
+        ("elasticity", (6.0, 0.06), True),
+    ],
+)
+def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possible):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block(name, column[:, None], 0, 15, shape), 50.0, 400.0, 0.001, column)
+    told = Facts(backlash_rad=0.005, stiffness_n_m_rad=0.02 * (20.0 * np.pi) ** 2, arm_inertia_kg_m2=0.02)
+    for facts, expected in ((told, possible), (Facts(), True)):
+        dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=facts)
+        fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
+        gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), column)], fit=fit, show_in="moving")
+        assert is_possible(gathered, item) == expected
