@@ -5,7 +5,8 @@ import pytest
 
 from bench.blind import recorded
 from bench.blind.items import FAMILIES, MODERATE, draw_item, items_of, wanted_ratio
-from bench.blind.recorded import NEAR, Recorded, ratio_of
+from bench.blind.recorded import NEAR, Recorded, Scale, ratio_of
+from bench.challenge.hidden_plant import DrawnPlant
 
 HOSE = next(item for item in items_of(3, 2) if item.family == "outside-moderate" and item.turn == 1)
 
@@ -30,16 +31,25 @@ def test_an_r_is_wanted_only_where_the_family_asks_for_one_and_all_of_its_range_
 
 
 def _left_by(monkeypatch: pytest.MonkeyPatch, steepness: float) -> None:
-    """Let a residual grow with a power of the size, as a model would leave it, without any recording."""
+    """Let a residual grow with a power of the size, as a model would leave it, without any recording.
 
-    def made(item: object, attempt: int, scale: float) -> Recorded:
-        return Recorded(draw_item(HOSE, attempt, scale), [], attempt)
+    Noise and scatter leave 1, a quiet joint that hides nothing leaves 0.5.
+    """
+
+    def made(item: object, drawn: DrawnPlant, attempt: int) -> Recorded:
+        return Recorded(drawn, [], attempt)
+
+    def plain(item: object, drawn: DrawnPlant, attempt: int, *, quiet: bool) -> Recorded:
+        return Recorded(replace(drawn, hidden=()), [], 1 if quiet else 0)
 
     def left(found: Recorded) -> float:
-        return float(np.sqrt(1.0 + (3.0 * found.drawn.hidden[0].size ** steepness) ** 2)) if found.drawn.hidden else 1.0
+        if not found.drawn.hidden:
+            return 0.5 if found.attempt else 1.0
+        return float(np.hypot(0.5, 3.0 * found.drawn.hidden[0].size ** steepness))
 
     monkeypatch.setattr(recorded, "_recorded", made)
-    monkeypatch.setattr(recorded, "_plain", lambda item, found: replace(found, drawn=replace(found.drawn, hidden=())))
+    monkeypatch.setattr(recorded, "_record", lambda *_item, **_quiet: [])
+    monkeypatch.setattr(recorded, "_plain", plain)
     monkeypatch.setattr(recorded, "_left", left)
 
 
@@ -64,3 +74,21 @@ def test_no_size_goes_beyond_its_range(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_r_of_what_no_effect_stands_for() -> None:
     assert ratio_of(np.sqrt(2.0)) == pytest.approx(1.0)
     assert ratio_of(0.9) == 0.0
+
+
+@pytest.fixture(scope="module")
+def measured() -> tuple[DrawnPlant, Scale]:
+    """A joint, and what an r is measured by, recorded."""
+    drawn = draw_item(HOSE, 0)
+    return drawn, Scale.of(HOSE, drawn, 0)
+
+
+def test_a_quiet_joint_leaves_less_than_one_that_scatters(measured: tuple[DrawnPlant, Scale]) -> None:
+    _, scale = measured
+    assert 0.0 < scale.quiet < 0.8 * scale.noisy
+
+
+def test_what_hides_next_to_nothing_has_no_r_and_more_of_it_has_more(measured: tuple[DrawnPlant, Scale]) -> None:
+    drawn, scale = measured
+    assert scale.ratio(draw_item(HOSE, 0, 1e-4)) < 0.03
+    assert scale.ratio(draw_item(HOSE, 0, 0.5)) < scale.ratio(drawn)
