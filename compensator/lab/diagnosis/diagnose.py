@@ -81,7 +81,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         candidates=ranked,
         driver=first.driver,
         data_problems=data_problems(fit),
-        notes=[*notes, *_at_rest(fit), *_by_run(fit)],
+        notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
         left_out={**gathered.left_out, **not_judged, **not_at_rest},
         too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
         remains=first.remains or (first.verdict == "nothing" and steady.remains),
@@ -119,7 +119,7 @@ def _at_rest(fit: Fit) -> list[str]:
 
 
 def _by_run(fit: Fit) -> list[str]:
-    """What differs from run to run: a floor, or the work of what is missing."""
+    """What differs from run to run with what is named in the model: a floor, or the work of what is still missing."""
     unit = fit.dataset.effort_definition.unit
     return [by_run_in_words(one, unit) for one in differences_by_run(fit, held_out(fit))]
 

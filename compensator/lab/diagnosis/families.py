@@ -51,6 +51,7 @@ class Answer:
     Attributes:
         strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
         remains: more than noise is left that nothing named here explains.
+        explained: the model with the effect that is named, where one of the joint or the chain is.
         Others as in `Diagnosis`.
     """
 
@@ -62,6 +63,7 @@ class Answer:
     notes: list[str]
     strength: float = 0.0
     remains: bool = False
+    explained: Fit | None = None
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -90,8 +92,11 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
     enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
     if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
-        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(fit, gathered, best)
-        return Answer("missing", sentence, p_value, examined, None, notes, best.noncentrality, remains=bool(notes))
+        name = best.block.name
+        explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(explained, gathered, name)
+        remains, strength = bool(notes), best.noncentrality
+        return Answer("missing", sentence, p_value, examined, None, notes, strength, remains, explained)
     found = _bends(gathered, examined, best_of_each)
     if p_value <= SIGNIFICANT and found is not None:
         bends, too_far = found
@@ -199,10 +204,9 @@ def _nearest_driver(generic: Screening) -> str | None:
     return best.block.name if best is not None and best.score > 0.0 else None
 
 
-def _what_remains(fit: Fit, gathered: Candidates, best: Evidence) -> list[str]:
-    """What remains with the best effect in the model, beside what its formula leaves open, as the next step sees it."""
-    name = best.block.name
-    grown = gather_curves(fit_effects(fit.dataset, [*fit.names, name], fit.training), gathered.show_in)
+def _what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
+    """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it."""
+    grown = gather_curves(fit, gathered.show_in)
     left = left_over(grown)
     if not left.is_more_than_noise:
         return []

@@ -85,3 +85,12 @@ def test_one_friction_for_all_runs_is_not_told(held):
 def test_a_model_without_dry_friction_has_none_to_differ():
     fit = fitted({4: 0.01}, held=(4,))
     assert by_run(fit_model(fit.dataset, ("inertia", "gravity", "viscous"), fit.training)) is None
+
+
+def test_what_a_missing_effect_makes_from_run_to_run_is_not_told_beside_its_name():
+    made = recordings(Joint(extra=lambda x: -0.05 * np.abs(x.v)), trials=plans((0.0, 0.2), temperatures_c=(25.0,)))
+    fit = fit_model(make_dataset(made, FACTS, Processing(8.0)), default_effects(FACTS))
+    assert differences_by_run(fit, held_out(fit))
+    answer = diagnose(fit)
+    assert answer.candidates[0].effect.name == "viscous_asymmetry"
+    assert not any("from run to run" in note for note in answer.notes)
