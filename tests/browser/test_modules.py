@@ -112,6 +112,19 @@ def test_a_band_is_drawn_between_its_edges_and_not_where_it_is_unknown(call):
     assert painted == [True, True, False, False]
 
 
+def test_the_load_current_is_read_as_it_was_found_last(call):
+    read = (
+        "((values, half) => m.newest({column: (name) => (name === m.LOAD ? values : half)}))"
+        "(Float64Array.from(%s), Float64Array.from(%s))"
+    )
+    assert (
+        call("loadcurrent", read % ("[NaN, 0.4, -0.4931, NaN, NaN]", "[NaN, 0.1, 0.0034, NaN, NaN]"))
+        == "−0.493 ± 0.003 A"
+    )
+    assert call("loadcurrent", read % ("[0.5]", "[NaN]")) == "0.500 A"
+    assert call("loadcurrent", read % ("[NaN, NaN]", "[NaN, NaN]")) is None
+
+
 def test_ticks_are_round_and_inside(call):
     assert call("ticks", "m.ticks(-0.31, 1.02, 5)") == [0.0, 0.5, 1.0]
     assert call("ticks", "m.ticks(0, 0.007, 5)") == [0, 0.002, 0.004, 0.006]

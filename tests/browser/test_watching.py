@@ -108,6 +108,8 @@ def test_the_load_is_followed_with_its_band(service, open_page):
     live = page.get_by_label("Live", exact=True)
     live.locator(".legend-entry").get_by_text("load current (band: 95 %)").wait_for()
     live.locator(".readings").get_by_text(re.compile(r"^−?\d\.\d{3} ± 0\.\d{3} A$")).wait_for()
+    page.wait_for_timeout(1500)  # the arm is on its way to the next step
+    assert live.locator(".readings").get_by_text("load current, as last found").is_visible()
 
 
 @pytest.mark.parametrize("width", [1280, 400])

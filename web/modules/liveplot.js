@@ -40,6 +40,7 @@ export function livePlot(place, live) {
 
   let frozen = null;
   let shownLength = 0;
+  let load = { experiment: null, text: null }; // of the trial that runs, or of one before it in the same experiment
   const show = () => {
     const chosen = CHANNELS.filter((one, index) => boxes[index].checked);
     const content = frozen ? contentOf(frozen.rows, chosen, frozen.marks, Number(seconds.value)) : contentOf(live.rows, chosen, marksOf(latest.events), Number(seconds.value));
@@ -52,7 +53,9 @@ export function livePlot(place, live) {
     const run = live.status?.run;
     progress.value = run?.progress ?? 0;
     outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment.";
-    replace(readings, readingsOf(live.status?.reading, newest(live.rows)));
+    const before = load.experiment === run?.experiment_id ? load.text : null;
+    load = { experiment: run?.experiment_id, text: newest(live.rows) ?? before };
+    replace(readings, readingsOf(live.status?.reading, load.text));
   };
   const timer = setInterval(() => place.classList.toggle("stale", live.stale), STALE_EVERY_MS);
   // the chart draws once a frame, however often it is told
@@ -106,5 +109,5 @@ function readingsOf(values, load) {
     ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
   const known = shown.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
   const read = known.map(([text, name, unit]) => [text, `${values[name].toFixed(3).replace("-", "−")} ${unit}`]);
-  return [...read, ...(load ? [["load current", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
+  return [...read, ...(load ? [["load current, as last found", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
 }

@@ -9,9 +9,12 @@ export function around(row, x, middle, half, colour) {
   return { row, x, low: edge(-1), high: edge(1), colour };
 }
 
-// the newest value as it is read
+// the newest value that is known, as it is read: it is found for a moment of each search, and holds until the next
 export function newest(rows) {
-  const [value, half] = [LOAD, HALF].map((name) => rows.column(name)?.at(-1) ?? NaN);
-  if (!Number.isFinite(value)) return null;
-  return `${value.toFixed(3)}${Number.isFinite(half) ? ` ± ${half.toFixed(3)}` : ""} A`.replaceAll("-", "−");
+  const values = rows.column(LOAD) ?? [];
+  let at = values.length - 1;
+  while (at >= 0 && !Number.isFinite(values[at])) at -= 1;
+  if (at < 0) return null;
+  const half = rows.column(HALF)?.[at] ?? NaN;
+  return `${values[at].toFixed(3)}${Number.isFinite(half) ? ` ± ${half.toFixed(3)}` : ""} A`.replaceAll("-", "−");
 }
