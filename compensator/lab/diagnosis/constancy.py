@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.diagnosis.drift import Moments, chance_of_drift, moments_of
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray, Regime
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.rows.dataset import IntArray
 from compensator.lab.screening.evidence import Base, inflation_of
 
 FEWEST_ROWS = 8  # of a stretch
@@ -24,8 +24,6 @@ LEAST_SHARE = 0.004  # of dry friction: what scatters by 2 % over 0.05 rad leave
 LEAST_OF_EFFORT = 0.005  # as little, of all that the motor gives, is nothing to repeat a trial for
 MOST_STATIC = 0.05  # share of dry friction, in a stroke: it scatters by some percent, of which this is next to nothing
 NEGLIGIBLE = 1e-6  # share of a column's power that the stretches leave: the base's own constants are sums of theirs
-
-DRY_FRICTION, OFFSET = "dry friction", "a constant force or the zero of the angle"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,34 +48,24 @@ class Change:
         return self.chance <= CHANCE and self.share > self.least
 
 
-def change_of(
-    dataset: Dataset, rows: BoolArray, base: Base, weights: FloatArray, friction: float, static: FloatArray
-) -> Change | None:
-    """What changes most from one stretch of 2 s to the next; None where nothing does for sure.
-
-    Args:
-        dataset: of the rows.
-        rows: chosen, shape (N,).
-        base: what the model explains of them, and the weighted residual (n,).
-        weights: of the chosen rows, shape (n,).
-        friction: that the model takes for constant, in the effort's unit.
-        static: how much of it is static friction that has not fallen off yet, shape (n,).
-    """
-    sliding = dataset.regime[rows] == Regime.SLIDING  # near reversals nothing is constant
+def change_of(constants: Constants) -> Change | None:
+    """What changes most from one stretch of 2 s to the next; None where nothing does for sure."""
+    dataset, rows, weights = constants.dataset, constants.rows, constants.weights
+    base, friction = constants.base, constants.friction
+    sliding = constants.sliding
     labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
     count = np.bincount(stretch, sliding)
     chosen = np.where(sliding & (count[stretch] >= FEWEST_ROWS), weights, 0.0)
-    direction = dataset.rows_of([trial.motion.direction for trial in dataset.trials])[rows]
-    constants: Mapping[str, FloatArray] = {DRY_FRICTION: chosen * direction, OFFSET: chosen}
-    power = float(np.sum((weights * dataset.effort[rows]) ** 2))
+    columns: Mapping[str, FloatArray] = {DRY_FRICTION: chosen * constants.direction, OFFSET: chosen}
+    power = float(np.sum((weights * constants.effort) ** 2))
     moments = moments_of(dataset, rows)
-    slow = _by_stroke(dataset, rows, weights * static, MOST_STATIC * friction * weights)
+    slow = _by_stroke(constants)
     beside = Base.of(slow.taken_out(base.basis), slow.taken_out(base.residual[:, None])[:, 0])
     found = [
         _change(what, beside, slow.taken_out(column[:, None])[:, 0], stretch, len(labels), power, moments)
-        for what, column in constants.items()
+        for what, column in columns.items()
     ]
-    of_friction = LEAST_SHARE * friction / max(rms(dataset.effort[rows]), np.finfo(float).tiny)
+    of_friction = LEAST_SHARE * friction / max(rms(constants.effort), np.finfo(float).tiny)
     least = max(of_friction, LEAST_OF_EFFORT)
     judged = [replace(change, least=least) for change in found if change is not None]
     there = [change for change in judged if change.is_there]
@@ -99,15 +87,10 @@ class _ByStroke:
         return left
 
 
-def _by_stroke(dataset: Dataset, rows: BoolArray, static: FloatArray, least: FloatArray) -> _ByStroke:
-    """Static friction of each stroke of its own: it is another one from stop to stop, which is no change.
-
-    Args:
-        dataset: of the rows.
-        rows: chosen, shape (N,).
-        static: friction that has not fallen off, weighted, shape (n,).
-        least: of it, for a stroke to show it, shape (n,).
-    """
+def _by_stroke(constants: Constants) -> _ByStroke:
+    """Static friction of each stroke of its own: it is another one from stop to stop, which is no change."""
+    dataset, rows = constants.dataset, constants.rows
+    static, least = constants.weights * constants.static, MOST_STATIC * constants.friction * constants.weights
     direction = dataset.rows_of([trial.motion.direction for trial in dataset.trials])
     turns = np.diff(np.sign(direction), prepend=0.0) != 0.0
     starts = np.diff(dataset.trial_index, prepend=-1) != 0

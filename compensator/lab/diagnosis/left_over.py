@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from compensator.lab.diagnosis.constancy import Change, change_of
+from compensator.lab.diagnosis.constants import Constants
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.diagnosis.wandering import Wandering, wandering_of
@@ -47,6 +48,6 @@ def left_over(gathered: Candidates) -> LeftOver:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
     if not steady:
         return LeftOver(remainder, None, swing)
-    constants = (dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
-    change = change_of(*constants)
-    return LeftOver(remainder, change, swing, wandering_of(*constants) if change is None else None)
+    constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
+    change = change_of(constants)
+    return LeftOver(remainder, change, swing, wandering_of(constants) if change is None else None)

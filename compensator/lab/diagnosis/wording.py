@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis.bursts import Bursts
-from compensator.lab.diagnosis.constancy import DRY_FRICTION, Change
+from compensator.lab.diagnosis.constancy import Change
+from compensator.lab.diagnosis.constants import DRY_FRICTION
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.left_over import LeftOver

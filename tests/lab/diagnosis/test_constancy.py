@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.constancy import DRY_FRICTION, OFFSET, _change, change_of, inflation_of
+from compensator.lab.diagnosis.constancy import _change, change_of, inflation_of
+from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.evidence import Base
+from tests.lab.diagnosis.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 JUMP_N_M = 0.02
@@ -22,15 +23,7 @@ def fitted(extra=None, seed=0, **bench):
 
 
 def change(fit):
-    gathered = gather(fit)
-    return change_of(
-        fit.dataset,
-        gathered.rows,
-        gathered.bases[0],
-        gathered.weights,
-        fit.dry_friction,
-        fit.static_friction[gathered.rows],
-    )
+    return change_of(constants_of(fit))
 
 
 def jumping(of):

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import wandering
-from compensator.lab.diagnosis.constancy import DRY_FRICTION, OFFSET, change_of
+from compensator.lab.diagnosis.constancy import change_of
+from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.wandering import _likelihood, _Trial, wandering_of
+from compensator.lab.diagnosis.wandering import wandering_of
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
+from tests.lab.diagnosis.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 COULOMB_N_M = 0.08
@@ -23,9 +24,7 @@ def fitted(extra=None, seed=0, **bench):
 
 
 def judged(fit, by=wandering_of):
-    gathered = gather(fit)
-    static = fit.static_friction[gathered.rows]
-    return by(fit.dataset, gathered.rows, gathered.bases[0], gathered.weights, fit.dry_friction, static)
+    return by(constants_of(fit))
 
 
 def jumping(share, of=lambda x: np.sign(x.v)):
@@ -98,25 +97,11 @@ def test_what_any_joint_has_is_no_wandering(extra, seed):
     assert judged(fitted(extra, seed)) is None
 
 
-def test_the_gradient_of_the_likelihood_is_its_slope():
-    random = np.random.default_rng(2)
-    root = random.standard_normal((2, 9, 9))
-    kernels = np.array([np.eye(9), *(one @ one.T for one in root)])
-    trial = _Trial(0, np.arange(9.0), random.standard_normal((9, 2)), random.standard_normal(9), np.ones(9), kernels)
-    at, step = np.array([0.7, 0.2, 0.4]), 1e-6
-    found = _likelihood(at, [kernels], [trial])
-    for index in range(3):
-        beyond = at + step * np.eye(3)[index]
-        slope = (_likelihood(beyond, [kernels], [trial]).value - found.value) / step
-        assert found.gradient[index] == pytest.approx(slope, rel=1e-3, abs=1e-4)
-
-
 def test_long_trials_have_longer_cells_and_of_many_trials_some_are_looked_at(monkeypatch):
-    gathered = gather(fitted())
+    constants = constants_of(fitted())
     monkeypatch.setattr(wandering, "MOST_CELLS", 10)
     monkeypatch.setattr(wandering, "MOST_TRIALS", 3)
-    weights = gathered.weights
-    trials = wandering._cells(gathered.fit.dataset, gathered.rows, gathered.bases[0], weights, weights)
-    strokes = max(len(np.unique(trial.motion.strokes.index)) for trial in gathered.fit.dataset.trials)
+    trials = wandering._cells(constants, constants.weights)
+    strokes = max(len(np.unique(trial.motion.strokes.index)) for trial in constants.dataset.trials)
     assert len(trials) <= 3
-    assert max(len(trial.residual) for trial in trials) <= 11 + strokes
+    assert max(len(trial.time_s) for trial in trials) <= 11 + strokes

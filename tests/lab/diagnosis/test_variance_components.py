@@ -1,0 +1,47 @@
+"""Variances of components come out as large as they were made, whatever the base has of them."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.variance_components import Part, likeliest, likelihood
+
+
+def parts(variances, count=40, size=12, seed=2):
+    """Residuals of white noise, of one that is alike along the rows, and of what the base has."""
+    random = np.random.default_rng(seed)
+    apart = np.abs(np.subtract.outer(np.arange(size), np.arange(size)))
+    kernels = np.array([np.eye(size), np.exp(-apart / 6.0)])
+    root = np.linalg.cholesky(np.tensordot(np.asarray(variances), kernels, 1))
+    base = [np.column_stack([np.ones(size), random.standard_normal(size)]) for _ in range(count)]
+    return [Part(own, root @ random.standard_normal(size) + own @ [0.3, -0.2], kernels) for own in base]
+
+
+def test_variances_are_those_that_were_made():
+    found, _ = likeliest(parts([0.5, 0.2], count=400))
+    assert found == pytest.approx([0.5, 0.2], rel=0.2)
+
+
+def test_a_component_that_is_not_there_gains_next_to_nothing():
+    made = parts([0.5, 0.0])
+    alone, without = likeliest([part.without_last for part in made])
+    _, having = likeliest(made, alone)
+    assert having.value - without.value < 2.0
+
+
+def test_what_the_base_explains_speaks_for_no_component():
+    made = parts([0.5, 0.2])
+    more = [Part(part.base, part.residual + part.base @ [100.0, 50.0], part.kernels) for part in made]
+    assert likelihood(np.array([0.4, 0.3]), more).value == pytest.approx(likelihood(np.array([0.4, 0.3]), made).value)
+
+
+def test_the_gradient_of_the_likelihood_is_its_slope():
+    random = np.random.default_rng(2)
+    root = random.standard_normal((2, 9, 9))
+    kernels = np.array([np.eye(9), *(one @ one.T for one in root)])
+    made = [Part(random.standard_normal((9, 2)), random.standard_normal(9), kernels)]
+    at, step = np.array([0.7, 0.2, 0.4]), 1e-6
+    found = likelihood(at, made)
+    for index in range(3):
+        beyond = at + step * np.eye(3)[index]
+        slope = (likelihood(beyond, made).value - found.value) / step
+        assert found.gradient[index] == pytest.approx(slope, rel=1e-3, abs=1e-4)
