@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import binom, chi2
 
 from compensator.lab.diagnosis.variance_components import Part, likeliest, likelihood
 
@@ -26,6 +27,17 @@ def test_a_component_that_is_not_there_gains_next_to_nothing():
     alone, without = likeliest([part.without_last for part in made])
     _, having = likeliest(made, alone)
     assert having.value - without.value < 2.0
+
+
+def test_noise_gains_no_more_than_half_a_chi_squared_of_one_degree_of_freedom():
+    gains = []
+    for seed in range(60):
+        made = parts([0.5, 0.0], count=12, seed=seed)
+        alone, without = likeliest([part.without_last for part in made])
+        gains.append(2.0 * (likeliest(made, alone)[1].value - without.value))
+    chances = np.where(np.array(gains) > 0.0, 0.5 * chi2.sf(np.maximum(gains, 0.0), 1), 1.0)
+    few, many = binom.ppf([1e-3, 1.0 - 1e-3], len(chances), 0.1)
+    assert few <= np.sum(chances <= 0.1) <= many
 
 
 def test_what_the_base_explains_speaks_for_no_component():

@@ -38,15 +38,15 @@ def jumping(share, of=lambda x: np.sign(x.v)):
     return extra
 
 
-def along_the_path(share):
-    """Dry friction that wanders along the path, alike over 0.05 rad of it."""
+def along_the_path(share, alike_rad):
+    """Dry friction that wanders along the path, alike over so much of it."""
     random = np.random.default_rng(7)
 
     def extra(x):
         steps = np.abs(np.diff(x.q, prepend=x.q[0]))
         value, found = random.standard_normal(), np.empty(len(x.q))
         for i, step in enumerate(steps):
-            alike = np.exp(-step / 0.05)
+            alike = np.exp(-step / alike_rad)
             value = alike * value + np.sqrt(1.0 - alike**2) * random.standard_normal()
             found[i] = value
         return share * COULOMB_N_M * found * np.sign(x.v)
@@ -91,7 +91,11 @@ def test_the_answer_names_what_wanders_and_where():
     assert fit.dataset.trials[found.changes[0][0]].signals.recording.name in answer.sentence
 
 
-@pytest.mark.parametrize("extra", [None, along_the_path(0.03), from_stop_to_stop(0.05)], ids=["noise", "path", "stops"])
+@pytest.mark.parametrize(
+    "extra",
+    [None, along_the_path(0.03, 0.05), along_the_path(0.1, 0.2), from_stop_to_stop(0.2)],
+    ids=["noise", "path", "long path", "stops"],
+)
 @pytest.mark.parametrize("seed", range(2))
 def test_what_any_joint_has_is_no_wandering(extra, seed):
     assert judged(fitted(extra, seed)) is None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.recordings.recording import Recording
-from compensator.lab.recordings.stuck_sensor import stuck_positions
+from compensator.lab.recordings.stuck_sensor import _lag_s, stuck_positions
 from tests.lab.synthetic import FACTS
 
 RATE_HZ = 200.0
@@ -104,3 +104,20 @@ def filled_up(position: np.ndarray) -> np.ndarray:
 )  # fmt: skip
 def test_a_joint_that_rests_has_no_stuck_sensor(made):
     assert stuck_positions([made], FACTS) == []
+
+
+def test_what_a_speed_does_while_the_position_stands_still_is_no_filter():
+    start_s, fades_s = 4.0, 0.5
+    after_s = np.maximum(TIME_S - start_s, 0.0)
+    speed = np.exp(-after_s / fades_s)
+    moved = np.minimum(TIME_S, start_s) + fades_s * (1.0 - speed)
+    (told,) = stuck_positions([recording(held(moved, start_s, TIME_S[-1]), speed)], FACTS)
+    assert "the sensor is stuck" in told
+
+
+def test_a_speed_that_differs_from_the_position_by_something_else_is_behind_no_filter():
+    other = 0.3 * np.cos(2.0 * np.pi * 2.1 * TIME_S)
+    drive = SPEED + 0.3 * np.sin(2.0 * np.pi * 2.1 * TIME_S)  # partly alike by chance, as a bad estimate may be
+    nothing = slice(0, 0)
+    assert _lag_s(TIME_S, SWING + other, drive, nothing) == 0.0
+    assert _lag_s(TIME_S, SWING, filtered(SPEED, 0.2), nothing) == pytest.approx(0.2, rel=0.1)

@@ -9,11 +9,11 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
 from compensator.lab.effects.effect import Motion
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import Fit, Term, fit_model
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.discrepancy import discrepancy_columns
+from compensator.lab.screening.discrepancy import _misread, discrepancy_columns
 from tests.lab.effects.test_effects import motion, predicted, slope
 from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, Truth, recordings
 
@@ -125,6 +125,23 @@ def test_what_all_effects_make_of_a_misread_angle_is_no_effect():
     fit = fit_model(dataset, [*default_effects(FACTS), "encoder_eccentricity"])
     found = diagnose(fit)
     assert found.verdict != "missing", found.sentence
+
+
+def term(name: str, coefficients: list[float], *shape: float) -> Term:
+    kept = np.ones(len(coefficients), dtype=bool)
+    return Term(effect_named(name), shape, np.array(coefficients), kept, ~kept)
+
+
+def test_an_angle_is_misread_at_where_the_joint_is():
+    m, size = motion(), 0.03
+    read = replace(m, position=m.position - size * np.cos(TURNS * m.position))
+    cogging = term("cogging", [0.4, 0.0], 8.0)
+    missed = cogging.coefficients @ (
+        cogging.effect.columns(m, cogging.shape) - cogging.effect.columns(read, cogging.shape)
+    )
+    found = _misread([cogging, term("encoder_eccentricity", [size, 0.0, 0.0, 0.0], TURNS)], read)[-1]
+    # what is left is of third order: the square of the angle's slope
+    assert np.abs(found - missed).max() < 2.0 * (size * TURNS) ** 2 * np.abs(missed).max()
 
 
 def test_every_effect_that_leaves_something_open_is_tested_here():
