@@ -32,7 +32,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     # near reversals a part of the whole error is asked for, since every chain leaves a little there
     steady = fit.dataset.steadiness if gathered.show_in == "sliding" else None
     before = held_out(fit, rows, steady)
-    afters = [held_out(_with_effect(fit, item), rows, steady) for item in evidence]
+    afters = [held_out(with_effect(fit, item.block.name, _shape(item)), rows, steady) for item in evidence]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
     candidates = []
@@ -65,10 +65,9 @@ def is_sure(candidate: Candidate) -> bool:
     return candidate.score > 0.0 and no_luck and helps
 
 
-def _with_effect(fit: Fit, item: Evidence) -> Fit:
-    """The model and one more effect, refitted at the shapes already found."""
-    shapes = {**fit.shapes, item.block.name: _shape(item)}
-    return fit_model(fit.dataset, [*fit.names, item.block.name], fit.training, shapes)
+def with_effect(fit: Fit, name: str, shape: Shape) -> Fit:
+    """The model and one more effect of a given shape, refitted at the shapes already found."""
+    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: shape})
 
 
 def _shape(item: Evidence) -> Shape:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.diagnosis.bending import bending, still_bending
 from compensator.lab.diagnosis.bursts import Bursts, bursts_of
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
@@ -23,6 +24,7 @@ from compensator.lab.diagnosis.wording import (
     bending_in_words,
     bursts_in_words,
     changing_in_words,
+    still_bending_in_words,
     swinging_in_words,
     unexplained_in_words,
     wandering_in_words,
@@ -81,11 +83,10 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     shown = [item for item in best_of_each if item.score > 0.0][:EXAMINED]
     examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else best_of_each[:FEWEST_SHOWN])
     best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
-    curve = _curve(fit, gathered, generic)
-    followed = curve is None or (examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality)
-    if curve is not None and generic is not None and not followed:
-        driver, p_value = curve.block.name, among_all(generic.p_value)
-        sentence = answer_in_words("unknown-effect", p_value, examined, driver)
+    unfollowed = None if generic is None else _unfollowed(fit, gathered, generic, examined, best)
+    if unfollowed is not None:
+        curve, p_value = unfollowed
+        driver, sentence = curve.block.name, answer_in_words("unknown-effect", p_value, examined, curve.block.name)
         return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
     p_value = among_all(named.p_value)
     # what explains much less than an effect that cannot be it is the shadow of something else
@@ -95,6 +96,8 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         name = best.block.name
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(explained, gathered, name)
+        if not notes and still_bending(explained, gathered, best.block):
+            notes = [still_bending_in_words(name)]
         remains, strength = bool(notes), best.noncentrality
         return Answer("missing", sentence, p_value, examined, None, notes, strength, remains, explained)
     found = _bends(gathered, examined, best_of_each)
@@ -157,12 +160,30 @@ def _ties(item: Evidence, best: Evidence) -> bool:
     return alike and item.score >= best.score - TIE
 
 
-def _curve(fit: Fit, gathered: Candidates, generic: Screening | None) -> Evidence | None:
+def _unfollowed(
+    fit: Fit, gathered: Candidates, generic: Screening, examined: list[Candidate], best: Evidence
+) -> tuple[Evidence, float] | None:
+    """The free curve, or the free hysteresis, that no formula follows, and its chance; None where all are followed."""
+    found = []
+    spline, bent = _curve(fit, gathered, generic), bending(fit, gathered)
+    if spline is not None and not _follows(best, examined[0], spline):
+        found.append((spline, among_all(generic.p_value)))
+    if bent is not None and (not _follows(best, examined[0], bent.evidence) or bent.predicts_best(fit, examined)):
+        found.append((bent.evidence, among_all(bent.evidence.p_value)))
+    return max(found, key=lambda one: one[0].noncentrality, default=None)
+
+
+def _follows(best: Evidence, examined: Candidate, curve: Evidence) -> bool:
+    """Whether a formula that can be it explains about as much as a free curve, which has more freedom."""
+    return examined.physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
+
+
+def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | None:
     """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error.
 
     Its flips are of few stretches, and their own scatter is known no better: the noise of all rows must say the same.
     """
-    if generic is None or among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
+    if among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
         return None
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT or _noise_draws_curves(gathered):

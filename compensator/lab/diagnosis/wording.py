@@ -14,8 +14,10 @@ from compensator.lab.diagnosis.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.evidence import least_p_value
+from compensator.lab.screening.hysteresis import DRIVER as HYSTERESIS
 
 MOST_NAMES = 3
+LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 
 def answer_in_words(
@@ -37,9 +39,12 @@ def answer_in_words(
     best = candidates[0]
     if verdict == "unknown-effect":
         why = "does not follow its curve" if best.physical else "would need a sign or size that is not physical"
+        look = ""
+        if driver == HYSTERESIS:
+            driver, look = "where the joint has turned back, as what bends along and slides does", f" {LOOK_AT_HOSES}"
         return (
             f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
-            f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)})."
+            f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
         )
     title = best.effect.title
     also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
@@ -132,7 +137,15 @@ def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: flo
         "Something is missing, and it is none of the catalogue: it varies with the travel since the last reversal, "
         f"over some {bends.shape[0]:.2g} {facts.position_unit}{least}, and {why} for "
         f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
-        f"fall from {bends.before:.2%} to {bends.after:.2%}). Look at hoses, cables and seals that bend with the joint."
+        f"fall from {bends.before:.2%} to {bends.after:.2%}). {LOOK_AT_HOSES}"
+    )
+
+
+def still_bending_in_words(name: str) -> str:
+    """What an effect that is named imitates in part."""
+    return (
+        f"{name} describes it in part: beside it, what is left varies with where the joint has turned back, as what "
+        f"bends along and slides does. {LOOK_AT_HOSES}"
     )
 
 

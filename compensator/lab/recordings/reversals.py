@@ -60,6 +60,21 @@ def deflection(strokes: Strokes, distance: float) -> FloatArray:
     return state
 
 
+def slider(strokes: Strokes, distance: float) -> FloatArray:
+    """How far a spring is bent that slides along once it is bent by a distance, over that, -1 .. 1, shape (n,).
+
+    dz/dx = 1 / distance while |z| < 1, from rest at z = 0: a turn back within a loop closes it where it left.
+    """
+    ends = _ends(strokes)
+    begins = np.zeros(len(strokes.start))
+    for k in range(1, len(begins)):
+        sign = strokes.sign[k - 1]
+        begins[k] = sign * min(sign * begins[k - 1] + ends[k - 1] / distance, 1.0)
+    sign = strokes.sign[strokes.index]
+    state: FloatArray = sign * np.minimum(sign * begins[strokes.index] + strokes.travel / distance, 1.0)
+    return state
+
+
 def since_rest(
     position: FloatArray, velocity: FloatArray, time_s: FloatArray, slow: float
 ) -> tuple[FloatArray, FloatArray]:

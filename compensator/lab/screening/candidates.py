@@ -15,9 +15,11 @@ from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening import hysteresis
 from compensator.lab.screening.discrepancy import model_columns
 from compensator.lab.screening.evidence import Base, Block
 from compensator.lab.screening.generic import DriverBlock, driver_blocks
+from compensator.lab.screening.hysteresis import hysteresis_columns
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns
 
@@ -49,6 +51,16 @@ class Curves:
     def blocks(self) -> list[Block]:
         """The splines as blocks to be screened."""
         return [Block(name, self._weighted(spline.columns), 0, 1) for name, spline in self.splines.items()]
+
+    @cached_property
+    def hysteresis_columns(self) -> FloatArray:
+        """Of a free hysteresis of position, over all rows, shape (N, k)."""
+        return hysteresis_columns(self._dataset)
+
+    @cached_property
+    def hysteresis(self) -> Block:
+        """The same as a block to be screened."""
+        return Block(hysteresis.DRIVER, self._weighted(self.hysteresis_columns), 0, 1)
 
 
 @dataclass(frozen=True)

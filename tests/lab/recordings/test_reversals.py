@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.effects.dwell_strengthening import columns
-from compensator.lab.recordings.reversals import REST_S, deflection, since_rest, strokes_of
+from compensator.lab.recordings.reversals import REST_S, deflection, since_rest, slider, strokes_of
 from tests.lab.effects.test_effects import motion
 
 THERE_AND_BACK = np.array([0.0, 1.0, 2.0, 2.0, 1.5, 0.5, 1.0])
@@ -31,6 +31,17 @@ def test_deflection_comes_up_over_its_distance_and_turns_over_twice_as_much():
     # from +1 it passes zero after distance x ln 2
     assert turned[51] == pytest.approx(-1.0 + 2.0 * np.exp(-1.0))
     assert turned[-1] == pytest.approx(-1.0)
+
+
+def test_a_slider_gives_way_at_its_distance_and_closes_the_loops_within():
+    there_and_back = strokes_of(np.concatenate([np.linspace(0.0, 2.0, 21), np.linspace(1.9, 0.0, 20)]))
+    state = slider(there_and_back, 0.5)
+    assert state[:6] == pytest.approx(np.linspace(0.0, 1.0, 6))
+    assert state[6:21] == pytest.approx(np.ones(15))
+    assert state[25] == pytest.approx(0.0)
+    assert state[30:] == pytest.approx(-np.ones(11))
+    within = np.concatenate([np.linspace(0.0, 2.0, 21), np.linspace(1.9, 1.8, 2), np.linspace(1.9, 2.0, 2)])
+    assert slider(strokes_of(within), 0.5)[20:] == pytest.approx([1.0, 0.8, 0.6, 0.8, 1.0])
 
 
 def test_a_rest_is_measured_and_forgotten_over_the_travel_since():

@@ -1,0 +1,67 @@
+"""Whether something bends along with the joint and slides: a hose, a cable, a seal, whatever formula imitates a part.
+
+Held against the noise of all rows, as formulas are: a few stretches hold most of what a hysteresis of some tenths of a
+radian shows, so that flips of their signs cannot be sure of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.examination import LEAST_GAIN, SIGNIFICANT, VERY_STRONG, with_effect
+from compensator.lab.model.fit import Fit, with_columns
+from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.screening.candidates import Candidates, gather_curves
+from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import Block, Evidence, among_all, score_of, screen_against_noise
+
+
+@dataclass(frozen=True)
+class Bending:
+    """A free hysteresis that is missing for sure: its evidence, and the held-out error with it in the model."""
+
+    evidence: Evidence
+    after: HeldOut
+
+    def predicts_best(self, fit: Fit, candidates: Sequence[Candidate]) -> bool:
+        """Whether it has a lower held-out error, for sure, than the model with any of the effects that can be it."""
+        steady = fit.dataset.steadiness
+        others = [held_out(with_effect(fit, one.effect.name, one.shape), None, steady) for one in _possible(candidates)]
+        return all(held_out_gain(other, self.after).low > 0.0 for other in others)
+
+
+def bending(fit: Fit, gathered: Candidates) -> Bending | None:
+    """The free hysteresis, if its evidence is very strong and it lowers the held-out error for sure.
+
+    Args:
+        fit: of the model.
+        gathered: what it may be missing in steady sliding, against noise that is known.
+    """
+    if gathered.noise is None:
+        return None
+    found = screen_against_noise(gathered.bases, [gathered.curves.hysteresis], gathered.noise).evidence
+    if not found or found[0].score < VERY_STRONG or among_all(found[0].p_value) > SIGNIFICANT:
+        return None
+    bent = with_columns(fit, found[0].block.name, gathered.curves.hysteresis_columns)
+    before, after = (held_out(model, None, fit.dataset.steadiness) for model in (fit, bent))
+    gain = held_out_gain(before, after)
+    return Bending(found[0], after) if gain.low > 0.0 and gain.value >= LEAST_GAIN else None
+
+
+def still_bending(explained: Fit, gathered: Candidates, named: Block) -> bool:
+    """Whether it is missing beside an effect that is named, and what its formula leaves open: the name is but a part.
+
+    Args:
+        explained: the model with the effect.
+        gathered: what the model without it may be missing.
+        named: the effect's block.
+    """
+    given = gathered.with_block(named)
+    if given.noise is None or score_of(given.bases, given.curves.hysteresis, given.noise) < VERY_STRONG:
+        return False
+    return bending(explained, with_noise(gather_curves(explained, gathered.show_in))) is not None
+
+
+def _possible(candidates: Sequence[Candidate]) -> list[Candidate]:
+    return [one for one in candidates if one.physical]
