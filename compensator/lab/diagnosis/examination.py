@@ -19,7 +19,7 @@ SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
 LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
-LEAST_FALL = 1e-4  # of the effort: less than any sensor is linear
+LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
 UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
@@ -58,7 +58,7 @@ def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
     strong = candidate.score >= VERY_STRONG
     no_luck = candidate.p_value <= SIGNIFICANT or strong
-    falls = candidate.before - candidate.after >= LEAST_FALL
+    falls = candidate.before**2 - candidate.after**2 >= LEAST_EXPLAINED**2
     steady = candidate.rows == "sliding"
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     helps = candidate.gain.value >= least and falls and (candidate.gain.low > 0.0 or (steady and strong))

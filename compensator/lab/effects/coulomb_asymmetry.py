@@ -27,6 +27,7 @@ EFFECT = Effect(
     excited_by="motion in both directions, breakaway on both sides at rest",
     source="Saini et al. 2013, section 2.4 (assumed away there)",
     confused_with=("offset",),
+    hidden_by=("offset",),
     breakaway=at_rest(columns, PARAMETERS, "direction"),
     dry_friction=True,
 )

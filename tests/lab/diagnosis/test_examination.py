@@ -33,6 +33,21 @@ def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, co
     assert is_confirmed(candidate) == confirmed
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "confirmed"),
+    [
+        (0.003, 0.00295, True),  # of the effort it explains 0.055 %
+        (0.003, 0.00297, False),  # 0.042 %
+        (0.0009, 0.0008, False),  # as large a share of a smaller error is less of the effort: 0.041 %
+        (0.00295, 0.003, False),  # more is left than before
+    ],
+)
+def test_what_explains_less_of_the_effort_than_sensors_are_linear_is_not_confirmed(before, after, confirmed):
+    gained = Gain(1.0 - after / before, 0.005, 0.1)
+    candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), before, after, gained, True, None)
+    assert is_confirmed(candidate) == confirmed
+
+
 @pytest.mark.parametrize("rows", ["sliding", "moving"])
 def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     gained = Gain(0.2, 0.1, 0.3)
