@@ -7,6 +7,7 @@ from compensator.lab.diagnosis.constants import Constants
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.diagnosis.wandering import Wandering, wandering_of
+from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
 
@@ -37,13 +38,14 @@ def left_over(gathered: Candidates) -> LeftOver:
     """Judge what a model leaves on the rows where a family shows.
 
     Near reversals a formula of memory that is nearly right leaves some in every stretch, so that nothing is asked to be
-    constant there.
+    constant there; nor is it asked not to swing: teeth and shafts do, each reversal anew, at a frequency of their own.
     """
     dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
     friction = gathered.fit.dry_friction
     steady = gathered.show_in == "sliding"
     remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
-    swing = swing_of(dataset, base.residual, rows)
+    sliding = dataset.regime[rows] == Regime.SLIDING
+    swing = swing_of(dataset, base.residual[sliding], rows & (dataset.regime == Regime.SLIDING))
     if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
     if not steady:

@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.left_over import left_over
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import Fit, fit_model, widened
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+from compensator.lab.screening.candidates import gather_curves
+from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
 SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
@@ -77,3 +79,21 @@ def test_a_line_in_a_few_trials_is_theirs_alone():
         for time_s in [one.channels["time_s"]]
     ]
     assert swing(fitted([*few, *made[len(few) :]])) is None
+
+
+def ringing(x: Truth) -> np.ndarray:
+    """A line near reversals alone, as a shaft makes that swings there."""
+    reversals_s = x.time_s[np.flatnonzero(np.diff(np.sign(x.v)) != 0.0)]
+    apart_s = np.min(np.abs(x.time_s[:, None] - reversals_s), axis=1)
+    return 6.0 * line(x) * (apart_s < 0.03)
+
+
+def line(x: Truth) -> np.ndarray:
+    return 0.01 * np.sin(2.0 * np.pi * 3.1 * x.time_s)
+
+
+@pytest.mark.parametrize(("law", "swings"), [(ringing, False), (line, True)])
+def test_what_rings_after_reversals_is_what_a_formula_of_memory_leaves(law, swings):
+    fit = widened(fitted(recorded(law)), "moving")
+    assert swing_of(fit.dataset, fit.residual[fit.training], fit.training) is not None
+    assert (left_over(gather_curves(fit, "moving")).swing is not None) == swings
