@@ -3,11 +3,10 @@
 from typing import Any
 
 from bench.store import Store
-from bench.study.errors import lab_errors
+from bench.study.judged import diagnosis_of_model
 from bench.study.material import load_model
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
-from compensator.lab.diagnosis.diagnose import diagnose as diagnose_fit
 from compensator.lab.diagnosis.provisional import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import Fit
@@ -27,17 +26,12 @@ def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[s
         StudyError: no such model, or no effect can be judged on these trials.
     """
     material, model = load_model(store, study_id, model_id)
-    return diagnosis_of(material.fit_of(model), study_id, model.id)
+    fit = material.fit_of(model)
+    return answer_of(fit, diagnosis_of_model(material, model, fit), study_id, model.id)
 
 
-def diagnosis_of(fit: Fit, study_id: int, model_id: int) -> dict[str, Any]:
-    """What a model of a study may be missing, given its fit.
-
-    Raises:
-        StudyError: no effect can be judged on these trials.
-    """
-    with lab_errors():
-        found = diagnose_fit(fit)
+def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int) -> dict[str, Any]:
+    """What a model of a study may be missing, given its fit and diagnosis."""
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
     left_out = [f"Not judged: {reason}." for reason in found.left_out.values()]
     curve = provisional(fit, found) if found.verdict == "unknown-effect" else None

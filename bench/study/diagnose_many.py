@@ -7,8 +7,9 @@ from typing import Any
 from bench.over_cores import over_cores
 from bench.store import Store
 from bench.store.records import ModelRow
-from bench.study.diagnose import diagnosis_of
+from bench.study.diagnose import answer_of
 from bench.study.errors import StudyError, lab_errors
+from bench.study.judged import diagnosis_of_model
 from bench.study.material import Definition, Material, model_of, trials_of
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
@@ -65,7 +66,8 @@ def answer_to(question: Question) -> dict[str, Any]:
                 question.recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows)
             )
         material = Material(question.study_id, "", definition, (), dataset)
-        return diagnosis_of(material.fit_of(model), question.study_id, model.id)
+        fit = material.fit_of(model)
+        return answer_of(fit, diagnosis_of_model(material, model, fit), question.study_id, model.id)
     except StudyError as error:
         return {"study_id": question.study_id, "model_id": model.id, "error": str(error)}
 

@@ -1,5 +1,6 @@
 """A study's material: its definition, its trials as the lab wants them, and its models fitted."""
 
+from collections.abc import Hashable
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from typing import Any
@@ -58,13 +59,21 @@ class Definition:
 
 @dataclass(frozen=True)
 class Material:
-    """A study with its trials, ready to be fitted."""
+    """A study with its trials, ready to be fitted.
+
+    Attributes:
+        study_id, name, definition: as stored.
+        trials: of the study, in order.
+        dataset: their rows.
+        source: equal where the recordings are the same ones of the same store; None where they are from none.
+    """
 
     study_id: int
     name: str
     definition: Definition
     trials: tuple[Trial, ...]
     dataset: Dataset
+    source: Hashable = None
 
     @property
     def training(self) -> BoolArray:
@@ -150,8 +159,8 @@ def trials_of(model: ModelRow, definition: Definition) -> Definition:
 def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:
     """The material of a definition, whether it is kept already or not. Errors as `load`."""
     trials = tuple(store.trial(trial_id) for trial_id in definition.trial_ids)
-    dataset = _dataset(_Source(store, definition.trial_ids), definition)
-    return Material(study_id, name, definition, trials, dataset)
+    source = _Source(store, definition.trial_ids)
+    return Material(study_id, name, definition, trials, _dataset(source, definition), source)
 
 
 def model_of(store: Store, study_id: int, model_id: int | None) -> ModelRow:

@@ -9,12 +9,12 @@ from bench.drive_factory import is_simulated
 from bench.store import Experiment, Store
 from bench.study.errors import StudyError, lab_errors
 from bench.study.extend import note_for
+from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
 from bench.study.next_trial.kept_out import kept_out, without
 from bench.study.next_trial.options import Choice, choices
 from bench.study.next_trial.predict import choose
 from bench.study.selection import Criterion
-from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion, shows_from_rest
 
@@ -53,9 +53,9 @@ def suggest(
             "of its bench with --config"
         )
     configuration = with_friction(store, configuration)
+    fit = material.fit_of(model)
+    diagnosis = diagnosis_of_model(material, model, fit)
     with lab_errors():
-        fit = material.fit_of(model)
-        diagnosis = diagnose(fit)
         if diagnosis.verdict == "data-problem":
             raise StudyError(f"{diagnosis.sentence} Mend it before more is recorded")
         possible = choices(configuration, not is_simulated(configuration), shows_from_rest(diagnosis))

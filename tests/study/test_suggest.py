@@ -12,6 +12,7 @@ from bench.configuration import default_configuration
 from bench.runner import Runner
 from bench.service.json_numbers import plain
 from bench.service.suggestion_models import Extended, Suggested
+from bench.study import judged
 from bench.study.errors import StudyError
 from bench.study.extend import note_for
 from bench.study.material import load
@@ -119,6 +120,12 @@ def test_a_suggestion_can_be_started_as_it_is(store, made, found):
     assert rungs[1]["effects"] == rungs[0]["effects"]
     with pytest.raises(StudyError, match="no completed trial that study"):
         study.extend_study(store, made["study_id"])
+
+
+def test_suggestions_start_from_the_diagnosis_that_was_made(store, made, found, monkeypatch):
+    monkeypatch.setattr(judged, "diagnose", None)  # nothing is judged again
+    again = study.suggest(store, made["study_id"], CONFIGURATION, made["model_id"], trials=2)
+    assert (again["verdict"], again["diagnosis"]) == (found["verdict"], found["diagnosis"])
 
 
 def test_what_tripped_on_the_joint_is_named_and_not_suggested_again_until_it_completes(store, made, found):
