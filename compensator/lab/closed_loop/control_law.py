@@ -13,7 +13,8 @@ import numpy as np
 from compensator.lab.model.linear import Bounds, solve
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import Signals, low_pass
+from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.processing import Signals
 from compensator.lab.recordings.recording import FloatArray
 
 EXPLAINED = 0.95  # of the effort's variance: less is no linear law

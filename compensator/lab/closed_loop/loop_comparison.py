@@ -11,7 +11,8 @@ from compensator.lab.model.fit import Fit, trained_trials, with_terms
 from compensator.lab.model.intervals import without_each
 from compensator.lab.model.validation import FEWEST_TRIALS, rms
 from compensator.lab.recordings.differentiation import rate_of_change
-from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, low_pass
+from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset, Trial
 

@@ -14,7 +14,8 @@ from compensator.lab.closed_loop.resistance import resistances
 from compensator.lab.closed_loop.stepping import Drive, moved
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import Fit
-from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, low_pass
+from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR
 from compensator.lab.recordings.recording import FloatArray, Recording
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.assembly import more_trials

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.signal import sosfreqz
 
 from compensator.lab.model.weights import bounded_influence
-from compensator.lab.recordings.processing import filter_sections
+from compensator.lab.recordings.low_pass import filter_sections
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset, Trial

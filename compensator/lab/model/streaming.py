@@ -16,7 +16,8 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import Fit
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import with_own_prediction
-from compensator.lab.recordings.processing import EDGE_PERIODS, FILTER_ORDER
+from compensator.lab.recordings.low_pass import FILTER_ORDER
+from compensator.lab.recordings.processing import EDGE_PERIODS
 from compensator.lab.recordings.recording import Condition, FloatArray, Recording
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.assembly import more_trials

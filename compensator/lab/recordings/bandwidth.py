@@ -15,7 +15,8 @@ from scipy.signal import butter, sosfiltfilt, welch
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import Signals, low_pass, make_signals, sample_rate_hz, shortest_samples
+from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.processing import Signals, make_signals, sample_rate_hz, shortest_samples
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 COHERENT = 0.5

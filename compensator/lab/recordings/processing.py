@@ -6,22 +6,19 @@ then thinned to the Nyquist rate (Janot, Gautier, Brunot 2019; "parallel decimat
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
-from scipy.signal import butter, sosfilt, sosfilt_zi
 
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
 from compensator.lab.recordings.recording import FloatArray, Recording
 from compensator.lab.recordings.regimes import BoolArray
 
-FILTER_ORDER = 4
 DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
 LONGEST_GAP_PERIODS = 5.0
-PADDING = 3  # times the filter's length, continued at both ends
 REGULAR_SHARE = 0.05  # of the period: jitter that counts as regular sampling
 SATURATED_DUTY = 0.98
 EDGE_PERIODS = 3.0  # of the final cut-off, dropped at both ends of a trial, where the filter starts from nothing
@@ -53,40 +50,6 @@ class Signals:
     temperature_c: FloatArray
     supply_v: FloatArray
     usable: BoolArray
-
-
-def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray:
-    """Zero-phase Butterworth low-pass along the last axis; unchanged where the cut-off is beyond Nyquist."""
-    if cutoff_hz >= 0.49 * rate_hz:
-        return values
-    sections, steady = filter_sections(cutoff_hz, rate_hz)
-    # scipy's sosfiltfilt, less the design of the filter's steady state, which takes longer than one trial's filtering
-    padded = _odd_extension(values, PADDING * (2 * len(sections) + 1))
-    forward = _filtered_from_rest(sections, steady, padded)
-    backward = _filtered_from_rest(sections, steady, forward[..., ::-1])[..., ::-1]
-    edge = (padded.shape[-1] - values.shape[-1]) // 2
-    return backward[..., edge : backward.shape[-1] - edge]
-
-
-def _filtered_from_rest(sections: FloatArray, steady: FloatArray, values: FloatArray) -> FloatArray:
-    """Filter along the last axis, beginning in the steady state of the first value."""
-    shape = (len(sections), *(1,) * (values.ndim - 1), 2)
-    filtered: FloatArray = sosfilt(sections, values, axis=-1, zi=steady.reshape(shape) * values[..., :1])[0]
-    return filtered
-
-
-def _odd_extension(values: FloatArray, count: int) -> FloatArray:
-    """Values continued at both ends by their own mirror image through the end points."""
-    before = 2.0 * values[..., :1] - values[..., count:0:-1]
-    after = 2.0 * values[..., -1:] - values[..., -2 : -count - 2 : -1]
-    return np.concatenate([before, values, after], axis=-1)
-
-
-@lru_cache(maxsize=256)
-def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, FloatArray]:
-    """Second-order sections of the low-pass, and the state of each that a constant 1 settles to."""
-    sections: FloatArray = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
-    return sections, sosfilt_zi(sections)
 
 
 def sample_rate_hz(recording: Recording) -> float:

@@ -13,7 +13,8 @@ from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import Signals, low_pass
+from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.processing import Signals
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
 

@@ -10,7 +10,6 @@ from compensator.lab.recordings.processing import (
     DIFFERENTIATION_FACTOR,
     FILTER_ORDER,
     distance_to_nearest,
-    low_pass,
     make_signals,
 )
 from compensator.lab.recordings.recording import Recording
@@ -45,16 +44,6 @@ def test_derivatives_of_a_sine():
     assert np.abs(found.acceleration - expected[1])[rows].max() < 1e-4 * 0.5 * w**2
     assert np.abs(found.jerk + 0.5 * w**3 * np.cos(w * time_s))[rows].max() < 1e-3 * 0.5 * w**3
     assert found.rate_hz == pytest.approx(200)
-
-
-def test_the_low_pass_keeps_phase_and_halves_power_at_its_corner():
-    time_s = np.arange(0, 20, 1 / 200)
-    for frequency_hz, gain in ((0.5, 1.0), (CUTOFF_HZ, 0.5), (4 * CUTOFF_HZ, 4.0 ** -(2 * FILTER_ORDER))):
-        wave = np.sin(2 * np.pi * frequency_hz * time_s)
-        inner = slice(800, -800)
-        found = low_pass(wave, CUTOFF_HZ, 200.0)[inner]
-        assert found @ wave[inner] / (wave[inner] @ wave[inner]) == pytest.approx(gain, rel=0.02, abs=1e-5)
-    assert low_pass(wave, 99.0, 200.0) is wave  # beyond Nyquist there is nothing to take away
 
 
 def test_ends_and_what_is_near_a_lost_sample_are_left_out():

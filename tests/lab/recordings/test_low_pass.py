@@ -1,0 +1,37 @@
+"""The low-pass keeps phase, and is scipy's own, whatever the shape of what it filters."""
+
+import numpy as np
+import pytest
+from scipy.signal import sosfiltfilt
+
+from compensator.lab.recordings.low_pass import FILTER_ORDER, filter_sections, low_pass
+
+CUTOFF_HZ = 8.0
+
+
+def test_the_low_pass_keeps_phase_and_halves_power_at_its_corner():
+    time_s = np.arange(0, 20, 1 / 200)
+    for frequency_hz, gain in ((0.5, 1.0), (CUTOFF_HZ, 0.5), (4 * CUTOFF_HZ, 4.0 ** -(2 * FILTER_ORDER))):
+        wave = np.sin(2 * np.pi * frequency_hz * time_s)
+        inner = slice(800, -800)
+        found = low_pass(wave, CUTOFF_HZ, 200.0)[inner]
+        assert found @ wave[inner] / (wave[inner] @ wave[inner]) == pytest.approx(gain, rel=0.02, abs=1e-5)
+    assert low_pass(wave, 99.0, 200.0) is wave  # beyond Nyquist there is nothing to take away
+
+
+@pytest.mark.parametrize("shape", [(700,), (1, 700), (7, 700)])
+@pytest.mark.parametrize(("cutoff_hz", "rate_hz"), [(8.0, 200.0), (90.0, 200.0), (2.0, 1000.0)])
+def test_columns_side_by_side_are_filtered_as_scipy_filters_each(shape, cutoff_hz, rate_hz):
+    values = np.random.default_rng(1).standard_normal(shape)
+    before = values.copy()
+    sections, _ = filter_sections(cutoff_hz, rate_hz)
+    wanted = sosfiltfilt(sections, values, axis=-1, padtype="odd", padlen=3 * (2 * len(sections) + 1))
+    found = low_pass(values, cutoff_hz, rate_hz)
+    assert found.shape == shape
+    assert found == pytest.approx(wanted, rel=1e-9, abs=1e-12)
+    assert (values == before).all()
+
+
+def test_whole_numbers_are_filtered_as_numbers():
+    steps = np.repeat([0, 100], 300)
+    assert low_pass(steps, CUTOFF_HZ, 200.0) == pytest.approx(low_pass(steps.astype(float), CUTOFF_HZ, 200.0))
