@@ -6,6 +6,7 @@ transmission pulls it back; either way the gear carries less than a rigid one by
 """
 
 import numpy as np
+from numba import njit
 from scipy.signal import lfilter
 
 from compensator.lab.recordings.recording import FloatArray
@@ -27,16 +28,24 @@ def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> Floa
         gap: whole free play, in units of position.
         step_s: between samples.
     """
-    high = 0.5 * gap
-    low = -high
-    way = before = high if len(parting) == 0 or parting[0] >= 0.0 else low
-    ways = [before, way]
-    for gain in (parting[:-1] * step_s**2).tolist():
-        ahead = 2.0 * way - before + gain
-        before, way = way, low if ahead < low else high if ahead > high else ahead
-        ways.append(way)
-    second: FloatArray = np.diff(np.array(ways), 2, append=ways[-1]) / step_s**2
-    return second[: len(parting)]
+    if len(parting) == 0:
+        return parting
+    second: FloatArray = np.diff(_ways_in_free_play(parting, 0.5 * gap, step_s), 2) / step_s**2
+    return second
+
+
+@njit(cache=True)
+def _ways_in_free_play(parting: FloatArray, high: float, step_s: float) -> FloatArray:
+    """How far the motor side is ahead: on a flank before the first sample, and resting after the last; (n + 2,)."""
+    ways = np.empty(len(parting) + 2)
+    way = before = high if parting[0] >= 0.0 else -high
+    ways[0] = ways[1] = way
+    for step in range(len(parting) - 1):
+        ahead = 2.0 * way - before + parting[step] * step_s**2
+        before, way = way, min(max(ahead, -high), high)
+        ways[step + 2] = way
+    ways[-1] = way
+    return ways
 
 
 def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, damping: float, step_s: float) -> FloatArray:
