@@ -19,10 +19,12 @@ from compensator.lab.diagnosis.examination import (
 )
 from compensator.lab.diagnosis.left_over import LeftOver, left_over
 from compensator.lab.diagnosis.remainder import LEAST_SHARE
+from compensator.lab.diagnosis.session_constancy import change_in_session
 from compensator.lab.diagnosis.wording import (
     answer_in_words,
     bending_in_words,
     bursts_in_words,
+    changed_in_session_in_words,
     changing_in_words,
     still_bending_in_words,
     swinging_in_words,
@@ -96,8 +98,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         name = best.block.name
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(explained, gathered, name)
-        if not notes and still_bending(explained, gathered, best.block):
-            notes = [still_bending_in_words(name)]
+        notes = notes or _imitated(explained, gathered, best)
         remains, strength = bool(notes), best.noncentrality
         return Answer("missing", sentence, p_value, examined, None, notes, strength, remains, explained)
     found = _bends(gathered, examined, best_of_each)
@@ -223,6 +224,15 @@ def _nearest_driver(generic: Screening) -> str | None:
     """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
     best = generic.evidence[0] if generic.evidence else None
     return best.block.name if best is not None and best.score > 0.0 else None
+
+
+def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]:
+    """What an effect that is named only imitates, as far as it is more than what its formula leaves open."""
+    name = best.block.name
+    if still_bending(explained, gathered, best.block):
+        return [still_bending_in_words(name)]
+    change = change_in_session(explained, gathered, best.block)
+    return [] if change is None else [changed_in_session_in_words(name, change)]
 
 
 def _what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:

@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.constants import DRY_FRICTION
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.left_over import LeftOver
+from compensator.lab.diagnosis.session_constancy import InSession
 from compensator.lab.diagnosis.swinging import Swing
 from compensator.lab.diagnosis.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
@@ -146,6 +147,14 @@ def still_bending_in_words(name: str) -> str:
     return (
         f"{name} describes it in part: beside it, what is left varies with where the joint has turned back, as what "
         f"bends along and slides does. {LOOK_AT_HOSES}"
+    )
+
+
+def changed_in_session_in_words(name: str, change: InSession) -> str:
+    """What an effect that is named imitates, where it is another one from some trial on."""
+    return (
+        f"{name} describes it in part: before {change.trial} it is {change.before:.1f} times as large as in all trials "
+        f"together, and {change.since:.1f} times since. Something slips, shifts or loosens: repeat the first trial."
     )
 
 

@@ -95,10 +95,13 @@ class Candidates:
 
     def with_columns(self, columns: FloatArray) -> "Candidates":
         """The same candidates judged on top of more columns, given over all rows, shape (N, k)."""
-        tested = columns[self.rows] * self.weights[:, None]
-        if self.noise is not None:
-            tested = self.noise.evened(tested)
+        tested = self.tested(columns)
         return replace(self, bases=[base.extended(tested) for base in self.bases])
+
+    def tested(self, columns: FloatArray) -> FloatArray:
+        """Columns (N, k) given over all rows as blocks have them: the tested rows, weighted and evened, (n, k)."""
+        weighted = columns[self.rows] * self.weights[:, None]
+        return weighted if self.noise is None else self.noise.evened(weighted)
 
     def evened(self, noise: Noise) -> "Candidates":
         """The same candidates, judged against a noise: rows count by what it leaves sure."""
