@@ -118,7 +118,8 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
             sentence, remains = bursts_in_words(bursts, names, share, p_value), True
         elif left.is_more_than_noise:
             wanders = _wanders(fit, left)
-            sentence = unexplained_in_words(left, _nearest_driver(generic), p_value, stretches, wanders)
+            nearest, facts = _nearest_driver(generic), fit.dataset.facts
+            sentence = unexplained_in_words(left, nearest, p_value, stretches, facts, wanders)
             remains = True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
 

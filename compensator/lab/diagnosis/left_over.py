@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from compensator.lab.diagnosis.constancy import Change, change_of
 from compensator.lab.diagnosis.constants import Constants
+from compensator.lab.diagnosis.orders import Line, line_of
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.diagnosis.wandering import Wandering, wandering_of
@@ -20,18 +21,20 @@ class LeftOver:
         change: that something constant is another one in each stretch; None where nothing is for sure.
         swing: that it swings at one frequency; None where it does not for sure.
         wandering: that dry friction is another one for seconds, however little; None where it is not for sure.
+        line: that it comes back with the position; None where it does not for sure, or where the noise is not known.
     """
 
     remainder: Remainder
     change: Change | None
     swing: Swing | None
     wandering: Wandering | None = None
+    line: Line | None = None
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        found = self.change is not None or self.swing is not None or self.wandering is not None
-        return self.remainder.is_more_than_noise or found
+        found = (self.change, self.swing, self.wandering, self.line)
+        return self.remainder.is_more_than_noise or any(one is not None for one in found)
 
 
 def left_over(gathered: Candidates) -> LeftOver:
@@ -52,4 +55,5 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, None, swing)
     constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
     change = change_of(constants)
-    return LeftOver(remainder, change, swing, wandering_of(constants) if change is None else None)
+    wandering = wandering_of(constants) if change is None else None
+    return LeftOver(remainder, change, swing, wandering, line_of(gathered))

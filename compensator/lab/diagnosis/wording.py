@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.constants import DRY_FRICTION
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.left_over import LeftOver
+from compensator.lab.diagnosis.orders import Line
 from compensator.lab.diagnosis.session_constancy import InSession
 from compensator.lab.diagnosis.swinging import Swing
 from compensator.lab.diagnosis.wandering import Wandering
@@ -80,7 +81,9 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, stretches: int, wanders: str = "") -> str:
+def unexplained_in_words(
+    left: LeftOver, driver: str | None, p_value: float, stretches: int, facts: Facts, wanders: str = ""
+) -> str:
     """The answer where something is left that no effect and no curve explains.
 
     Args:
@@ -88,6 +91,7 @@ def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, str
         driver: that it varies with most; None where it varies with none.
         p_value: as in a diagnosis.
         stretches: independent stretches of BLOCK_S that it rests on.
+        facts: of the joint.
         wanders: what is another one for seconds, in words; empty where nothing is.
     """
     none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
@@ -95,6 +99,8 @@ def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, str
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
     if left.change is not None:
         how = changing_in_words(left.change)
+    elif left.line is not None:
+        how = f"it {recurring_in_words(left.line, facts)}"
     elif left.swing is not None:
         how = f"it {swinging_in_words(left.swing)}"
     elif wanders:
@@ -107,6 +113,13 @@ def unexplained_in_words(left: LeftOver, driver: str | None, p_value: float, str
         f"{none}, yet what is left, {left.remainder.share:.1%} of the effort, is more than noise; {how}. "
         "Repeat a trial: what comes again is the joint's, what does not has changed since."
     )
+
+
+def recurring_in_words(line: Line, facts: Facts) -> str:
+    """What comes back with the position, how often, and where to look."""
+    per = "a turn of the joint" if facts.joint == "rotary" else f"per {facts.position_unit}"
+    way = ", against the motion" if line.against_motion else ""
+    return f"comes back with the position about {line.order:.3g} times {per}{way}: look at what goes round so often"
 
 
 def swinging_in_words(swing: Swing) -> str:

@@ -132,7 +132,7 @@ class Noise:
                 inside = place.speed == speed
                 spread = np.zeros((length, own.shape[1]))
                 spread[place.grid[inside]] = own[inside]
-                density = place.power[speed] * _spectrum(self.autocovariances[speed], length)
+                density = place.power[speed] * spectral_density(self.autocovariances[speed], length)
                 passed += np.sqrt(density)[:, None] * np.fft.rfft(spread, axis=0)
             passed[1:-1] *= np.sqrt(2.0)  # negative frequencies, too
             total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / length
@@ -246,14 +246,14 @@ def _less(whole: FloatArray, part: FloatArray) -> FloatArray:
     """Autocovariances (SPEEDS, lags) without a part of them, still those of a noise: at no frequency below zero."""
     lags = whole.shape[1]
     kept = [
-        np.maximum(_spectrum(a - b, 2 * lags), STEADIEST * _spectrum(a, 2 * lags))
+        np.maximum(spectral_density(a - b, 2 * lags), STEADIEST * spectral_density(a, 2 * lags))
         for a, b in zip(whole, part, strict=True)
     ]
     found: FloatArray = np.fft.irfft(np.array(kept), 2 * lags, axis=1)[:, :lags]
     return found
 
 
-def _spectrum(autocovariance: FloatArray, length: int) -> FloatArray:
+def spectral_density(autocovariance: FloatArray, length: int) -> FloatArray:
     """Spectral density of an autocovariance (lags,) on so many places of an even grid, as rfft has it; none below 0."""
     lags = min(len(autocovariance), length // 2)
     kernel = np.zeros(length)

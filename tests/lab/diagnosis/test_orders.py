@@ -1,0 +1,92 @@
+"""What comes back with the position is told, whatever its order; what does not come back is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis import orders
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.orders import Line, line_of
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.clearing import with_noise
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known
+RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise
+
+
+def fitted(extra=None, seed: int = 0) -> Fit:
+    made = recordings(Joint(extra=extra), Bench(duration_s=6.0), plans(), seed)
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS))
+
+
+def line(fit: Fit) -> Line | None:
+    return line_of(with_noise(gather(fit)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_does_not_come_back(seed):
+    assert line(fitted(seed=seed)) is None
+
+
+def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
+    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))
+    found = line(fit)
+    assert found is not None
+    assert found.order == pytest.approx(ORDER, rel=0.02)
+    assert not found.against_motion
+    assert found.share == pytest.approx(RIPPLE_N_M / np.sqrt(2.0) / np.std(fit.dataset.effort), rel=0.5)
+    answer = diagnose(fit)
+    assert (answer.verdict, answer.remains) == ("nothing", True)
+    assert f"comes back with the position about {found.order:.3g} times a turn of the joint:" in answer.sentence
+
+
+def test_friction_that_rises_and_falls_with_the_position_is_told_as_such():
+    found = line(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * np.sign(x.v)))
+    assert found is not None
+    assert found.order == pytest.approx(ORDER, rel=0.02)
+    assert found.against_motion
+
+
+def test_what_differs_along_the_path_but_does_not_come_back_is_no_line():
+    random = np.random.default_rng(8)
+
+    def extra(x):
+        path = np.cumsum(np.abs(x.v)) * (x.time_s[1] - x.time_s[0])
+        steps = random.standard_normal(int(path[-1] / 0.05) + 2)
+        return 0.02 * 0.08 * np.interp(path, 0.05 * np.arange(len(steps)), steps) * np.sign(x.v)
+
+    assert line(fitted(extra)) is None
+
+
+def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
+    """It may be of time as well as of position, however little chance has to do with it."""
+    monkeypatch.setattr(orders, "CHANCE", 1.0)
+    hit = iter([True])
+
+    def extra(x):
+        here = (x.time_s > 2.0) & (x.time_s < 4.0) & next(hit, False)
+        return 0.02 * here * np.cos(ORDER * x.q)
+
+    fit = fitted(extra)
+    assert line(fit) is None
+    monkeypatch.setattr(orders, "FORETOLD", -np.inf)
+    assert line(fit) is not None
+
+
+def test_without_known_noise_no_line_can_be_told():
+    assert line_of(gather(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q)))) is None
+
+
+def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
+    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q))
+    facts = replace(fit.dataset.facts, joint="linear")
+    gathered = with_noise(gather(fit))
+    found = line_of(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
+    assert found is not None
+    assert found.order == pytest.approx(ORDER / (2.0 * np.pi), rel=0.02)
