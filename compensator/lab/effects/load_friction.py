@@ -6,6 +6,7 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_
 from compensator.lab.recordings.recording import FloatArray
 
 UNCERTAIN_SHARE = 0.05  # of the largest effort: the sign of a smaller load is uncertain
+BEYOND_SHARE = 0.02  # of it: what bearings beyond the teeth may take
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
@@ -14,9 +15,20 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
 
 
 def discrepancy(motion: Motion, _: Shape) -> FloatArray:
-    """What else the teeth transmit, friction and inertia beyond them: derivatives of |load + F sgn v + D v + J a|."""
+    """What else the teeth transmit, friction and inertia beyond them: derivatives of |load + F sgn v + D v + J a|.
+
+    Near a load of none there are no such derivatives: there teeth transmit F itself, and not next to nothing.
+    """
     side = np.tanh(motion.load_effort / (UNCERTAIN_SHARE * (motion.largest_effort or 1.0)))
-    return np.array([side, side * np.abs(motion.velocity), side * motion.acceleration * motion.direction])
+    beyond = _beyond(motion, BEYOND_SHARE * motion.largest_effort)
+    return np.array([side, side * np.abs(motion.velocity), side * motion.acceleration * motion.direction, beyond])
+
+
+def _beyond(motion: Motion, friction: float) -> FloatArray:
+    """What friction beyond the teeth adds to what they transmit, and so to what is lost in them, shape (n,)."""
+    against = motion.direction * friction
+    added: FloatArray = (np.abs(motion.load_effort + against) - np.abs(motion.load_effort)) * motion.direction
+    return added
 
 
 PARAMETERS = (Parameter("share of the load lost", "1", 0.0, 1.0),)

@@ -84,7 +84,7 @@ def near_duty(m: Motion, more: np.ndarray) -> np.ndarray:
 
 
 NEAR: dict[str, tuple[Callable[[Motion, np.ndarray], np.ndarray], Callable[[Motion], list[np.ndarray]]]] = {
-    "load_friction": (near_load, lambda m: [m.direction, m.velocity, m.acceleration]),
+    "load_friction": (near_load, lambda m: [m.direction, m.velocity, m.acceleration, m.direction]),
     "load_friction_quadratic": (near_square, lambda m: [m.velocity, m.acceleration]),
     "dead_time": (near_sign, lambda m: [np.ones(41), m.direction, m.velocity]),
     "supply_sag": (near_duty, lambda m: [m.velocity * predicted(m), m.velocity**2]),
@@ -103,6 +103,14 @@ def test_what_is_left_open_is_the_change_to_a_truth_near_by(name):
     assert len(columns) == len(wanted)
     for found, change in zip(columns, wanted, strict=True):
         assert np.corrcoef(found[clear], change[clear])[0, 1] > 0.999
+
+
+def test_without_load_teeth_transmit_the_friction_beyond_them():
+    m = replace(motion(), load_effort=np.linspace(-0.06, 0.06, 41), largest_effort=1.5)
+    effect = effect_named("load_friction")
+    assert effect.discrepancy is not None
+    transmitted = np.abs(m.load_effort) * m.direction + effect.discrepancy(m, ())[-1]
+    assert transmitted == pytest.approx(np.abs(m.load_effort + 0.03 * m.direction) * m.direction)
 
 
 def test_an_angle_that_is_misread_has_a_second_and_third_order():
