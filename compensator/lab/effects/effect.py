@@ -39,6 +39,8 @@ class Motion:
         session_span_s: from the first trial's start to the last one's end, as far as the conditions tell.
         slow: speed below which direction is uncertain.
         fast: 95 % quantile of speed over all trials.
+        travelled: way from the start of the session to that of the trial, as far as the trials tell.
+        usual_speed: way over time, of the whole session; 0 where nothing tells.
     """
 
     facts: Facts
@@ -63,6 +65,8 @@ class Motion:
     session_span_s: float
     slow: float
     fast: float
+    travelled: float = 0.0
+    usual_speed: float = 0.0
 
     def condition(self, name: str, default: float) -> float:
         """A numeric condition of the trial, or the default where it is not given."""
@@ -88,6 +92,12 @@ class Motion:
     def session_s(self) -> FloatArray:
         """Time since the start of the session [s], shape (n,); since the start of the trial where nothing tells."""
         return self.time_s + self.condition(SESSION_START, 0.0)
+
+    @property
+    def session_way_s(self) -> FloatArray:
+        """The way since the start of the session, as the time that it usually takes [s], shape (n,)."""
+        way = self.travelled + np.cumsum(np.abs(self.velocity)) * self.step_s
+        return way / self.usual_speed if self.usual_speed > 0.0 else self.session_s
 
     @property
     def load_kg(self) -> float:

@@ -16,6 +16,12 @@ def columns(motion: Motion, shape: Shape) -> FloatArray:
     return (np.exp(-motion.session_s / shape[0]) * motion.direction)[None]
 
 
+def discrepancy(motion: Motion, shape: Shape) -> FloatArray:
+    """What surfaces lose as they run in goes with the way and not with time, and none is known to be what counts."""
+    way = motion.session_way_s / shape[0]
+    return np.array([np.exp(-way), way * np.exp(-way)]) * motion.direction
+
+
 EFFECT = Effect(
     name="warm_up",
     title="Warm-up",
@@ -35,4 +41,5 @@ EFFECT = Effect(
     confused_with=("coulomb_temperature",),
     varies_with="session_s",
     dry_friction=True,
+    discrepancy=discrepancy,
 )

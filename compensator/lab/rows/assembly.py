@@ -58,7 +58,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     noise = max(_velocity_noise(s, facts, cutoff) for s in signals)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))
-    trials = tuple(_make_trial(s, facts, cutoff, scales) for s in signals)
+    trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in signals])
     plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
     settled = replace(plain, trials=_on_one_flank(trials), cache={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
@@ -172,6 +172,22 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
     picked = np.arange(step // 2, len(signals.time_s), step)
     picked = picked[signals.usable[picked]]
     return Trial(signals, motion, picked, classify(signals.velocity, scales.slow, signals.rate_hz)[picked])
+
+
+def _with_way(trials: Sequence[Trial]) -> tuple[Trial, ...]:
+    """The trials, each knowing the way before it."""
+    starts = np.array([trial.motion.session_s[0] for trial in trials])
+    if len(np.unique(starts)) < len(starts):
+        return tuple(trials)  # nobody tells when they began
+    order = np.argsort(starts)
+    ways = np.array([float(np.sum(np.abs(trial.motion.velocity)) * trial.motion.step_s) for trial in trials])[order]
+    before = np.empty(len(trials))
+    before[order] = np.cumsum(ways) - ways
+    usual = float(ways.sum()) / trials[0].motion.session_span_s
+    return tuple(
+        replace(trial, motion=replace(trial.motion, travelled=float(way), usual_speed=usual))
+        for trial, way in zip(trials, before, strict=True)
+    )
 
 
 def _on_one_flank(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:

@@ -8,7 +8,7 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
-from compensator.lab.effects.effect import Motion
+from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.model.fit import Fit, Term, fit_model
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
@@ -111,6 +111,23 @@ def test_without_load_teeth_transmit_the_friction_beyond_them():
     assert effect.discrepancy is not None
     transmitted = np.abs(m.load_effort) * m.direction + effect.discrepancy(m, ())[-1]
     assert transmitted == pytest.approx(np.abs(m.load_effort + 0.03 * m.direction) * m.direction)
+
+
+def test_what_falls_may_fall_with_the_way_instead_of_time():
+    made = [
+        replace(one, conditions={**one.conditions, SESSION_START: 12.0 * place})
+        for place, one in reversed(list(enumerate(recordings(seed=5)[:6])))
+    ]
+    dataset = make_dataset(made, FACTS, Processing())
+    ways = [np.abs(trial.motion.velocity) * trial.motion.step_s for trial in dataset.trials]
+    span_s = dataset.scales.session_span_s
+    whole = sum(float(way.sum()) for way in ways)
+    before = 0.0
+    for trial, way in reversed(list(zip(dataset.trials, ways, strict=True))):
+        gone = (before + np.cumsum(way)) / whole  # of the session's way
+        found = effect_named("warm_up").discrepancy(trial.motion, (0.5 * span_s,))
+        assert found[0] == pytest.approx(np.exp(-2.0 * gone) * trial.motion.direction)
+        before += float(way.sum())
 
 
 def test_an_angle_that_is_misread_has_a_second_and_third_order():
