@@ -170,4 +170,8 @@ def test_an_angle_is_misread_at_where_the_joint_is():
 
 
 def test_every_effect_that_leaves_something_open_is_tested_here():
-    assert {n for n, e in catalogue().items() if e.discrepancy is not None} == {*NEAR, "encoder_eccentricity"}
+    assert {n for n, e in catalogue().items() if e.discrepancy is not None} == {
+        *NEAR,
+        "encoder_eccentricity",
+        "warm_up",
+    }
