@@ -3,9 +3,11 @@
 import numpy as np
 from scipy.stats import spearmanr
 
+from compensator.lab.diagnosis.wording import some_of
 from compensator.lab.model.fit import Fit
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.model.validation import relative_error, rms
+from compensator.lab.recordings.processing import SATURATED_DUTY
 from compensator.lab.recordings.stuck_sensor import stuck_positions
 
 ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
@@ -199,17 +201,23 @@ def _odd_trials(fit: Fit) -> list[str]:
 
 
 def _few_usable(fit: Fit) -> list[str]:
+    """Trials under saturation for much of their time, in one sentence: where loads are too heavy, most are."""
     found = []
     for trial in fit.dataset.trials:
-        share = 1.0 - float(np.mean(trial.signals.usable))
-        saturated = trial.signals.recording.channels.get("duty")
-        at_limit = 0.0 if saturated is None else float(np.mean(np.abs(saturated) >= 0.98))
+        left_out = 1.0 - float(np.mean(trial.signals.usable))
+        duty = trial.signals.recording.channels.get("duty")
+        at_limit = 0.0 if duty is None else float(np.mean(np.abs(duty) >= SATURATED_DUTY))
         if at_limit > SATURATED_SHARE:
-            found.append(
-                f"trial '{trial.signals.recording.name}': the duty is at its limit for {at_limit:.0%} of the time and "
-                f"{share:.0%} of the rows are left out; record it with a lighter load or slower"
-            )
-    return found
+            found.append((at_limit, left_out, f"'{trial.signals.recording.name}'"))
+    if not found:
+        return []
+    at_limit, left_out, worst = max(found)
+    others = [name for _, _, name in sorted(found, reverse=True)[1:]]
+    also = f" (and for more than {SATURATED_SHARE:.0%} in {some_of(others)})" if others else ""
+    return [
+        f"trial {worst}: the duty is at its limit for {at_limit:.0%} of the time and {left_out:.0%} of the rows are "
+        f"left out{also}; record with a lighter load or slower"
+    ]
 
 
 def _unused(fit: Fit) -> list[str]:

@@ -171,13 +171,18 @@ def changed_in_session_in_words(name: str, change: InSession) -> str:
     )
 
 
+def some_of(names: Sequence[str]) -> str:
+    """The first few of them, and how many more there are."""
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more
+
+
 def bursts_in_words(bursts: Bursts, trials: Sequence[str], share: float, p_value: float) -> str:
     """The answer where a few stretches leave far more than the others."""
-    more = f" and {len(trials) - MOST_NAMES} more" if len(trials) > MOST_NAMES else ""
     return (
         f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, {share:.1%} of the "
         f"effort, comes in bursts: {bursts.stretches} of {bursts.of} stretches of {BLOCK_S:g} s scatter up to "
-        f"{bursts.largest:.1f} times as much as the others, in {', '.join(trials[:MOST_NAMES])}{more}. Something "
+        f"{bursts.largest:.1f} times as much as the others, in {some_of(trials)}. Something "
         "slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these trials with less "
         "load."
     )

@@ -1,5 +1,6 @@
 """What is missing: each effect of the first catalogue planted, nothing planted, and what no formula describes."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -271,13 +272,25 @@ def test_a_trial_of_rest_is_not_used_and_one_that_only_reverses_is():
     assert made[4].name not in told
 
 
-def test_a_trial_at_the_limit_of_the_duty_is_named():
+@pytest.mark.parametrize(
+    ("trials", "others"),
+    [
+        ([2], ""),
+        ([2, 4], r" \(and for more than 20% in '{1}'\)"),
+        ([2, 4, 0, 5, 3], r" \(and for more than 20% in '{1}', '{2}', '{3}' and 1 more\)"),
+    ],
+    ids=["one", "two", "five"],
+)
+def test_trials_at_the_limit_of_the_duty_are_named_the_worst_first(trials, others):
     made = recordings(seed=3)
     for recording in made:
         recording.channels["duty"] = np.full(len(recording), 0.5)
-    made[2].channels["duty"][: len(made[2]) // 2] = 1.0
-    found = diagnosis_of(made)
-    assert any(f"'{made[2].name}': the duty is at its limit for 50%" in problem for problem in found.data_problems)
+    for place, index in enumerate(trials):
+        made[index].channels["duty"][: int((0.5 - 0.05 * place) * len(made[index]))] = 1.0
+    (told,) = data_problems(fit_model(make_dataset(made, FACTS, Processing()), DEFAULT))
+    names = [re.escape(made[index].name) for index in trials]
+    assert re.search(rf"^trial '{names[0]}': the duty is at its limit for 50% of the time and \d+% of the rows", told)
+    assert re.search(rf"are left out{others.format(*names)}; record with a lighter load or slower$", told)
 
 
 def test_a_formula_with_an_impossible_sign_is_no_name():
