@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.diagnosis.remainder import remainder_of
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset
@@ -65,3 +66,19 @@ def bursts_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Bursts
     share = float(power[wild].sum() / power.sum())
     largest = float(scatter[enough].max() / usual)
     return Bursts(largest, int(wild.sum()), int(enough.sum()), tuple(map(int, trials)), share)
+
+
+def is_rattle(bursts: Bursts, dataset: Dataset, residual: FloatArray, rows: BoolArray) -> bool:
+    """Whether what comes in bursts is quicker than any motion, as teeth that bounce are after the sharpest turns.
+
+    Their free play is known, and how a tooth bounces comes again in no trial. What slips or catches pulls for as long
+    as it does, which lies in the motion's band.
+
+    Args:
+        bursts: that were found.
+        dataset: of the rows.
+        residual: of the chosen rows, shape (rows.sum(),).
+        rows: chosen, shape (N,).
+    """
+    theirs = np.isin(dataset.trial_index, bursts.trials)
+    return remainder_of(dataset, residual[theirs[rows]], rows & theirs).denser < 1.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.diagnosis.bending import bending, still_bending
-from compensator.lab.diagnosis.bursts import Bursts, bursts_of
+from compensator.lab.diagnosis.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
@@ -113,7 +113,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     if generic is not None:
         left, bursts = left_over(gathered), _bursts(gathered)
         share = left.remainder.share
-        if bursts.are_there and share * np.sqrt(bursts.share) > LEAST_SHARE:
+        if bursts is not None and share * np.sqrt(bursts.share) > LEAST_SHARE:
             names = [_trial_names(fit)[index] for index in bursts.trials]
             sentence, remains = bursts_in_words(bursts, names, share, p_value), True
         elif left.is_more_than_noise:
@@ -203,11 +203,12 @@ def _noise_draws_curves(gathered: Candidates) -> bool:
     return among_all(against.p_value) > SIGNIFICANT
 
 
-def _bursts(gathered: Candidates) -> Bursts:
-    """Stretches that leave far more than others of like motion."""
+def _bursts(gathered: Candidates) -> Bursts | None:
+    """Stretches that leave far more than others of like motion; None without any, or where teeth bounce there."""
     dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
     weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
-    return bursts_of(dataset, residual[rows] * weights, rows)
+    found = bursts_of(dataset, residual[rows] * weights, rows)
+    return found if found.are_there and not is_rattle(found, dataset, residual[rows], rows) else None
 
 
 def _wanders(fit: Fit, left: LeftOver) -> str:

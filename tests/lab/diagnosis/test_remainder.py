@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from compensator.lab.diagnosis.bursts import bursts_of, is_rattle
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.remainder import remainder_of
 from compensator.lab.diagnosis.swinging import swing_of
@@ -50,6 +51,17 @@ def test_less_than_friction_repeats_is_not_told():
     assert found.denser > 2.0
     assert found.share < 0.01
     assert not found.is_more_than_noise
+
+
+@pytest.mark.parametrize(("course", "rattles"), [((1.0, -1.0), True), ((1.0,), False)])
+def test_a_burst_that_is_quicker_than_the_motion_is_teeth_that_bounce(course, rattles):
+    fit = fitted()
+    rows, residual = fit.training, fit.residual[fit.training].copy()
+    wild = np.flatnonzero(fit.dataset.block_index[rows] == 1)
+    residual[wild] = 30.0 * residual.std() * np.resize(course, len(wild))
+    found = bursts_of(fit.dataset, residual, rows)
+    assert found.stretches == 1
+    assert is_rattle(found, fit.dataset, residual, rows) == rattles
 
 
 def test_a_few_wild_rows_do_not_make_it_more_than_noise():
