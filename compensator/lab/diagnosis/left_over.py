@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 from compensator.lab.diagnosis.constancy import Change, change_of
 from compensator.lab.diagnosis.constants import Constants
+from compensator.lab.diagnosis.following import Following, following_of
 from compensator.lab.diagnosis.orders import Line, line_of
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.diagnosis.wandering import Wandering, wandering_of
+from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
@@ -22,6 +24,7 @@ class LeftOver:
         swing: that it swings at one frequency; None where it does not for sure.
         wandering: that dry friction is another one for seconds, however little; None where it is not for sure.
         line: that it comes back with the position; None where it does not for sure, or where the noise is not known.
+        following: the variable that it follows; None likewise.
     """
 
     remainder: Remainder
@@ -29,11 +32,12 @@ class LeftOver:
     swing: Swing | None
     wandering: Wandering | None = None
     line: Line | None = None
+    following: Following | None = None
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        found = (self.change, self.swing, self.wandering, self.line)
+        found = (self.change, self.swing, self.wandering, self.line, self.following)
         return self.remainder.is_more_than_noise or any(one is not None for one in found)
 
 
@@ -56,4 +60,7 @@ def left_over(gathered: Candidates) -> LeftOver:
     constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
     change = change_of(constants)
     wandering = wandering_of(constants) if change is None else None
-    return LeftOver(remainder, change, swing, wandering, line_of(gathered))
+    white = WhiteRows.of(gathered)
+    if white is None:
+        return LeftOver(remainder, change, swing, wandering)
+    return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))

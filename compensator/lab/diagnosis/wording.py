@@ -99,14 +99,15 @@ def unexplained_in_words(
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
     if left.change is not None:
         how = changing_in_words(left.change)
-    elif left.line is not None:
+    elif left.line is not None and (left.following is None or left.line.chance <= left.following.chance):
         how = f"it {recurring_in_words(left.line, facts)}"
     elif left.swing is not None:
         how = f"it {swinging_in_words(left.swing)}"
     elif wanders:
         how = wanders
-    elif driver is not None:
-        how = f"it varies with {driver}, most of all that is measured"
+    elif driver is not None or left.following is not None:
+        named = driver if left.following is None else left.following.driver
+        how = f"it varies with {named}, most of all that is measured"
     else:
         how = "it varies with nothing that is measured"
     return (

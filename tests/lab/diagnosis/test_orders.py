@@ -8,11 +8,12 @@ import pytest
 from compensator.lab.diagnosis import orders
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.orders import Line, line_of
+from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
@@ -26,7 +27,13 @@ def fitted(extra=None, seed: int = 0) -> Fit:
 
 
 def line(fit: Fit) -> Line | None:
-    return line_of(with_noise(gather(fit)))
+    return line_in(with_noise(gather(fit)))
+
+
+def line_in(gathered: Candidates) -> Line | None:
+    white = WhiteRows.of(gathered)
+    assert white is not None
+    return line_of(gathered, white)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -79,14 +86,10 @@ def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
     assert line(fit) is not None
 
 
-def test_without_known_noise_no_line_can_be_told():
-    assert line_of(gather(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q)))) is None
-
-
 def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
     fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q))
     facts = replace(fit.dataset.facts, joint="linear")
     gathered = with_noise(gather(fit))
-    found = line_of(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
+    found = line_in(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
     assert found is not None
     assert found.order == pytest.approx(ORDER / (2.0 * np.pi), rel=0.02)

@@ -1,0 +1,72 @@
+"""What a model leaves on rows whitened by the noise, and how surely columns explain it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.model.linear import orthonormal
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.rows.dataset import IntArray
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.noise import Noise
+from compensator.lab.screening.whitening import Whitening
+
+CHANCE = 1e-5  # of so much in noise alone: small, since its tails are known less well than its power
+FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of each, the best one left out
+NEGLIGIBLE = 1e-8  # share of a direction in what columns explain
+
+
+@dataclass(frozen=True)
+class WhiteRows:
+    """Rows of unit noise.
+
+    Attributes:
+        noise: that a complete model would leave.
+        whitening: of weighted rows.
+        weights: of the rows, shape (n,).
+        stretch: of each row, 0 .. S - 1, shape (n,).
+        basis: orthonormal, of what the model explains, whitened, shape (n, b).
+        residual: that it leaves, whitened, shape (n,).
+    """
+
+    noise: Noise
+    whitening: Whitening
+    weights: FloatArray
+    stretch: IntArray
+    basis: FloatArray
+    residual: FloatArray
+
+    @classmethod
+    def of(cls, gathered: Candidates) -> "WhiteRows | None":
+        """The tested rows on top of all that the chain can produce; None where the noise is not known."""
+        if gathered.noise is None:
+            return None
+        base = gathered.as_measured(WITH_CHAIN)
+        whitening = Whitening.of(gathered.noise)
+        white = whitening.whitened(np.column_stack([base.basis, base.residual]))
+        basis = orthonormal(white[:, :-1])
+        residual = white[:, -1] - basis @ (basis.T @ white[:, -1])
+        _, stretch = np.unique(gathered.fit.dataset.block_index[gathered.rows], return_inverse=True)
+        return cls(gathered.noise, whitening, gathered.weights, stretch.reshape(-1), basis, residual)
+
+    def beside(self, columns: FloatArray) -> FloatArray:
+        """Weighted columns (n, k), whitened, without what the model explains of them."""
+        columns = self.whitening.whitened(columns)
+        left: FloatArray = columns - self.basis @ (self.basis.T @ columns)
+        return left
+
+    def foretold(self, columns: FloatArray) -> tuple[FloatArray, float]:
+        """Coefficients of columns (n, k) beside the model; their evidence in each stretch by those of all others.
+
+        The evidence of coefficients c in a stretch is 2 c's - c'Nc, of its scores s and normal matrix N. The best
+        stretch is left out: what is in one alone may be of that moment.
+        """
+        count, size = int(self.stretch.max()) + 1, columns.shape[1]
+        scores = np.array([np.bincount(self.stretch, one * self.residual, count) for one in columns.T]).T
+        products = (columns[:, :, None] * columns[:, None, :]).reshape(-1, size**2)
+        normal = np.array([np.bincount(self.stretch, one, count) for one in products.T]).T.reshape(-1, size, size)
+        whole, sums = normal.sum(axis=0), scores.sum(axis=0)
+        others = (np.linalg.pinv(whole - normal, rcond=NEGLIGIBLE) @ (sums - scores)[:, :, None])[:, :, 0]
+        evidence = 2.0 * np.sum(others * scores, axis=1) - np.einsum("si,sij,sj->s", others, normal, others)
+        coefficients: FloatArray = np.linalg.pinv(whole, rcond=NEGLIGIBLE) @ sums
+        return coefficients, float(evidence.sum() - evidence.max())

@@ -1,0 +1,66 @@
+"""What follows a variable is told by the noise of all rows; what is of one moment, or noise, is not."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis import following
+from compensator.lab.diagnosis.following import Following, following_of
+from compensator.lab.diagnosis.left_over import left_over
+from compensator.lab.diagnosis.white_rows import WhiteRows
+from compensator.lab.diagnosis.wording import unexplained_in_words
+from compensator.lab.effects.catalogue import default_effects, withheld
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.clearing import with_noise
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+DRAG_N_M_S_RAD = 0.003  # more one way than the other: a tenth of viscous friction
+
+
+def fitted(extra=None, seed: int = 0) -> Fit:
+    made = recordings(Joint(extra=extra), Bench(duration_s=6.0), plans(), seed)
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS))
+
+
+def found(fit: Fit) -> Following | None:
+    gathered = with_noise(gather(fit))
+    white = WhiteRows.of(gathered)
+    assert white is not None
+    return following_of(gathered, white)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_follows_nothing(seed):
+    assert found(fitted(seed=seed)) is None
+
+
+def test_what_differs_by_direction_of_speed_follows_the_velocity():
+    with withheld(["viscous_asymmetry"]):
+        gathered = with_noise(gather(fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))))
+    left = left_over(gathered)
+    assert left.is_more_than_noise
+    assert left.following is not None
+    assert left.following.driver.startswith("velocity")
+    assert f"it varies with {left.following.driver}, most" in unexplained_in_words(left, None, 0.1, 40, FACTS)
+
+
+def test_what_comes_in_one_stretch_alone_follows_nothing(monkeypatch):
+    monkeypatch.setattr(following, "CHANCE", 1.0)
+    hit = iter([True])
+
+    def extra(x):
+        here = (x.time_s > 2.0) & (x.time_s < 4.0) & next(hit, False)
+        return 0.01 * here * np.cos(3.0 * x.q)
+
+    fit = fitted(extra)
+    assert found(fit) is None
+    monkeypatch.setattr(following, "FORETOLD", -np.inf)
+    assert found(fit) is not None
+
+
+def test_without_known_noise_nothing_of_the_kind_is_asked():
+    left = left_over(gather(fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))))
+    assert left.line is None
+    assert left.following is None
