@@ -10,6 +10,8 @@ from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainde
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.diagnosis.wandering import Wandering, wandering_of
 from compensator.lab.diagnosis.white_rows import WhiteRows
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
@@ -23,7 +25,7 @@ class LeftOver:
         change: that something constant is another one in each stretch; None where nothing is for sure.
         swing: that it swings at one frequency; None where it does not for sure.
         wandering: that dry friction is another one for seconds, however little; None where it is not for sure.
-        line: that it comes back with the position; None where it does not for sure, or where the noise is not known.
+        line: that it comes back with the position; None where it does not for sure, or where it is not asked for.
         following: the variable that it follows; None likewise.
     """
 
@@ -60,7 +62,13 @@ def left_over(gathered: Candidates) -> LeftOver:
     constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
     change = change_of(constants)
     wandering = wandering_of(constants) if change is None else None
-    white = WhiteRows.of(gathered)
+    white = WhiteRows.of(gathered) if _is_plain(gathered.fit) else None
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
     return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))
+
+
+def _is_plain(fit: Fit) -> bool:
+    """Whether a model is what every joint has: a further formula that is nearly right leaves lines and curves, too."""
+    plain = default_effects(fit.dataset.facts)
+    return all(effect.name in plain or effect.pipeline for effect in fit.effects)

@@ -64,3 +64,13 @@ def test_without_known_noise_nothing_of_the_kind_is_asked():
     left = left_over(gather(fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))))
     assert left.line is None
     assert left.following is None
+
+
+def test_a_model_with_more_than_every_joint_has_is_not_asked():
+    """What a named formula leaves, since it is nearly right, is not said to remain."""
+    fit = fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))
+    asked, not_asked = (
+        left_over(with_noise(gather(one))) for one in (fit, fit_model(fit.dataset, [*fit.names, "spring"]))
+    )
+    assert asked.following is not None
+    assert not_asked.following is None
