@@ -11,7 +11,7 @@ from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.whitening import Whitening
 
-CHANCE = 1e-5  # of so much in noise alone: small, since its tails are known less well than its power
+CHANCE = 1e-6  # of so much in noise alone: small, since its tails are known less well than its power
 FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of each, the best one left out
 NEGLIGIBLE = 1e-8  # share of a direction in what columns explain
 
