@@ -87,7 +87,7 @@ def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
 
 
 def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
-    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q))
+    fit = fitted(lambda x: 2.0 * RIPPLE_N_M * np.cos(ORDER * x.q))
     facts = replace(fit.dataset.facts, joint="linear")
     gathered = with_noise(gather(fit))
     found = line_in(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
