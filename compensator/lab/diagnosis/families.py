@@ -17,7 +17,7 @@ from compensator.lab.diagnosis.examination import (
     is_too_small,
     is_within_bounds,
 )
-from compensator.lab.diagnosis.left_over import LeftOver, left_over
+from compensator.lab.diagnosis.left_over import LeftOver, left_beside, left_over
 from compensator.lab.diagnosis.remainder import LEAST_SHARE
 from compensator.lab.diagnosis.session_constancy import change_in_session
 from compensator.lab.diagnosis.wording import (
@@ -27,6 +27,7 @@ from compensator.lab.diagnosis.wording import (
     changed_in_session_in_words,
     changing_in_words,
     still_bending_in_words,
+    still_left_in_words,
     swinging_in_words,
     unexplained_in_words,
     wandering_in_words,
@@ -234,7 +235,10 @@ def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]
     if still_bending(explained, gathered, best.block):
         return [still_bending_in_words(name)]
     change = change_in_session(explained, gathered, best.block)
-    return [] if change is None else [changed_in_session_in_words(name, change)]
+    if change is not None:
+        return [changed_in_session_in_words(name, change)]
+    left = left_beside(explained, gathered, best)
+    return [] if left is None else [still_left_in_words(name, left, explained.dataset.facts)]
 
 
 def _what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:

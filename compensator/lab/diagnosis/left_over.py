@@ -13,7 +13,11 @@ from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit
 from compensator.lab.recordings.regimes import Regime
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
+from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import Evidence
+
+PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,3 +76,25 @@ def _is_plain(fit: Fit) -> bool:
     """Whether a model is what every joint has: a further formula that is nearly right leaves lines and curves, too."""
     plain = default_effects(fit.dataset.facts)
     return all(effect.name in plain or effect.pipeline for effect in fit.effects)
+
+
+def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line | Following | None:
+    """The line or curve that an effect which is named leaves, if it is much beside what the effect explains.
+
+    A formula of the right name, though it is not exact, leaves little of what it explains; one that imitates another
+    cause leaves much.
+
+    Args:
+        explained: the model with the effect.
+        gathered: what the model without it may be missing.
+        named: the evidence for the effect.
+    """
+    if gathered.noise is None or gathered.show_in != "sliding":
+        return None
+    grown = with_noise(gather_curves(explained))
+    white = WhiteRows.of(grown)
+    if white is None:
+        return None
+    found = (line_of(grown, white), following_of(grown, white))
+    there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
+    return there[0] if there else None

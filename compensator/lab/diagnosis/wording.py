@@ -8,6 +8,7 @@ from compensator.lab.diagnosis.constancy import Change
 from compensator.lab.diagnosis.constants import DRY_FRICTION
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
+from compensator.lab.diagnosis.following import Following
 from compensator.lab.diagnosis.left_over import LeftOver
 from compensator.lab.diagnosis.orders import Line
 from compensator.lab.diagnosis.session_constancy import InSession
@@ -161,6 +162,15 @@ def still_bending_in_words(name: str) -> str:
     return (
         f"{name} describes it in part: beside it, what is left varies with where the joint has turned back, as what "
         f"bends along and slides does. {LOOK_AT_HOSES}"
+    )
+
+
+def still_left_in_words(name: str, left: Line | Following, facts: Facts) -> str:
+    """What an effect that is named explains some of, and another cause all of."""
+    how = recurring_in_words(left, facts) if isinstance(left, Line) else f"varies with {left.driver}"
+    return (
+        f"{name} describes it in part: beside it, what is left {how}; another cause, which the catalogue does not "
+        "have, may explain both."
     )
 
 

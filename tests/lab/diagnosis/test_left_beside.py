@@ -1,0 +1,53 @@
+"""An effect that explains a part of what another cause makes is named as a part; one that is the cause is not."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis import left_over
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+ORDER, RIPPLE_N_M = 5.0, 0.02
+IN_PART = "position_periodic_friction describes it in part: beside it, what is left comes back with the position"
+
+
+def diagnosed(law, seed=2):
+    """Friction that rises and falls with the position by some law of the phase."""
+    joint = Joint(extra=lambda x: RIPPLE_N_M * law(ORDER * x.q) * np.sign(x.v))
+    made = recordings(joint, Bench(duration_s=6.0), plans(), seed)
+    return diagnose(fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS)))
+
+
+def in_steps(phase):
+    """A square wave, of which a cosine explains four fifths."""
+    return np.sign(np.cos(phase))
+
+
+def nearly_a_cosine(phase):
+    """With a fiftieth of the power at another order."""
+    return np.cos(phase) + 0.15 * np.cos(2.4 * phase)
+
+
+def test_a_cause_that_is_imitated_leaves_much_of_what_its_formula_explains():
+    found = diagnosed(in_steps)
+    assert found.classes[0][0] == "position_periodic_friction"
+    assert found.remains
+    (told,) = [note for note in found.notes if "in part" in note]
+    assert told.startswith(IN_PART)
+
+
+def test_what_is_little_beside_the_named_effect_is_not_told(monkeypatch):
+    assert diagnosed(nearly_a_cosine).remains
+    monkeypatch.setattr(left_over, "PART_OF_NAMED", 1.0)
+    assert not diagnosed(nearly_a_cosine).remains
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_the_cause_itself_leaves_nothing(seed):
+    found = diagnosed(np.cos, seed)
+    assert found.classes[0][0] == "position_periodic_friction"
+    assert not found.remains, found.notes
