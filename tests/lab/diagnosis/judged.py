@@ -1,8 +1,26 @@
-"""What is judged of a fitted model."""
+"""Short trials of a known joint, fitted, and what is judged of a fitted model."""
 
 from compensator.lab.diagnosis.constants import Constants
-from compensator.lab.model.fit import Fit
-from compensator.lab.screening.candidates import gather
+from compensator.lab.diagnosis.white_rows import WhiteRows
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import Candidates, gather
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+
+def fitted(extra=None, seed: int = 0) -> Fit:
+    """The model that every joint has, fitted to trials of six seconds, with so much more effort in them."""
+    made = recordings(Joint(extra=extra), Bench(duration_s=6.0), plans(), seed)
+    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS))
+
+
+def white_rows_of(gathered: Candidates) -> WhiteRows:
+    """Where the noise is known."""
+    white = WhiteRows.of(gathered)
+    assert white is not None
+    return white
 
 
 def constants_of(fit: Fit) -> Constants:

@@ -6,29 +6,20 @@ import pytest
 from compensator.lab.diagnosis import following
 from compensator.lab.diagnosis.following import Following, following_of
 from compensator.lab.diagnosis.left_over import left_over
-from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.diagnosis.wording import unexplained_in_words
-from compensator.lab.effects.catalogue import default_effects, withheld
+from compensator.lab.effects.catalogue import withheld
 from compensator.lab.model.fit import Fit, fit_model
-from compensator.lab.rows.assembly import make_dataset
-from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
-from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+from tests.lab.diagnosis.judged import fitted, white_rows_of
+from tests.lab.synthetic import FACTS
 
 DRAG_N_M_S_RAD = 0.003  # more one way than the other: a tenth of viscous friction
 
 
-def fitted(extra=None, seed: int = 0) -> Fit:
-    made = recordings(Joint(extra=extra), Bench(duration_s=6.0), plans(), seed)
-    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS))
-
-
 def found(fit: Fit) -> Following | None:
     gathered = with_noise(gather(fit))
-    white = WhiteRows.of(gathered)
-    assert white is not None
-    return following_of(gathered, white)
+    return following_of(gathered, white_rows_of(gathered))
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -5,11 +5,7 @@ import pytest
 
 from compensator.lab.diagnosis import left_over
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import fit_model
-from compensator.lab.rows.assembly import make_dataset
-from compensator.lab.rows.dataset import Processing
-from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+from tests.lab.diagnosis.judged import fitted
 
 ORDER, RIPPLE_N_M = 5.0, 0.02
 IN_PART = "position_periodic_friction describes it in part: beside it, what is left comes back with the position"
@@ -17,9 +13,7 @@ IN_PART = "position_periodic_friction describes it in part: beside it, what is l
 
 def diagnosed(law, seed=2):
     """Friction that rises and falls with the position by some law of the phase."""
-    joint = Joint(extra=lambda x: RIPPLE_N_M * law(ORDER * x.q) * np.sign(x.v))
-    made = recordings(joint, Bench(duration_s=6.0), plans(), seed)
-    return diagnose(fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS)))
+    return diagnose(fitted(lambda x: RIPPLE_N_M * law(ORDER * x.q) * np.sign(x.v), seed))
 
 
 def in_steps(phase):

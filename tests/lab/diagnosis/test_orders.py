@@ -8,22 +8,13 @@ import pytest
 from compensator.lab.diagnosis import orders
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.orders import Line, line_of
-from compensator.lab.diagnosis.white_rows import WhiteRows
-from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model
-from compensator.lab.rows.assembly import make_dataset
-from compensator.lab.rows.dataset import Processing
+from compensator.lab.model.fit import Fit
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
-from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+from tests.lab.diagnosis.judged import fitted, white_rows_of
 
 ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known
 RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise
-
-
-def fitted(extra=None, seed: int = 0) -> Fit:
-    made = recordings(Joint(extra=extra), Bench(duration_s=6.0), plans(), seed)
-    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS))
 
 
 def line(fit: Fit) -> Line | None:
@@ -31,9 +22,7 @@ def line(fit: Fit) -> Line | None:
 
 
 def line_in(gathered: Candidates) -> Line | None:
-    white = WhiteRows.of(gathered)
-    assert white is not None
-    return line_of(gathered, white)
+    return line_of(gathered, white_rows_of(gathered))
 
 
 @pytest.mark.parametrize("seed", range(4))
