@@ -163,6 +163,7 @@ def at_rest_motion(fit: Fit, motion: Motion, index: IntArray, position: FloatArr
         velocity=nothing,
         acceleration=nothing,
         jerk=nothing,
+        misread_acceleration=nothing,
         direction=direction,
         load_effort=nothing,
         parting=nothing,

@@ -22,8 +22,8 @@ def resistances(fit: Fit, motions: Dataset) -> list[Resistance]:
         fit: of the model; its coefficients count, not its rows.
         motions: trials whose motion is that around which the model is taken.
     """
-    predicted = with_own_prediction(replace(fit, dataset=motions))
-    terms = [term for term in fit.terms if not term.effect.pipeline]
+    terms = tuple(term for term in fit.terms if not term.effect.pipeline)
+    predicted = with_own_prediction(replace(fit, terms=terms, dataset=motions))
     return [_around(terms, trial.motion) for trial in predicted.trials]
 
 

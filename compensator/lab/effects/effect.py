@@ -39,6 +39,8 @@ class Motion:
         session_span_s: from the first trial's start to the last one's end, as far as the conditions tell.
         slow: speed below which direction is uncertain.
         fast: 95 % quantile of speed over all trials.
+        misread_acceleration: what the position sensor adds to the acceleration, as far as the model says; position and
+            its rates are without it.
         travelled: way from the start of the session to that of the trial, as far as the trials tell.
         usual_speed: way over time, of the whole session; 0 where nothing tells.
     """
@@ -65,6 +67,7 @@ class Motion:
     session_span_s: float
     slow: float
     fast: float
+    misread_acceleration: FloatArray | float = 0.0
     travelled: float = 0.0
     usual_speed: float = 0.0
 

@@ -7,8 +7,9 @@ from compensator.lab.recordings.recording import FloatArray
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Acceleration, and acceleration times the load's inertia."""
-    return np.array([motion.acceleration, motion.load_inertia_kg_m2 * motion.acceleration])
+    """Acceleration as it is read, and that times the load's inertia; what is misread of it has an effect of its own."""
+    read = motion.acceleration + motion.misread_acceleration
+    return np.array([read, motion.load_inertia_kg_m2 * read])
 
 
 EFFECT = Effect(

@@ -188,7 +188,8 @@ def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -
 def _fit(
     dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
 ) -> Fit:
-    dataset = dataset.straightened()
+    misread = any(effect.misreads is not None for effect in effects)
+    dataset = (dataset if misread else dataset.as_read()).straightened()
     plain = [effect for effect in effects if not effect.uses_prediction]
     shapes = find_shapes(dataset, plain or effects, rows, kept, weight)
     fit = fit_linear(dataset, plain or effects, rows, shapes, weight)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
+from compensator.lab.model.reading import at_true_position
 from compensator.lab.recordings.recording import FloatArray
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 def with_own_prediction(fit: "Fit") -> "Dataset":
     """The fit's rows, with its own predicted load and effort in every motion."""
+    fit = replace(fit, dataset=at_true_position(fit.dataset, fit.terms))
     per_torque = effort_per_torque(fit)
     loads, totals, beyond, wholes = [], [], [], []
     for trial in fit.dataset.trials:

@@ -81,7 +81,8 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
     effort, facts, cutoff = dataset.effort_definition, dataset.facts, dataset.cutoff_hz
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
     trials = tuple(_make_trial(s, facts, cutoff, dataset.scales) for s in signals)
-    return replace(dataset, trials=trials if dataset.crosses_free_play else _on_one_flank(trials), cache={})
+    trials = trials if dataset.crosses_free_play else _on_one_flank(trials)
+    return replace(dataset, trials=trials, uncorrected=None, cache={})
 
 
 def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]:

@@ -23,6 +23,7 @@ IntArray = NDArray[np.int64]
 ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds the one before
 
 MOST_VALUES = 2**20  # of one trial, at the full rate, that are filtered at once
+EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
 BLOCK_S = 2.0  # rows closer than this are not independent
 
 
@@ -79,6 +80,7 @@ class Dataset:
         rows: which regimes count.
         scales: of all trials.
         crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
+        uncorrected: the same rows at the position that the sensor reads; None: these are.
     """
 
     trials: tuple[Trial, ...]
@@ -88,15 +90,15 @@ class Dataset:
     rows: RowChoice
     scales: Scales
     crosses_free_play: bool = False
+    uncorrected: "Dataset | None" = None
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def effort(self) -> FloatArray:
         """Filtered effort, shape (N,)."""
-        kept = ("the effort itself", ())  # the same whatever is predicted, so it outlives `with_prediction`
-        if kept not in self.cache:
-            self.cache[kept] = self.stack([trial.signals.effort[None] for trial in self.trials])[:, 0]
-        return self.cache[kept]
+        if EFFORT not in self.cache:
+            self.cache[EFFORT] = self.stack([trial.signals.effort[None] for trial in self.trials])[:, 0]
+        return self.cache[EFFORT]
 
     @cached_property
     def bent_effort(self) -> FloatArray:
@@ -285,6 +287,15 @@ class Dataset:
         motions = [replace(trial.motion, bend=bend) for trial, bend in zip(self.trials, bends, strict=True)]
         trials = tuple(replace(trial, motion=motion) for trial, motion in zip(self.trials, motions, strict=True))
         return replace(self, trials=trials)
+
+    def as_read(self) -> "Dataset":
+        """The same rows at the position that the sensor reads."""
+        return self.uncorrected or self
+
+    def corrected(self, motions: Sequence[Motion]) -> "Dataset":
+        """The same rows with other motions, at the position that each trial's joint has rather than seems to have."""
+        trials = tuple(replace(trial, motion=motion) for trial, motion in zip(self.trials, motions, strict=True))
+        return replace(self, trials=trials, uncorrected=self.as_read(), cache={EFFORT: self.effort})
 
     def straightened(self) -> "Dataset":
         """The same rows, for a model that is still to be fitted: nothing bends."""

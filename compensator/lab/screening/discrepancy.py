@@ -12,14 +12,13 @@ discrepancy). So candidates are judged on top of
   one more effect (Hamada, Wu 1992: effect heredity).
 """
 
-from dataclasses import replace
 from itertools import chain, combinations
 
 import numpy as np
 
 from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fit import Fit, Term
-from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.model.reading import at_position
 from compensator.lab.recordings.recording import FloatArray
 
 TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
@@ -58,10 +57,9 @@ def _own(terms: list[Term], motion: Motion) -> list[FloatArray]:
 
 
 def _misread(terms: list[Term], motion: Motion) -> list[FloatArray]:
-    """What all other terms make of an angle that is misread; (n,) each.
+    """What all other terms make of an angle that is misread a little otherwise than was found, in any phase; (n,) each.
 
-    As it was found, to second order: the angle is misread at where the joint is, not at where it seems to be. And of
-    that size in every phase, since what was found is not exact.
+    What was found is corrected (`reading`); its size here is but that of a small step.
     """
     found = []
     for term in terms:
@@ -69,29 +67,12 @@ def _misread(terms: list[Term], motion: Motion) -> list[FloatArray]:
             continue
         others = [other for other in terms if other is not term and other.effect.builds_on is None]
         angles = term.effect.misreads(motion, term.shape)
-        own = term.coefficients[: len(angles)]
-        nearer = _at_angle(motion, motion.position + own @ angles)
-        corrected = own @ term.effect.misreads(nearer, term.shape)
-        for angle in (*(float(np.linalg.norm(own)) * angles), corrected):
-            moved = _at_angle(motion, motion.position + angle)
+        size = float(np.linalg.norm(term.coefficients[: len(angles)]))
+        for angle in size * angles:
+            moved = at_position(motion, motion.position + angle)
             changes = [_share(one, moved, one.shape) - _share(one, motion, one.shape) for one in others]
             found.append(np.sum(changes, axis=0))
     return found
-
-
-def _at_angle(motion: Motion, position: FloatArray) -> Motion:
-    """The motion as it would be with another position; the way that it goes stays."""
-    rate = 1.0 / motion.step_s
-    moved = position - motion.position
-    speed = rate_of_change(moved, rate)
-    acceleration = rate_of_change(speed, rate)
-    return replace(
-        motion,
-        position=position,
-        velocity=motion.velocity + speed,
-        acceleration=motion.acceleration + acceleration,
-        jerk=motion.jerk + rate_of_change(acceleration, rate),
-    )
 
 
 def _products(terms: list[Term], motion: Motion) -> list[FloatArray]:
