@@ -139,6 +139,11 @@ def wandering_in_words(wandering: Wandering, trials: Sequence[str], unit: str) -
     """What is another one for seconds, by how much, and where to look for that."""
     moments = " and ".join(f"{trials[index]} at {at_s:.1f} s" for index, at_s in wandering.changes)
     of = "it" if wandering.what == DRY_FRICTION else "the effort"
+    if wandering.jumps:
+        return (
+            f"{wandering.what} jumps between two values, {wandering.size:.2g} {unit} apart, {wandering.share:.1%} of "
+            f"{of}; most of all in {moments}"
+        )
     return (
         f"{wandering.what} is another one for seconds at a time, by {wandering.size:.2g} {unit}, {wandering.share:.1%} "
         f"of {of}; it changes most in {moments}"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import wandering
+from compensator.lab.diagnosis import cells
 from compensator.lab.diagnosis.constancy import change_of
 from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET
 from compensator.lab.diagnosis.diagnose import diagnose
@@ -16,6 +16,7 @@ from tests.lab.diagnosis.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 COULOMB_N_M = 0.08
+SMALL = 0.012  # of dry friction, half of a jump: its variance is not sure
 
 
 def fitted(extra=None, seed=0, **bench):
@@ -91,6 +92,15 @@ def test_the_answer_names_what_wanders_and_where():
     assert fit.dataset.trials[found.changes[0][0]].signals.recording.name in answer.sentence
 
 
+def test_a_jump_that_is_too_small_for_its_variance_is_told_by_its_two_values():
+    fit = fitted(jumping(SMALL))
+    found = judged(fit)
+    assert found is not None
+    assert found.jumps
+    assert found.size == pytest.approx(2.0 * SMALL * COULOMB_N_M, rel=0.5)
+    assert "jumps between two values" in diagnose(fit).sentence
+
+
 @pytest.mark.parametrize(
     "extra",
     [None, along_the_path(0.03, 0.05), along_the_path(0.1, 0.2), from_stop_to_stop(0.2)],
@@ -103,9 +113,9 @@ def test_what_any_joint_has_is_no_wandering(extra, seed):
 
 def test_long_trials_have_longer_cells_and_of_many_trials_some_are_looked_at(monkeypatch):
     constants = constants_of(fitted())
-    monkeypatch.setattr(wandering, "MOST_CELLS", 10)
-    monkeypatch.setattr(wandering, "MOST_TRIALS", 3)
-    trials = wandering._cells(constants, constants.weights)
+    monkeypatch.setattr(cells, "MOST_CELLS", 10)
+    monkeypatch.setattr(cells, "MOST_TRIALS", 3)
+    trials = cells.cells_of(constants, constants.weights)
     strokes = max(len(np.unique(trial.motion.strokes.index)) for trial in constants.dataset.trials)
     assert len(trials) <= 3
     assert max(len(trial.time_s) for trial in trials) <= 11 + strokes

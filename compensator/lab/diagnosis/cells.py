@@ -1,0 +1,133 @@
+"""What wanders in time, and all that scatters beside it, on rows of a stroke that are taken together.
+
+What scatters in every joint has a covariance of its own: noise forgets at once or within half a second, friction along
+the path within some percent of the travel, and static friction is another one after each stop.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.diagnosis.constants import Constants
+from compensator.lab.diagnosis.variance_components import Part
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.rows.dataset import IntArray
+
+LASTS_S = 3.0  # what it has become
+NOISE_LASTS_S = (0.1, 0.5)  # beside what is white
+PATHS = (0.02, 0.12)  # share of the travel, over which friction along the path is alike
+CELL_S = 0.1  # rows that are taken together
+MOST_CELLS = 120  # of a trial: longer ones have longer cells
+MOST_TRIALS = 60  # spread over all
+FEWEST_ROWS = 4  # of a stroke: fewer are all near its reversals
+NAMED = 2  # trials
+
+
+@dataclass(frozen=True)
+class CellsOfTrial:
+    """Cells of a trial, each the mean of its rows, of unit noise.
+
+    Attributes:
+        index: of the trial; time_s: of each cell, shape (c,).
+        size: what wanders has of each, shape (c,).
+        part: of the residuals, its components those of the null and, last, what wanders.
+    """
+
+    index: int
+    time_s: FloatArray
+    size: FloatArray
+    part: Part
+
+
+def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:
+    """Sliding rows of every trial, taken together in cells within a stroke, as a weighted column (n,) has them."""
+    dataset, base, static = constants.dataset, constants.base, constants.weights * constants.static
+    sliding, numbers = constants.sliding, dataset.trial_index[constants.rows]
+    strokes = np.concatenate([trial.motion.strokes.index[trial.picked] for trial in dataset.trials])[constants.rows]
+    position = constants.of([trial.motion.position for trial in dataset.trials])
+    times_s = np.concatenate([dataset.time_of(trial) for trial in dataset.trials])[constants.rows]
+    lengths = [share * max(float(np.ptp(position)), np.finfo(float).tiny) for share in PATHS]
+    there = np.unique(numbers[sliding])
+    found = []
+    for index in there[:: -(-len(there) // MOST_TRIALS)]:
+        own = np.flatnonzero(sliding & (numbers == index) & (column != 0.0))
+        _, of, count = np.unique(strokes[own], return_inverse=True, return_counts=True)
+        own = own[count[of] >= FEWEST_ROWS]
+        if len(own) < FEWEST_ROWS:
+            continue
+        width_s = max(CELL_S, float(np.ptp(times_s[own])) / MOST_CELLS)
+        number = np.stack([strokes[own], np.floor(times_s[own] / width_s).astype(np.int64)])
+        cells, cell = np.unique(number, axis=1, return_inverse=True)
+        mean = _Mean(column[own], np.asarray(cell).reshape(-1))
+        path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(position[own])))])
+        time_s, gone = mean.plain(times_s[own]), mean.plain(path)
+        own_static = mean.of(static[own][:, None])[:, 0]
+        turned = np.sign(mean.plain(column[own]))
+        kernels = _kernels(mean.size, turned, time_s, gone, cells[0], own_static, lengths)
+        part = Part(mean.of(base.basis[own]), mean.of(base.residual[own][:, None])[:, 0], kernels)
+        found.append(CellsOfTrial(int(index), time_s, mean.size, part))
+    return found
+
+
+class _Mean:
+    """Takes the rows of each cell together, by what wanders has of each.
+
+    Args:
+        column: of what wanders, weighted, shape (n,).
+        cell: of each row, shape (n,).
+    """
+
+    def __init__(self, column: FloatArray, cell: IntArray) -> None:
+        self._column, self._cell = column, cell
+        self.size: FloatArray = np.sqrt(np.bincount(cell, column**2))
+
+    def of(self, values: FloatArray) -> FloatArray:
+        """Of weighted rows (n, k): the projection on the column, of unit noise."""
+        return np.column_stack([np.bincount(self._cell, self._column * one) for one in values.T]) / self.size[:, None]
+
+    def plain(self, values: FloatArray) -> FloatArray:
+        """Of what is no effort, as a time."""
+        found: FloatArray = np.bincount(self._cell, values) / np.bincount(self._cell)
+        return found
+
+
+def _kernels(
+    size: FloatArray,
+    turned: FloatArray,
+    time_s: FloatArray,
+    path: FloatArray,
+    stroke: IntArray,
+    static: FloatArray,
+    lengths: list[float],
+) -> FloatArray:
+    """Covariances of the cells (c,) by each component of unit size, what wanders last; (k, c, c).
+
+    Noise does not know which way friction points (`turned`), and changes its sign in these cells where that does.
+    """
+    apart_s = np.abs(np.subtract.outer(time_s, time_s))
+    way = np.abs(np.subtract.outer(path, path))
+    same = np.equal.outer(stroke, stroke)
+    both = np.outer(size, size)
+    return np.array(
+        [
+            np.eye(len(size)),
+            *(np.outer(turned, turned) * np.exp(-apart_s / memory_s) for memory_s in NOISE_LASTS_S),
+            *(both * same * np.exp(-way / length) for length in lengths),
+            np.outer(static, static) * same,
+            both * np.exp(-apart_s / LASTS_S),
+        ]
+    )
+
+
+def most_changed(trials: Sequence[CellsOfTrial], courses: Sequence[FloatArray]) -> tuple[tuple[int, float], ...]:
+    """Trials where the course (c,) of what wanders changes most, most first, and when it does [s]."""
+    found = []
+    for trial, own in zip(trials, courses, strict=True):
+        order = np.argsort(trial.time_s, kind="stable")
+        time_s, course = trial.time_s[order], own[order]
+        if len(course) > 1:
+            step = np.abs(np.diff(course))
+            at = int(np.argmax(step))
+            found.append((float(np.ptp(course)), trial.index, float(0.5 * (time_s[at] + time_s[at + 1]))))
+    return tuple((index, at_s) for _, index, at_s in sorted(found, reverse=True)[:NAMED])
