@@ -1,5 +1,9 @@
 """A model is diagnosed once, however often its diagnosis is asked for; another one is diagnosed anew."""
 
+from itertools import count
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
 from bench import study
@@ -44,3 +48,34 @@ def test_two_studies_of_the_same_trials_tell_their_own_numbers(store, experiment
     numbers = [study.create_study(store, name, [experiment_id])["study_id"] for name in ("one", "other")]
     assert [study.diagnose(store, number)["study_id"] for number in numbers] == numbers
     assert len(judgements) == 1
+
+
+@pytest.fixture
+def ask(monkeypatch):
+    """Ask for the diagnosis of a model; each one made is another number."""
+    numbers = count()
+    monkeypatch.setattr(judged, "diagnose", lambda fit: next(numbers))
+    judged._kept.cache_clear()
+
+    def asked(
+        source: object = "store", definition: str = "all trials", effects=("gravity", "stribeck"), speed=0.1
+    ) -> Any:
+        material = SimpleNamespace(source=source, definition=definition)
+        model = SimpleNamespace(effects=list(effects), result={"shapes": {"stribeck": [speed, 1.0]}})
+        return judged.diagnosis_of_model(material, model, None)
+
+    yield asked
+    judged._kept.cache_clear()
+
+
+@pytest.mark.parametrize(
+    "other",
+    [{"source": "another"}, {"definition": "one held out"}, {"effects": ("gravity",)}, {"speed": 0.2}],
+)
+def test_another_store_study_model_or_shape_is_another_question(ask, other):
+    assert [ask(), ask(**other), ask()] == [0, 1, 0]
+
+
+def test_material_of_no_store_is_asked_each_time(ask):
+    """Nothing says that it is the same."""
+    assert [ask(source=None), ask(source=None)] == [0, 1]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.diagnosis.remainder import remainder_of
+from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset
@@ -27,14 +28,15 @@ class Bursts:
         largest: scatter of the worst stretch over the median one's; NaN where there are too few stretches.
         stretches: that scatter LARGER times as much as the median one, and more; of: how many there are.
         trials: indices of their trials.
-        share: of the residual's power that is theirs.
+        of_effort: root mean square of what is left in them over that of the effort in all rows; a few wild rows of a
+            stretch count for no more than its others.
     """
 
     largest: float
     stretches: int
     of: int
     trials: tuple[int, ...]
-    share: float = 0.0
+    of_effort: float = 0.0
 
     @property
     def are_there(self) -> bool:
@@ -42,17 +44,18 @@ class Bursts:
         return 0 < self.stretches <= MOST * self.of
 
 
-def bursts_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Bursts:
+def bursts_of(dataset: Dataset, residual: FloatArray, weights: FloatArray, rows: BoolArray) -> Bursts:
     """Look for bursts.
 
     Args:
         dataset: of the rows.
-        residual: weighted to like variance in like motion, of the chosen rows, shape (rows.sum(),).
+        residual: of the chosen rows, shape (rows.sum(),).
+        weights: that bring them to like variance in like motion, shape (rows.sum(),).
         rows: chosen, shape (N,).
     """
     labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
     count = np.bincount(stretch, minlength=len(labels))
-    power = np.bincount(stretch, weights=residual**2, minlength=len(labels))
+    power = np.bincount(stretch, weights=(residual * weights) ** 2, minlength=len(labels))
     enough = count >= FEWEST_ROWS
     if int(enough.sum()) < FEWEST_STRETCHES:
         return Bursts(float("nan"), 0, int(enough.sum()), ())
@@ -63,9 +66,17 @@ def bursts_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Bursts
     wild = enough & (scatter >= LARGER * usual)
     _, first = np.unique(stretch, return_index=True)
     trials = np.unique(dataset.trial_index[rows][first[wild]])
-    share = float(power[wild].sum() / power.sum())
+    left = sum(_power(residual[stretch == one]) for one in np.flatnonzero(wild))
+    effort = dataset.effort[rows]
+    of_effort = float(np.sqrt(left / (effort @ effort)))
     largest = float(scatter[enough].max() / usual)
-    return Bursts(largest, int(wild.sum()), int(enough.sum()), tuple(map(int, trials)), share)
+    return Bursts(largest, int(wild.sum()), int(enough.sum()), tuple(map(int, trials)), of_effort)
+
+
+def _power(residual: FloatArray) -> float:
+    """Of a stretch, by its own scatter: in that of all rows, all of a burst would be wild."""
+    residual = residual * bounded_influence(residual, np.ones(len(residual)))
+    return float(residual @ residual)
 
 
 def is_rattle(bursts: Bursts, dataset: Dataset, residual: FloatArray, rows: BoolArray) -> bool:

@@ -113,10 +113,9 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
     if generic is not None:
         left, bursts = left_over(gathered), _bursts(gathered)
-        share = left.remainder.share
-        if bursts is not None and share * np.sqrt(bursts.share) > LEAST_SHARE:
+        if bursts is not None and bursts.of_effort > LEAST_SHARE:
             names = [_trial_names(fit)[index] for index in bursts.trials]
-            sentence, remains = bursts_in_words(bursts, names, share, p_value), True
+            sentence, remains = bursts_in_words(bursts, names, p_value), True
         elif left.is_more_than_noise:
             wanders = _wanders(fit, left)
             nearest, facts = _nearest_driver(generic), fit.dataset.facts
@@ -208,7 +207,7 @@ def _bursts(gathered: Candidates) -> Bursts | None:
     """Stretches that leave far more than others of like motion; None without any, or where teeth bounce there."""
     dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
     weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
-    found = bursts_of(dataset, residual[rows] * weights, rows)
+    found = bursts_of(dataset, residual[rows], weights, rows)
     return found if found.are_there and not is_rattle(found, dataset, residual[rows], rows) else None
 
 

@@ -1,21 +1,27 @@
 """What bends along with the joint and slides is none of the catalogue, whatever formula imitates a part of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.bending import bending, still_bending
+from compensator.lab.diagnosis import bending as own
+from compensator.lab.diagnosis.bending import Bending, bending, still_bending
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.provisional import provisional
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_effects, fit_model
+from compensator.lab.model.fit import Fit, fit_effects, fit_model, with_columns
+from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import screen_against_noise
 from tests.lab.synthetic import FACTS, Joint, Law, recordings
 
 DEFAULT = default_effects(FACTS)
 FORCE_N_M, STIFFNESS_1_RAD = 0.012, 6.0
+WEAK = 0.07  # of it: there, and not beyond doubt
 
 
 def hose(x) -> np.ndarray:
@@ -71,3 +77,42 @@ def test_a_name_that_is_right_leaves_nothing_that_bends():
     named = next(block for block in gathered.named if block.name == "viscous_asymmetry")
     explained = fit_effects(fit.dataset, [*fit.names, named.name], fit.training)
     assert not still_bending(explained, gathered, named)
+
+
+def test_what_is_there_but_not_for_sure_does_not_bend(monkeypatch):
+    fit = fit_of(lambda x: WEAK * hose(x))
+    gathered = with_noise(gather(fit))
+    assert bending(fit, gathered) is None
+    monkeypatch.setattr(own, "VERY_STRONG", 0.0)
+    monkeypatch.setattr(own, "LEAST_GAIN", 0.0)
+    assert bending(fit, gathered) is not None
+
+
+def test_it_has_to_lower_the_held_out_error(bent, monkeypatch):
+    gathered = with_noise(gather(bent))
+    found = bending(bent, gathered)
+    assert found is not None
+    before = held_out(bent, None, bent.dataset.steadiness)
+    monkeypatch.setattr(own, "LEAST_GAIN", 1.05 * (1.0 - found.after.rms / before.rms))
+    assert bending(bent, gathered) is None
+
+
+def free_hysteresis(fit: Fit) -> Bending:
+    """Whatever its evidence."""
+    gathered = with_noise(gather(fit))
+    assert gathered.noise is not None
+    evidence = screen_against_noise(gathered.bases, [gathered.curves.hysteresis], gathered.noise).evidence[0]
+    model = with_columns(fit, evidence.block.name, gathered.curves.hysteresis_columns)
+    return Bending(evidence, held_out(model, None, fit.dataset.steadiness))
+
+
+def test_it_predicts_best_where_no_formula_does_as_well(bent):
+    assert free_hysteresis(bent).predicts_best(bent, diagnose(bent).candidates)
+
+
+def test_what_cannot_be_it_is_no_better_prediction():
+    fit = fit_of(asymmetry)
+    candidates = diagnose(fit).candidates
+    free = free_hysteresis(fit)
+    assert not free.predicts_best(fit, candidates)
+    assert free.predicts_best(fit, [replace(one, physical=False) for one in candidates])

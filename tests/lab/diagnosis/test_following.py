@@ -65,3 +65,9 @@ def test_a_model_with_more_than_every_joint_has_is_not_asked():
     )
     assert asked.following is not None
     assert not_asked.following is None
+
+
+def test_what_only_the_measuring_chain_has_makes_no_difference():
+    fit = fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))
+    left = left_over(with_noise(gather(fit_model(fit.dataset, [*fit.names, "measurement_delay"]))))
+    assert left.following is not None

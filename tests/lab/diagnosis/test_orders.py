@@ -30,6 +30,23 @@ def test_noise_does_not_come_back(seed):
     assert line(fitted(seed=seed)) is None
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_best_of_a_thousand_orders_is_no_small_chance(seed, monkeypatch):
+    for bound, anything in (("CHANCE", 1.0), ("FORETOLD", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
+        monkeypatch.setattr(orders, bound, anything)
+    found = line(fitted(seed=seed))
+    assert found is not None
+    assert found.chance > 0.01
+
+
+def test_a_ripple_smaller_than_a_sensor_is_linear_is_no_line(monkeypatch):
+    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))
+    found = line(fit)
+    assert found is not None
+    monkeypatch.setattr(orders, "LEAST_OF_EFFORT", 1.01 * found.share)
+    assert line(fit) is None
+
+
 def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
     fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))
     found = line(fit)

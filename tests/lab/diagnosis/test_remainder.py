@@ -59,9 +59,22 @@ def test_a_burst_that_is_quicker_than_the_motion_is_teeth_that_bounce(course, ra
     rows, residual = fit.training, fit.residual[fit.training].copy()
     wild = np.flatnonzero(fit.dataset.block_index[rows] == 1)
     residual[wild] = 30.0 * residual.std() * np.resize(course, len(wild))
-    found = bursts_of(fit.dataset, residual, rows)
+    found = bursts_of(fit.dataset, residual, np.ones(len(residual)), rows)
     assert found.stretches == 1
     assert is_rattle(found, fit.dataset, residual, rows) == rattles
+
+
+@pytest.mark.parametrize(("frequency_hz", "told"), [(0.6, True), (6.0, False)])
+def test_teeth_that_bounce_are_not_told_as_what_comes_in_bursts(frequency_hz, told):
+    trials = iter(range(100))
+
+    def burst(x):
+        here = (x.time_s > 2.0) & (x.time_s < 4.0) & (next(trials) % 2 == 1)
+        return 0.05 * here * np.sin(2.0 * np.pi * frequency_hz * x.time_s)
+
+    found = diagnose(fitted(burst))
+    assert ("comes in bursts: 4 of 38 stretches" in found.sentence) == told
+    assert found.remains == told
 
 
 def test_a_few_wild_rows_do_not_make_it_more_than_noise():

@@ -13,6 +13,7 @@ from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.stops import StopToStop
 
 TRIALS, ROWS, PERIOD_S = 12, 120, 0.05  # 6 s each
+EFFORT = 8.0
 STROKE = 30  # rows between two stops
 
 
@@ -23,6 +24,7 @@ def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
     return SimpleNamespace(
         trials=tuple(SimpleNamespace(motion=SimpleNamespace(velocity=one)) for one in velocity),
         rows_of=np.concatenate,
+        effort=np.full(TRIALS * ROWS, EFFORT),
         time_of=lambda _trial: time_s,
         trial_index=np.repeat(np.arange(TRIALS), ROWS),
         block_index=np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)]),
@@ -179,11 +181,13 @@ def test_what_three_stretches_hold_is_found_where_flips_cannot():
 
 
 def test_bursts_are_stretches_that_scatter_more_than_the_others():
-    residual = coloured(np.random.default_rng(5))
-    assert not bursts_of(dataset(), residual, ALL).are_there
+    residual, weights = coloured(np.random.default_rng(5)), np.ones(len(ALL))
+    assert not bursts_of(dataset(), residual, weights, ALL).are_there
     residual[ROWS : ROWS + 40] *= 12.0
-    found = bursts_of(dataset(), residual, ALL)
+    found = bursts_of(dataset(), residual, weights, ALL)
     assert (found.are_there, found.stretches, found.trials) == (True, 1, (1,))
     assert found.largest > 4.0
     burst = residual[ROWS : ROWS + 40]
-    assert found.share == pytest.approx(float(burst @ burst) / float(residual @ residual))
+    assert found.of_effort == pytest.approx(np.sqrt(burst @ burst / len(ALL)) / EFFORT, rel=0.01)
+    residual[ROWS + 7] = 1e3
+    assert bursts_of(dataset(), residual, weights, ALL).of_effort == pytest.approx(found.of_effort, rel=0.5)

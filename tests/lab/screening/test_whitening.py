@@ -22,6 +22,15 @@ def test_noise_is_of_unit_power_and_independent_from_row_to_row():
     assert lag_one(coloured(random)) > 0.7
 
 
+def test_a_trial_that_scatters_more_counts_for_less():
+    random = np.random.default_rng(6)
+    wild = np.where(np.arange(len(ALL)) < len(ALL) // 2, 3.0, 1.0)
+    noise = learnt(wild * coloured(random))
+    found = Whitening.of(noise).whitened(np.column_stack([wild * coloured(random) for _ in range(20)]))
+    for half in np.array_split(found, 2):
+        assert np.mean(half**2) == pytest.approx(1.0, abs=0.25)
+
+
 def test_what_is_whitened_stays_where_it_was():
     hit = np.zeros((len(ALL), 1))
     hit[300] = 1.0
@@ -48,3 +57,12 @@ def test_static_friction_that_differs_from_stop_to_stop_counts_for_little():
     fast = 0.2 * np.where(strokes.index == 2, 1.0, 0.0)[:, None]
     sizes = [np.sum(Whitening.of(noise).whitened(one) ** 2) / np.sum(one**2) for one in (slow, fast)]
     assert sizes[0] < 0.3 * sizes[1]
+
+
+def test_what_a_filter_leaves_next_to_none_of_is_not_known_without_end():
+    """Nobody knows noise in a band that was taken away: it counts for ten times the mean or so."""
+    random = np.random.default_rng(5)
+    smooth = np.convolve(coloured(random), np.hanning(25), "same")
+    noise = learnt(smooth / np.std(smooth))
+    quick = np.where(np.arange(len(ALL)) % 2 == 0, 1.0, -1.0)[:, None]
+    assert np.mean(Whitening.of(noise).whitened(quick) ** 2) < 20.0
