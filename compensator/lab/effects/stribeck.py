@@ -5,11 +5,16 @@ import numpy as np
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
+EXPONENTS = tuple(np.geomspace(1.0, 2.0, 4).tolist())
+
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Stribeck speeds from just above the uncertain ones to half the fast ones; exponents 1 and 2."""
+    """Stribeck speeds from just above the uncertain ones to half the fast ones, each with exponents from 1 to 2.
+
+    Between two exponents alone a search can end in a valley of its own, far from the best speed.
+    """
     speeds = np.geomspace(2.0 * motion.slow, max(0.5 * motion.fast, 4.0 * motion.slow), 7)
-    return [(float(speed), exponent) for exponent in (1.0, 2.0) for speed in speeds]
+    return [(float(speed), exponent) for exponent in EXPONENTS for speed in speeds]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:

@@ -63,7 +63,7 @@ def test_with_noise_within_what_least_squares_promises(noisy):
     assert np.std(noisy.residual[rows]) == pytest.approx(MEMORY.noise * np.sqrt(in_band), rel=0.15)
 
 
-@pytest.mark.parametrize(("speed", "exponent"), [(0.2, 2.0), (0.5, 1.0)])
+@pytest.mark.parametrize(("speed", "exponent"), [(0.2, 2.0), (0.5, 1.0), (0.25, 1.5), (0.18, 1.8), (0.4, 1.25)])
 def test_the_stribeck_shape_is_found(speed, exponent):
     joint = Joint(static_excess=0.06, stribeck_speed=speed, stribeck_exponent=exponent)
     fit = fit_model(make_dataset(recordings(joint, QUIET), FACTS, Processing(8.0)), DEFAULT)
