@@ -14,7 +14,11 @@ from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.screening.candidates import Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Block, Evidence, among_all, score_of, screen_against_noise
+from compensator.lab.screening.evidence import Evidence, among_all, score_of, screen_against_noise
+
+STRONG = (
+    6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995): where the held-out error must fall for sure, too
+)
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class Bending:
 
 
 def bending(fit: Fit, gathered: Candidates) -> Bending | None:
-    """The free hysteresis, if its evidence is very strong and it lowers the held-out error for sure.
+    """The free hysteresis, if its evidence is strong and it lowers the held-out error for sure.
 
     Args:
         fit: of the model.
@@ -41,7 +45,7 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     if gathered.noise is None:
         return None
     found = screen_against_noise(gathered.bases, [gathered.curves.hysteresis], gathered.noise).evidence
-    if not found or found[0].score < VERY_STRONG or among_all(found[0].p_value) > SIGNIFICANT:
+    if not found or found[0].score < STRONG or among_all(found[0].p_value) > SIGNIFICANT:
         return None
     bent = with_columns(fit, found[0].block.name, gathered.curves.hysteresis_columns)
     before, after = (held_out(model, None, fit.dataset.steadiness) for model in (fit, bent))
@@ -49,16 +53,23 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     return Bending(found[0], after) if gain.low > 0.0 and gain.value >= LEAST_GAIN else None
 
 
-def still_bending(explained: Fit, gathered: Candidates, named: Block) -> bool:
+def still_bending(explained: Fit, gathered: Candidates, named: Evidence) -> bool:
     """Whether it is missing beside an effect that is named, and what its formula leaves open: the name is but a part.
+
+    A formula that only imitates it has the less evidence of the two, and leaves some of it.
 
     Args:
         explained: the model with the effect.
         gathered: what the model without it may be missing.
-        named: the effect's block.
+        named: the effect's evidence.
     """
-    given = gathered.with_block(named)
-    if given.noise is None or score_of(given.bases, given.curves.hysteresis, given.noise) < VERY_STRONG:
+    given = gathered.with_block(named.block)
+    if given.noise is None:
+        return False
+    beside = score_of(given.bases, given.curves.hysteresis, given.noise)
+    if beside >= 0.0 and score_of(gathered.bases, gathered.curves.hysteresis, gathered.noise) >= named.score + STRONG:
+        return True
+    if beside < VERY_STRONG:
         return False
     return bending(explained, with_noise(gather_curves(explained, gathered.show_in))) is not None
 

@@ -231,7 +231,7 @@ def _nearest_driver(generic: Screening) -> str | None:
 def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]:
     """What an effect that is named only imitates, as far as it is more than what its formula leaves open."""
     name = best.block.name
-    if still_bending(explained, gathered, best.block):
+    if still_bending(explained, gathered, best):
         return [still_bending_in_words(name)]
     change = change_in_session(explained, gathered, best.block)
     if change is not None:
