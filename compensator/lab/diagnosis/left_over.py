@@ -7,6 +7,7 @@ from compensator.lab.diagnosis.constants import Constants
 from compensator.lab.diagnosis.following import Following, following_of
 from compensator.lab.diagnosis.orders import Line, line_of
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
+from compensator.lab.diagnosis.ripple import ripple_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.diagnosis.wandering import Wandering, wandering_of
 from compensator.lab.diagnosis.white_rows import WhiteRows
@@ -69,6 +70,7 @@ def left_over(gathered: Candidates) -> LeftOver:
     white = WhiteRows.of(gathered) if _is_plain(gathered.fit) else None
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
+    swing = swing or ripple_of(gathered, white)
     return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))
 
 

@@ -53,7 +53,7 @@ def swing_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Swing |
         residual: of the chosen rows, shape (rows.sum(),).
         rows: chosen, shape (N,).
     """
-    voltage = dataset.rows_of([_voltage(trial) for trial in dataset.trials])[rows]
+    voltage = dataset.rows_of([voltage_of(trial) for trial in dataset.trials])[rows]
     carriers = [(False, np.ones(len(residual)))]
     if np.any(voltage):
         carriers.append((True, voltage))
@@ -62,7 +62,27 @@ def swing_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Swing |
     return min(there, key=lambda one: one.chance, default=None)
 
 
-def _voltage(trial: Trial) -> FloatArray:
+@dataclass(frozen=True)
+class Frequencies:
+    """That a line is looked for at.
+
+    Attributes:
+        at_hz: some per width of a line, shape (m,); independent: how many of them are.
+    """
+
+    at_hz: FloatArray
+    independent: float
+
+    @classmethod
+    def of(cls, times_s: list[FloatArray], cutoff_hz: float) -> "Frequencies":
+        """Of trials' rows, each (n,)."""
+        longest_s = max(float(time_s[-1] - time_s[0]) for time_s in times_s)
+        highest_hz = BAND * min(cutoff_hz, *(0.5 / float(np.median(np.diff(time_s))) for time_s in times_s))
+        at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (STEPS * longest_s))
+        return cls(at_hz, max((highest_hz - LEAST_HZ) * longest_s, 1.0))
+
+
+def voltage_of(trial: Trial) -> FloatArray:
     """Duty times supply over the trial, up to a constant; zero where no duty is known."""
     signals = trial.signals
     channels = signals.recording.channels
@@ -85,31 +105,33 @@ def _line(dataset: Dataset, values: FloatArray, rows: BoolArray, of_voltage: boo
     parts = [(time_s, own) for time_s, own in parts if np.any(own)]
     if len(parts) < FEWEST_TRIALS:
         return None
-    longest_s = max(float(time_s[-1] - time_s[0]) for time_s, _ in parts)
-    highest_hz = BAND * min(dataset.cutoff_hz, *(0.5 / float(np.median(np.diff(time_s))) for time_s, _ in parts))
-    at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (STEPS * longest_s))
+    frequencies = Frequencies.of([time_s for time_s, _ in parts], dataset.cutoff_hz)
+    at_hz = frequencies.at_hz
     if len(at_hz) < 3:
         return None
     lower = np.sort(_over_noise(at_hz, parts), axis=0)[(len(parts) - 1) // 2]
     # what falls or rises towards an end of the band is no line: a step has most at the lowest frequency
-    best = 1 + int(np.argmax(np.where(_is_peak(lower), lower[1:-1], 0.0)))
+    best = 1 + int(np.argmax(np.where(is_peak(lower), lower[1:-1], 0.0)))
     count = len(parts) - (len(parts) - 1) // 2  # trials that hold so much, or more
     chance = float(binom.sf(count - 1, len(parts), exp(-float(lower[best]))))
-    independent = max((highest_hz - LEAST_HZ) * longest_s, 1.0)
-    return Swing(float(at_hz[best]), min(1.0, independent * chance), of_voltage)
+    return Swing(float(at_hz[best]), min(1.0, frequencies.independent * chance), of_voltage)
 
 
-def _is_peak(values: FloatArray) -> BoolArray:
+def is_peak(values: FloatArray) -> BoolArray:
     """Which of the inner values (n - 2,) are as large as both their neighbours."""
     peaks: BoolArray = (values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:])
     return peaks
 
 
 def _over_noise(at_hz: FloatArray, parts: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
-    """Power of each trial at each frequency over that of the noise: the median around it, of all trials."""
+    """Power of each trial at each frequency over that of the noise, shape (trials, m)."""
     turns = 2j * np.pi
     powers = np.array([np.abs(np.exp(-turns * np.outer(at_hz, time_s)) @ own) ** 2 for time_s, own in parts])
-    powers = powers / powers.mean(axis=1, keepdims=True)
+    return over_surroundings(at_hz, powers / powers.mean(axis=1, keepdims=True))
+
+
+def over_surroundings(at_hz: FloatArray, powers: FloatArray) -> FloatArray:
+    """Powers (trials, m) over the median around each frequency, of all trials; exponential where they are noise."""
     floor = np.array([np.median(powers[:, np.abs(at_hz - centre) <= AROUND_HZ]) for centre in at_hz])
     over: FloatArray = log(2.0) * powers / np.maximum(floor, np.finfo(float).tiny)  # the median of Exp(1) is ln 2
     return over

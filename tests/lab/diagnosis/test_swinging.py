@@ -8,17 +8,21 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.left_over import left_over
+from compensator.lab.diagnosis.ripple import MOST_OF_TRIAL, chance_of_sum, ripple_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model, widened
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather_curves
+from compensator.lab.screening.candidates import gather, gather_curves
+from compensator.lab.screening.clearing import with_noise
+from tests.lab.diagnosis.judged import white_rows_of
 from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
 SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
+SMALL_RIPPLE = 0.002
 
 
 def recorded(extra=None, seed=0, noise=BENCH.noise) -> list[Recording]:
@@ -69,6 +73,37 @@ def test_a_ripple_of_the_supply_is_told_where_it_follows_the_voltage():
     assert found is not None
     assert found.of_voltage
     assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
+
+
+def rippled(fit: Fit) -> Swing | None:
+    gathered = with_noise(gather(fit))
+    return ripple_of(gathered, white_rows_of(gathered))
+
+
+def test_a_ripple_that_is_too_small_for_its_power_alone_is_told_by_a_matched_filter():
+    fit = fitted(rippling(recorded(seed=1, noise=0.004), SMALL_RIPPLE))
+    assert swing(fit) is None
+    found = rippled(fit)
+    assert found is not None
+    assert found.of_voltage
+    assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_does_not_ripple_is_not_said_to(seed):
+    assert rippled(fitted(rippling(recorded(seed=seed, noise=0.004), 0.0))) is None
+
+
+def test_where_no_voltage_is_known_nothing_ripples_with_it():
+    assert rippled(fitted(recorded())) is None
+
+
+def test_the_chance_of_a_sum_is_that_of_as_many_exponential_variables():
+    random = np.random.default_rng(3)
+    gains = np.minimum(random.exponential(size=(20000, 12)), MOST_OF_TRIAL).sum(axis=1)
+    for share in (0.5, 0.1, 0.01):
+        at = float(np.quantile(gains, 1.0 - share))
+        assert chance_of_sum(np.full(12, at / 12)) == pytest.approx(share, rel=0.15)
 
 
 def test_a_line_in_a_few_trials_is_theirs_alone():
