@@ -22,9 +22,9 @@ from compensator.lab.recordings.recording import FloatArray
 
 MEAN_S = 4.0  # between jumps: some seconds
 MOST_MOMENTS = 55  # of a trial, at which it may jump: twice of so many makes some thousand courses
-ROUNDS = 6  # of new variances
+ROUNDS = 12  # of new variances
 STEPS = 5  # of the rest, between them
-CONVERGED = 0.1  # of twice the logarithm of the likelihood
+CONVERGED = 0.05  # of twice the logarithm of the likelihood
 TINY = float(np.finfo(float).tiny)
 
 

@@ -78,15 +78,15 @@ def _wandering(what: str, size: float, trials: list[CellsOfTrial]) -> list[Wande
     share = float(np.sqrt(beside[-1]))
     # its likeliest course is the best linear prediction
     courses = [one.part.kernels[-1] @ own / one.size for one, own in zip(trials, having.weighed, strict=True)]
-    chance = _chance(2.0 * (having.value - without.value))
+    chance = chance_of(2.0 * (having.value - without.value))
     found = [Wandering(what, chance, share * size, share, most_changed(trials, courses))]
     if what == DRY_FRICTION and not found[0].is_there:
         jumps = jumps_of(trials, alone)
-        chance, changes = _chance(jumps.gained), most_changed(trials, jumps.courses)
+        chance, changes = chance_of(jumps.gained), most_changed(trials, jumps.courses)
         found.append(Wandering(what, chance, jumps.height * size, jumps.height, changes, jumps=True))
     return found
 
 
-def _chance(gained: float) -> float:
+def chance_of(gained: float) -> float:
     """Of so much more likelihood, as twice its logarithm, by a component that is not there."""
     return 0.5 * float(chi2.sf(gained, 1)) if gained > 0.0 else 1.0
