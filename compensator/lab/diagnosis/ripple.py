@@ -5,21 +5,20 @@ without what the model explains of them, by least squares in each trial (Lomb 19
 one in each). Twice what a trial gains by them is in noise alone chi-squared of two degrees of freedom. The gains of all
 trials are summed, each up to a bound, so that no few trials, whose motion has that frequency, make a line.
 
-Noise is known for all rows together, and a trial may have more of it at low frequencies; what is around the line, as
-`swinging.py` has it, holds some of the line itself. So the line must be sure by one of these measures, and unlikely to
-be noise by the other.
+Noise is known for all rows together, and there may be more of it at some frequencies than that: where trials gain more
+by the frequencies around a line than noise would, the line counts for less by as much.
 """
 
 import numpy as np
 
 from compensator.lab.diagnosis.swinging import (
+    AROUND_HZ,
     CHANCE,
     FEWEST_ROWS,
     FEWEST_TRIALS,
     Frequencies,
     Swing,
     is_peak,
-    over_surroundings,
     voltage_of,
 )
 from compensator.lab.diagnosis.white_rows import WhiteRows
@@ -28,7 +27,7 @@ from compensator.lab.screening.candidates import Candidates
 
 CARRIERS = 2  # the other is none, of `swinging.py`
 MOST_OF_TRIAL = 5.0  # of half of what it gains: noise alone has so much once in 150
-UNLIKELY = 0.1  # chance by the less sure of two measures: the noise of all rows, and what is around the line
+LINE_HZ = 0.2  # from its middle on: what is further away is not of it
 AT_ONCE = 2**21  # values of columns
 NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
 APART = 1e-3  # of cosine and sine, likewise
@@ -57,11 +56,18 @@ def ripple_of(gathered: Candidates, white: WhiteRows) -> Swing | None:
     gains = np.concatenate(parts, axis=1)
     whole = np.minimum(gains, MOST_OF_TRIAL).sum(axis=0)
     best = 1 + int(np.argmax(np.where(is_peak(whole), whole[1:-1], 0.0)))
-    around = over_surroundings(at_hz, gains)[:, best]
-    chance, beside = (frequencies.independent * chance_of_sum(own) for own in (gains[:, best], around))
-    sure, less_sure = sorted((chance, beside))
-    there = CARRIERS * sure <= CHANCE and less_sure <= UNLIKELY
-    return Swing(float(at_hz[best]), float(sure), of_voltage=True) if there else None
+    noise = _noise_around(at_hz, gains, best)
+    chance = frequencies.independent * chance_of_sum(gains[:, best] / noise)
+    return Swing(float(at_hz[best]), chance, of_voltage=True) if CARRIERS * chance <= CHANCE else None
+
+
+def _noise_around(at_hz: FloatArray, gains: FloatArray, best: int) -> float:
+    """What trials gain (trials, m) around a frequency, over what noise would, if it is more."""
+    apart_hz = np.abs(at_hz - at_hz[best])
+    around = gains[:, (apart_hz <= AROUND_HZ) & (apart_hz > LINE_HZ)]
+    if around.size == 0:
+        return 1.0
+    return max(float(np.minimum(around, MOST_OF_TRIAL).mean()) / (1.0 - float(np.exp(-MOST_OF_TRIAL))), 1.0)
 
 
 def chance_of_sum(gains: FloatArray) -> float:

@@ -124,14 +124,10 @@ def is_peak(values: FloatArray) -> BoolArray:
 
 
 def _over_noise(at_hz: FloatArray, parts: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
-    """Power of each trial at each frequency over that of the noise, shape (trials, m)."""
+    """Power of each trial at each frequency over that of the noise: the median around it, of all trials."""
     turns = 2j * np.pi
     powers = np.array([np.abs(np.exp(-turns * np.outer(at_hz, time_s)) @ own) ** 2 for time_s, own in parts])
-    return over_surroundings(at_hz, powers / powers.mean(axis=1, keepdims=True))
-
-
-def over_surroundings(at_hz: FloatArray, powers: FloatArray) -> FloatArray:
-    """Powers (trials, m) over the median around each frequency, of all trials; exponential where they are noise."""
+    powers = powers / powers.mean(axis=1, keepdims=True)
     floor = np.array([np.median(powers[:, np.abs(at_hz - centre) <= AROUND_HZ]) for centre in at_hz])
     over: FloatArray = log(2.0) * powers / np.maximum(floor, np.finfo(float).tiny)  # the median of Exp(1) is ln 2
     return over
