@@ -11,7 +11,7 @@ from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import widened
 from compensator.lab.model.gain import Gain, held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.model.validation import HeldOut, held_out, on_even_terms
 
 
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
@@ -49,7 +49,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
     whole = widened(material.fit_of(parent), material.dataset.choice_for([*fit.effects, *changed]))
-    before, after = held_out(whole, rows), held_out(fit, rows)
+    before, after = on_even_terms(held_out(whole, rows), held_out(fit, rows))
     gain = held_out_gain(before, after)
     starts = held_out_both(whole, fit) if any(effect.breakaway for effect in changed) else None
     only_there = all(effect.rows == "breakaway" for effect in changed)

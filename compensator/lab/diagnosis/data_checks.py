@@ -8,7 +8,10 @@ from compensator.lab.model.fit import Fit
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.model.validation import relative_error, rms
 from compensator.lab.recordings.processing import SATURATED_DUTY
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.recordings.stuck_sensor import stuck_positions
+from compensator.lab.rows.dataset import Dataset
 
 ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
 FEWEST_TRIALS_TO_COMPARE = 5
@@ -18,6 +21,7 @@ DISSIPATIVE = ("inertia", "coulomb", "viscous")
 BETTER = 0.9  # of the error: what turning the sign of the effort must bring
 POOR = 0.4  # of the effort: what is left where inertia and friction would be negative, and that is no accident
 MIRRORED = 0.5  # of the error of one trial: the same
+UNLIKE = 2.0  # times what the median of the other trials leaves: less is what the model leaves anywhere
 SUSPECT = 0.2  # of the effort: an error from which clocks are tried
 MOST_LAG_S, LAG_STEP_S = 2.0, 0.1
 LEAST_LAG_S = 0.3  # less may be a delay of the chain, which is an effect of its own
@@ -116,7 +120,8 @@ def _late(fit: Fit) -> list[str]:
 def _mirrored_trials(fit: Fit) -> list[str]:
     """Trials that the model explains far better with their effort turned: fitted to all others, and to them, too.
 
-    The others alone may leave open what this trial is the only one to tell, and be wrong about it by any amount.
+    The others alone may leave open what this trial is the only one to tell, and be wrong about it by any amount. Where
+    the others leave about as much, what is missing in all of them may outweigh the small effort of a coast-down.
     """
     dataset, found = fit.dataset, []
     kept = np.concatenate([term.kept for term in fit.terms])
@@ -126,9 +131,11 @@ def _mirrored_trials(fit: Fit) -> list[str]:
     for index, trial in enumerate(dataset.trials):
         rows = dataset.counted & (dataset.trial_index == index)
         own, own_effort = columns[rows & fit.training], effort[rows & fit.training]
-        predicted = columns[rows] @ solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
-        as_is, turned = (rms(sign * effort[rows] - predicted) for sign in (1.0, -1.0))
+        predicted = columns @ solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
+        as_is, turned = (rms(sign * effort[rows] - predicted[rows]) for sign in (1.0, -1.0))
         if int(rows.sum()) >= FEWEST_ROWS and turned < MIRRORED * as_is:
+            if as_is < UNLIKE * _median_error(dataset, effort - predicted, dataset.counted & ~rows):
+                continue
             nothing = np.zeros_like(whole[0])
             with_turned = solve_without(whole, (nothing, 2.0 * own.T @ own_effort), bounds)
             if rms(-effort[rows] - columns[rows] @ with_turned) > MIRRORED * rms(fit.residual[rows]):
@@ -138,6 +145,12 @@ def _mirrored_trials(fit: Fit) -> list[str]:
                 f"{dataset.effort_definition.unit}, turned {turned:.3g}; turn it, or leave the trial out"
             )
     return found
+
+
+def _median_error(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> float:
+    """What the median trial leaves of some rows, root mean square; 0 where there is none."""
+    errors = [rms(residual[rows & (dataset.trial_index == index)]) for index in np.unique(dataset.trial_index[rows])]
+    return float(np.median(errors)) if errors else 0.0
 
 
 def _load_units(fit: Fit) -> list[str]:

@@ -10,7 +10,7 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.gain import chance_not_worse, held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.model.validation import HeldOut, held_out, on_even_terms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions, score_of
@@ -118,7 +118,7 @@ def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: d
 def _candidate(
     gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: set[str], nearest: float
 ) -> Candidate:
-    before, after = errors
+    before, after = on_even_terms(*errors)
     return Candidate(
         effect=effect_named(item.block.name),
         shape=_shape(item),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.model.validation import HeldOut
+from compensator.lab.model.validation import HeldOut, on_even_terms
 from compensator.lab.recordings.recording import FloatArray
 
 RESAMPLES = 999
@@ -21,8 +21,8 @@ class Gain:
 
 
 def held_out_gain(before: HeldOut, after: HeldOut, seed: int = 0) -> Gain:
-    """The gain of `after` over `before`, both on the same rows; independent units (trials) are resampled in pairs."""
-    powers = np.array([before.power_by_unit(), after.power_by_unit()])
+    """The gain of `after` over `before`, both on the same rows, on even terms; trials are resampled in pairs."""
+    powers = np.array([error.power_by_unit() for error in on_even_terms(before, after)])
     ratios = np.sqrt(_drawn(powers, seed))
     gains = 1.0 - ratios[1] / np.maximum(ratios[0], np.finfo(float).tiny)
     tail = 0.5 * (1.0 - CONFIDENCE)
@@ -31,8 +31,8 @@ def held_out_gain(before: HeldOut, after: HeldOut, seed: int = 0) -> Gain:
 
 
 def chance_not_worse(one: HeldOut, other: HeldOut, seed: int = 0) -> float:
-    """Share of resamples in which `one` has no larger held-out error than `other`, both on the same rows."""
-    powers = _drawn(np.array([one.power_by_unit(), other.power_by_unit()]), seed)
+    """Share of resamples in which `one` has no larger held-out error than `other`, both on the same rows, evenly."""
+    powers = _drawn(np.array([error.power_by_unit() for error in on_even_terms(one, other)]), seed)
     return float(np.mean(powers[0, 1:] <= powers[1, 1:]))
 
 

@@ -4,7 +4,7 @@ Held-out trials where the study names some; else each training trial is left out
 per trial, so leaving one out costs one small solve. Nonlinear shapes stay those of the whole training set.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import IntArray, RowChoice
 
+UNDETERMINED = 1e-9  # share of what all trials tell of a coefficient below which the others know nothing of it
 FEWEST_TRIALS = 4  # fewer cannot be resampled or left out one by one
 
 HeldOutKind = Literal["hold-out", "leave-one-trial-out", "leave-one-block-out"]
@@ -33,6 +34,8 @@ class HeldOut:
         unit: which independent unit (trial or block) each of these rows belongs to.
         relative: root of residual power over effort power.
         rms: root mean square residual, in the effort's unit.
+        doubt: variance of each row's prediction for not knowing the coefficients any better, over that of its noise;
+            none where a study names what is held out.
     """
 
     kind: HeldOutKind
@@ -42,6 +45,7 @@ class HeldOut:
     unit: IntArray
     relative: float
     rms: float
+    doubt: FloatArray = field(default_factory=lambda: np.zeros(1))
 
     def weighted(self, weight: FloatArray) -> "HeldOut":
         """The same, each of these rows multiplied by a weight."""
@@ -107,6 +111,18 @@ def independent_units(fit: Fit, rows: BoolArray) -> IntArray:
     return trials if len(np.unique(trials)) >= FEWEST_TRIALS else fit.dataset.block_index[rows]
 
 
+def on_even_terms(one: HeldOut, other: HeldOut) -> tuple[HeldOut, HeldOut]:
+    """Two models' errors on the same rows, each row counting by how well either model could predict it.
+
+    Where a trial is the only one to tell of a coefficient, as the only one without load does of the arm alone, what the
+    others make of it is a guess by any model, and would outweigh all that they do know: weights are those of errors of
+    known variance (Aitken 1935), the larger of the two models'. Trials that are alike are left as they are.
+    """
+    weight = 1.0 / np.sqrt(1.0 + np.broadcast_to(np.maximum(one.doubt, other.doubt), one.residual.shape))
+    first, second = (replace(error.weighted(weight), doubt=np.zeros(1)) for error in (one, other))
+    return first, second
+
+
 def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) -> HeldOut:
     rows = fit.training & judged
     kept = np.concatenate([term.kept for term in fit.terms])
@@ -114,16 +130,26 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
     columns, unit = columns[:, kept], units[fit.training]
     bounds = fit.bounds.of(kept)
     gram, moment = columns.T @ columns, columns.T @ effort
-    residual = np.zeros(len(units))
+    residual, doubt = np.zeros(len(units)), np.zeros(len(units))
     for label in np.unique(unit):
         own = unit == label
         inside = columns[own]
         rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
         seen = rows & (units == label)
         residual[seen] = fit.target[seen] - fit.columns[seen][:, kept] @ rest
+        doubt[seen] = _doubt(fit, kept, gram, gram - inside.T @ inside, seen)
         if fit.dataset.is_bent and seen.any():
             residual[seen] -= _beyond_tangent(fit, kept, rest, seen)
-    return _result(fit, kind, rows, residual[rows], units[rows])
+    return replace(_result(fit, kind, rows, residual[rows], units[rows]), doubt=doubt[rows])
+
+
+def _doubt(fit: Fit, kept: BoolArray, whole: FloatArray, rest: FloatArray, rows: BoolArray) -> FloatArray:
+    """Variance of predictions of rows (N,) by what the rest tells, normal equations (k, k), over that of the noise."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(whole), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(rest * np.outer(scale, scale))
+    turned = (fit.weight[rows, None] * fit.columns[rows][:, kept] * scale) @ vectors
+    found: FloatArray = np.sum(turned**2 / np.maximum(values, UNDETERMINED), axis=1)
+    return found
 
 
 def _beyond_tangent(fit: Fit, kept: BoolArray, coefficients: FloatArray, rows: BoolArray) -> FloatArray:

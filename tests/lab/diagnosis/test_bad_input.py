@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.comparison.comparison import compare
+from compensator.lab.diagnosis.data_checks import fatal_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import default_effects
@@ -16,7 +17,7 @@ from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
+from tests.lab.synthetic import FACTS, Bench, Joint, Plan, Truth, plans, recordings
 
 NO_GRAVITY = Joint(arm_moment=0.0)
 LINEAR = Facts(joint="linear")
@@ -201,3 +202,16 @@ def test_a_long_recording_is_answered_in_time():
     made = recordings(bench=Bench(duration_s=500.0, rate_hz=400.0), trials=plans((0.2,))[1:2], seed=3)
     assert len(made[0]) == 200_000
     assert diagnosed(made).verdict == "nothing"
+
+
+@pytest.mark.parametrize(("missing", "turned"), [(0.0, True), (0.12, False)], ids=["small beside it", "as large"])
+def test_a_small_effort_of_the_other_sign_is_no_turned_one_where_as_much_is_missing_anywhere(missing, turned):
+    slow = Plan("slow", [(3.0, 0.01, -0.4)])
+
+    def law(x: Truth) -> np.ndarray:
+        return missing * np.sin(9.0 * x.q) if x.load_kg else np.full_like(x.q, -0.07)
+
+    joint = Joint(arm_moment=0.0, coulomb=0.02, static_excess=0.0, viscous=0.01, extra=law)
+    made = recordings(joint, trials=[*plans((0.1, 0.25)), slow], seed=3)
+    found = fatal_problems(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)))
+    assert any("trial 'slow' has the other sign" in problem for problem in found) == turned

@@ -1,5 +1,7 @@
 """Intervals of gains and errors: paired, by whole trials, and as often right as they say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import binom
@@ -65,3 +67,15 @@ def test_nine_in_ten_intervals_hold_the_truth():
     lowest, highest = binom.ppf(0.002, sets, 0.82), binom.ppf(0.998, sets, 0.90)
     assert lowest <= hits["gain"] <= highest
     assert lowest <= hits["error"] <= highest
+
+
+def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
+    before, after = pair(np.random.default_rng(5), 12, 0.5)
+    plain = held_out_gain(before, after)
+    guess = np.where(before.unit == 0, 100.0, 0.0)
+    spoilt = replace(after, residual=after.residual + guess)
+    assert held_out_gain(before, spoilt).value < -10.0
+    evenly = held_out_gain(before, replace(spoilt, doubt=guess**2))
+    assert evenly.value == pytest.approx(plain.value, abs=0.1)
+    assert chance_not_worse(replace(spoilt, doubt=guess**2), before) > 0.95
+    assert held_out_gain(before, replace(after, doubt=np.zeros(len(guess)))) == plain

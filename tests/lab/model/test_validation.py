@@ -7,7 +7,14 @@ import pytest
 
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model
-from compensator.lab.model.validation import HeldOut, held_out, independent_units, relative_error, rms
+from compensator.lab.model.validation import (
+    HeldOut,
+    held_out,
+    independent_units,
+    on_even_terms,
+    relative_error,
+    rms,
+)
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
@@ -39,6 +46,26 @@ def test_leaving_one_trial_out_is_refitting_without_it(fit):
     effort = fit.dataset.effort[fit.training]
     assert found.relative == pytest.approx(np.linalg.norm(wanted) / np.linalg.norm(effort))
     assert found.rms > rms(fit.residual[fit.training])
+
+
+def test_the_doubt_of_a_trial_is_what_the_others_leave_open_of_its_prediction(fit):
+    found = held_out(fit)
+    columns = fit.weight[:, None] * fit.columns[:, np.concatenate([term.kept for term in fit.terms])]
+    for trial in (0, 7):
+        own = fit.training & (fit.dataset.trial_index == trial)
+        rest = columns[fit.training & ~own]
+        wanted = np.einsum("ij,jk,ik->i", columns[own], np.linalg.inv(rest.T @ rest), columns[own])
+        assert found.doubt[found.unit == trial] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_the_only_trial_without_load_counts_little_and_one_that_is_repeated_as_it_is():
+    alone = [*plans((0.25,)), plans((0.0,))[0]]
+    fit = fit_model(make_dataset(recordings(trials=alone, seed=8), FACTS, Processing()), DEFAULT)
+    found = held_out(fit)
+    counted, _ = on_even_terms(found, found)
+    kept = np.sqrt(counted.power_by_unit() / found.power_by_unit())
+    assert kept[-1] < 0.5
+    assert kept[:-1] == pytest.approx(1.0, abs=0.1)
 
 
 def test_held_out_trials_judge_the_fit_they_were_not_in(fit):
