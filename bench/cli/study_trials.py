@@ -14,6 +14,7 @@ from bench.cli.run import carry_out
 from bench.cli.service import ask
 from bench.errors import LimitError, ParameterError
 from bench.study.errors import StudyError
+from bench.study.next_trial.came import in_words, what_came
 from bench.study.next_trial.rounds import Ended, in_rounds
 from drivers.errors import DriveError
 
@@ -87,6 +88,10 @@ class _Running:
             if not self._quiet:
                 say(str(error))
             return []
+        if self.rounds and "diagnosis" in self.rounds[-1]:
+            self.rounds[-1]["came"] = what_came(self.rounds[-1]["suggested"], found)
+            if not self._quiet and self.rounds[-1]["came"]:
+                say(in_words(self.rounds[-1]["came"]))
         self.rounds.append({"suggested": found, "experiments": []})
         if not self._quiet:
             tables.suggestion(found)

@@ -11,7 +11,9 @@ from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import widened
 from compensator.lab.model.gain import Gain, held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out, on_even_terms
+from compensator.lab.model.validation import HeldOut, held_out
+
+NOTABLE = 0.05  # of a gain: how far it is from that of the errors beside it, before somebody wonders why
 
 
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
@@ -49,7 +51,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
     whole = widened(material.fit_of(parent), material.dataset.choice_for([*fit.effects, *changed]))
-    before, after = on_even_terms(held_out(whole, rows), held_out(fit, rows))
+    before, after = held_out(whole, rows), held_out(fit, rows)
     gain = held_out_gain(before, after)
     starts = held_out_both(whole, fit) if any(effect.breakaway for effect in changed) else None
     only_there = all(effect.rows == "breakaway" for effect in changed)
@@ -88,7 +90,9 @@ def _sentence(what: str, error: str, before: float, after: float, gain: Gain) ->
         advice = "It harms: drop it."
     else:
         advice = "The interval includes no change: these trials do not show that it is needed."
+    alone = abs(gain.value - (1.0 - after / before)) > NOTABLE if before > 0.0 else False
+    evenly = "; trials that the others tell nothing of count little in it" if alone else ""
     return (
         f"{what} changes the {error} from {before:.2%} to {after:.2%} "
-        f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%}). {advice}"
+        f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%}{evenly}). {advice}"
     )

@@ -15,6 +15,7 @@ from bench.study.next_trial.kept_out import kept_out, without
 from bench.study.next_trial.options import Choice, choices
 from bench.study.next_trial.predict import choose
 from bench.study.selection import Criterion
+from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion, shows_from_rest
 
@@ -32,7 +33,8 @@ def suggest(
     """The trials that would raise the smallest d' of the leading rivals most, per minute of bench time.
 
     Every trial that the bench can run inside its limits is run on the joint of the fitted model first. What was
-    suggested before, and tripped or failed on the joint itself, is kept out, and named.
+    suggested before, and tripped or failed on the joint itself, is kept out, and named. A simulated joint repeats a
+    trial to the bit: what the study has of it already is not suggested again.
 
     Args:
         store: with the study.
@@ -58,16 +60,18 @@ def suggest(
     with lab_errors():
         if diagnosis.verdict == "data-problem":
             raise StudyError(f"{diagnosis.sentence} Mend it before more is recorded")
-        possible = choices(configuration, not is_simulated(configuration), shows_from_rest(diagnosis))
+        repeats = is_simulated(configuration)
+        possible = choices(configuration, not repeats, shows_from_rest(diagnosis))
         impossible = kept_out(store, study_id)
-        possible = [one for one in without(_fitted_ones(material, possible), impossible) if one.name not in refused]
-        found, chosen = choose(fit, diagnosis, configuration, possible, trials)
+        told = [*impossible, *(_recorded(store, material) if repeats else ())]
+        possible = [one for one in without(_fitted_ones(material, possible), told) if one.name not in refused]
+        found, chosen = choose(fit, diagnosis, configuration, possible, trials, once=repeats)
     return {
         "study_id": study_id,
         "model_id": model.id,
         "verdict": diagnosis.verdict,
         "diagnosis": diagnosis.sentence,
-        "sentence": _sentence(found),
+        "sentence": _sentence(found, diagnosis),
         "minutes": sum(pick.minutes for pick in found.picks),
         "note": note_for(study_id),
         "pairs": [_pair(pair) for pair in found.pairs],
@@ -75,6 +79,11 @@ def suggest(
         "kept_out": [_kept_out(one) for one in impossible],
         "trials": [_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
     }
+
+
+def _recorded(store: Store, material: Material) -> list[Experiment]:
+    """Experiments that the study has trials of."""
+    return [store.experiment(number) for number in dict.fromkeys(trial.experiment_id for trial in material.trials)]
 
 
 def _fitted_ones(material: Material, possible: Sequence[Choice]) -> list[Choice]:
@@ -119,7 +128,7 @@ def _names(true: str, rival: str | None) -> str:
     return f"{effect_named(true).title} and {'no missing effect' if rival is None else effect_named(rival).title}"
 
 
-def _sentence(found: Suggestion) -> str:
+def _sentence(found: Suggestion, diagnosis: Diagnosis) -> str:
     if not found.pairs:
         return "No trial that this bench can run tells the rivals apart. " + _hopeless(found)
     before, after = (min(getattr(pair, end) for pair in found.pairs) for end in ("before", "after"))
@@ -128,8 +137,18 @@ def _sentence(found: Suggestion) -> str:
     minutes = sum(pick.minutes for pick in found.picks)
     return (
         f"{len(found.picks)} trial{'s' * (len(found.picks) != 1)}, {minutes:.2g} min: the smallest predicted d' rises "
-        f"from {before:.1f} to {after:.1f}; from about 6 on a name is sure. " + _hopeless(found)
+        f"from {before:.1f} to {after:.1f}; from about 6 on a name is sure. {_condition(found, diagnosis)}"
+        + _hopeless(found)
     ).strip()
+
+
+def _condition(found: Suggestion, diagnosis: Diagnosis) -> str:
+    """What the prediction holds for, where nothing is sure to be missing: sizes that may be noise."""
+    if diagnosis.verdict == "missing":
+        return ""
+    rivals = [effect_named(name).title for name in dict.fromkeys(pair.true for pair in found.pairs)]
+    one_of = rivals[0] if len(rivals) == 1 else f"one of {', '.join(rivals[:-1])} and {rivals[-1]}"
+    return f"That holds if {one_of} is missing and as large as it seems, which is not sure; if not, they tell so. "
 
 
 def _hopeless(found: Suggestion) -> str:

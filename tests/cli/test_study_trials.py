@@ -22,7 +22,8 @@ def started(command, monkeypatch):
         def suggested(session, study_id, model_id, most, refused):
             asked.append(sorted(refused))
             offered = [one for one in TRIALS if one["name"] not in refused][:most] if left else []
-            return {"study_id": study_id, "note": "n", "trials": offered}
+            pairs = [{"true": "spring", "rival": None, "before": len(asked), "after": 5.0 + len(asked)}]
+            return {"study_id": study_id, "note": "n", "trials": offered, "pairs": pairs}
 
         def carry_out(*_, **__):
             outcome = left.pop(0)
@@ -49,6 +50,7 @@ def test_what_trips_is_replaced_and_the_rest_is_added_round_by_round(started):
     assert outcomes(told) == [["completed", "tripped"], ["completed", "completed"]]
     assert [one["extended"]["added"] for one in told["rounds"]] == [[6], [8, 9]]
     assert asked == [[], ["b"]]
+    assert told["rounds"][0]["came"] == [{"effect": "spring", "predicted": 6.0, "came": 2}]
     assert code == 0
 
 

@@ -21,7 +21,9 @@ from bench.study import (
     ladder,
     search,
 )
+from bench.study.changes import _sentence
 from bench.study.errors import StudyError
+from compensator.lab.model.gain import Gain
 from tests.lab.synthetic import Joint, plans
 from tests.study.conftest import imported
 
@@ -271,3 +273,9 @@ def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the
     assert regimes["transient"] < 0.5 * before["transient"]
     rungs = ladder(store, number)["rungs"]
     assert rungs[1]["held_out"] < rungs[0]["held_out"] < change["before"]["held_out"]
+
+
+@pytest.mark.parametrize(("after", "told"), [(0.23, True), (0.0315, False)])
+def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
+    sentence = _sentence("Adding spring", "held-out error", 0.21, after, Gain(0.85, 0.8, 0.9))
+    assert ("trials that the others tell nothing of count little in it" in sentence) == told

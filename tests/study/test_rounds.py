@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from bench.study.next_trial.came import in_words, what_came
 from bench.study.next_trial.rounds import MOST_FAILED, Ended, Tried, in_rounds
 
 
@@ -77,3 +78,19 @@ def test_what_was_recorded_before_the_end_is_learnt():
 def test_it_ends_where_nothing_more_is_to_be_told(enough):
     bench = Bench(sure_after=enough)
     assert len(bench.go(6)) == enough
+
+
+def suggested(*pairs):
+    return {"pairs": [{"true": true, "rival": None, "before": before, "after": after} for true, before, after in pairs]}
+
+
+def test_what_was_predicted_is_held_against_what_came():
+    first = suggested(("spring", 1.0, 8.0), ("spring", 2.0, 6.0), ("cogging", 0.5, 5.0))
+    came = what_came(first, suggested(("spring", 7.0, 9.0), ("spring", 5.5, 9.0), ("warm_up", 1.0, 4.0)))
+    assert came == [
+        {"effect": "spring", "predicted": 6.0, "came": 5.5},
+        {"effect": "cogging", "predicted": 5.0, "came": None},
+    ]
+    told = in_words(came)
+    assert "6.0 was predicted, 5.5 came" in told
+    assert told.endswith("5.0 was predicted, it is no rival any more.")

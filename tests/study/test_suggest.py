@@ -3,6 +3,7 @@
 import importlib
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from bench.study.material import load
 from bench.study.next_trial.options import LONGEST_S, choices
 from bench.study.next_trial.predict import predicted
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
 from compensator.lab.rows.assembly import more_trials
 
 SUGGEST = importlib.import_module("bench.study.suggest")  # the package has the function of that name
@@ -120,6 +122,30 @@ def test_a_suggestion_can_be_started_as_it_is(store, made, found):
     assert rungs[1]["effects"] == rungs[0]["effects"]
     with pytest.raises(StudyError, match="no completed trial that study"):
         study.extend_study(store, made["study_id"])
+
+
+def test_a_simulated_joint_which_repeats_its_samples_is_not_asked_for_the_same_trial_again(store, monkeypatch):
+    alone = [one for one in choices(CONFIGURATION, hung_by_hand=False) if one.kind == "excitation"][:2]
+    monkeypatch.setattr(SUGGEST, "choices", lambda *_: alone)
+    number = run(store, "excitation", MOTIONS)
+    made = study.create_study(store, "repeats", [number])
+    found = study.suggest(store, made["study_id"], CONFIGURATION, trials=6)
+    names = [one["name"] for one in found["trials"]]
+    assert names
+    assert len(set(names)) == len(names)
+    first = found["trials"][0]
+    study.extend_study(store, made["study_id"], [run(store, first["kind"], first["parameters"])])
+    again = study.suggest(store, made["study_id"], CONFIGURATION, trials=6)
+    assert first["name"] not in [one["name"] for one in again["trials"]]
+
+
+@pytest.mark.parametrize(("verdict", "supposes"), [("nothing", True), ("missing", False)])
+def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, supposes):
+    pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0), Pair("cogging", "spring", 1.5, 8.0, 9.0, 4.0))
+    pick = Pick("one", 0.5, 1.0, 7.0, ("spring", None), 0.01)
+    told = SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict=verdict))
+    assert "rises from 1.0 to 7.0" in told
+    assert ("That holds if one of Spring or cable torque and Cogging is missing" in told) == supposes
 
 
 def test_suggestions_start_from_the_diagnosis_that_was_made(store, made, found, monkeypatch):

@@ -22,8 +22,8 @@ from compensator.lab.rows.dataset import Dataset
 from drivers.errors import DriveError
 
 
-def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choice]) -> list[Option]:
-    """The options whose trials the model's joint completes.
+def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choice], once: bool = False) -> list[Option]:
+    """The options whose trials the model's joint completes; `once` says that each tells nothing more the second time.
 
     Raises:
         StudyError: the model or the rig does not say how the joint moves.
@@ -39,12 +39,17 @@ def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choic
             except (BenchError, DriveError):
                 continue  # it stalls, trips or does not settle
             whole = tuple(_as_measured(one, fit.dataset, cold) for one in recordings)
-            options.append(Option(choice.name, choice.duration_s / 60.0, whole))
+            options.append(Option(choice.name, choice.duration_s / 60.0, whole, once))
     return options
 
 
 def choose(
-    fit: Fit, diagnosis: Diagnosis, configuration: BenchConfiguration, found: Sequence[Choice], most: int
+    fit: Fit,
+    diagnosis: Diagnosis,
+    configuration: BenchConfiguration,
+    found: Sequence[Choice],
+    most: int,
+    once: bool = False,
 ) -> tuple[Suggestion, list[Choice]]:
     """What separates the rivals of a diagnosis most, and the experiments to start for it, in the same order.
 
@@ -54,11 +59,12 @@ def choose(
         configuration: of the bench.
         found: experiments that it could run.
         most: how many are chosen at most.
+        once: each tells nothing more the second time: the bench repeats its very samples.
 
     Raises:
         StudyError, LabError: as `predicted` and `suggest`.
     """
-    suggestion = suggest(fit, diagnosis, predicted(fit, configuration, found), most)
+    suggestion = suggest(fit, diagnosis, predicted(fit, configuration, found, once), most)
     by_name = {choice.name: choice for choice in found}
     return suggestion, [by_name[pick.name] for pick in suggestion.picks]
 

@@ -1,6 +1,6 @@
 """The trials that would separate the rivals of a diagnosis most, chosen one by one by predicted d' per minute."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -35,11 +35,13 @@ class Option:
         name: unique among the options.
         minutes: of bench time.
         recordings: what it would show, by the model fitted so far: motion, conditions, effort.
+        once: again, it would show the very same samples.
     """
 
     name: str
     minutes: float
     recordings: tuple[Recording, ...]
+    once: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +224,7 @@ class _Choice:
         measured = known = self._separation.measured
         picks: list[Pick] = []
         while self._pairs and len(picks) < most and self._smallest(known) < enough:
-            best = self._best(known)
+            best = self._best(known, {pick.name for pick in picks})
             if best is None:
                 break
             picks.append(self._pick(best, known))
@@ -262,15 +264,16 @@ class _Choice:
     def _smallest(self, equations: Equations) -> float:
         return float(self._all(equations).min())
 
-    def _best(self, known: Equations) -> int | None:
+    def _best(self, known: Equations, picked: Collection[str]) -> int | None:
         """The option after which the chance of a wrong name falls most per minute; where it is small, d' rises most."""
         before = self._all(known)
         afters = [self._all(known + brings) for brings in self._brings]
         falls = [_risk(before) - _risk(after) for after in afters]
         rises = [float(after.min() - before.min()) for after in afters]
         minutes = [option.minutes for option in self._options]
+        told = [option.once and option.name in picked for option in self._options]
         for gains, least in ((falls, LEAST_FALL), (rises, LEAST_RISE)):
-            useful = [index for index, gain in enumerate(gains) if gain > least]
+            useful = [index for index, gain in enumerate(gains) if gain > least and not told[index]]
             if useful:
                 return max(useful, key=lambda index: gains[index] / minutes[index])
         return None

@@ -127,6 +127,14 @@ def test_of_equal_trials_the_shorter_is_chosen(fit, diagnosis):
     assert not any(pick.name.startswith("slow") for pick in found.picks)
 
 
+def test_what_would_show_the_very_same_again_is_chosen_once(fit, diagnosis):
+    one = options(HEAVY)[4]
+    again = suggest(fit, diagnosis, [one], most=3)
+    assert [pick.name for pick in again.picks] == [one.name] * len(again.picks)
+    assert len(again.picks) > 1
+    assert [pick.name for pick in suggest(fit, diagnosis, [replace(one, once=True)], most=3).picks] == [one.name]
+
+
 def test_nothing_is_suggested_once_a_name_is_sure():
     sure = fitted(Joint(extra=lambda x: 0.05 * np.abs(x.v)), plans())
     diagnosis = diagnose(sure)
