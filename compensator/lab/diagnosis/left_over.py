@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from compensator.lab.diagnosis.constancy import Change, change_of
 from compensator.lab.diagnosis.constants import Constants
 from compensator.lab.diagnosis.following import Following, following_of
-from compensator.lab.diagnosis.orders import Line, line_of
+from compensator.lab.diagnosis.orders import Line, growing_of, line_of
 from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.diagnosis.ripple import ripple_of
 from compensator.lab.diagnosis.swinging import Swing, swing_of
@@ -18,6 +18,7 @@ from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_
 from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Evidence
 
+PERIODIC = ("order",)  # shape of what goes round with the position
 PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
 
 
@@ -97,6 +98,12 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     white = WhiteRows.of(grown)
     if white is None:
         return None
-    found = (line_of(grown, white), following_of(grown, white))
+    found = (line_of(grown, white), following_of(grown, white), _growing(grown, white, named.block.name))
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None
+
+
+def _growing(grown: Candidates, white: WhiteRows, name: str) -> Line | None:
+    """What grows with the speed at the very order of an effect that goes round with the position, and is named."""
+    term = next(term for term in grown.fit.terms if term.effect.name == name)
+    return growing_of(grown, white, term.shape[0]) if term.effect.shape_names == PERIODIC else None

@@ -9,12 +9,13 @@ A line in one stretch may be of time as well as of position, so that the others 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from compensator.lab.diagnosis.white_rows import CHANCE, FORETOLD, WhiteRows
 from compensator.lab.effects.effect import Motion
+from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import FloatArray
@@ -40,6 +41,7 @@ class Line:
         chance: of such a line at any order, in noise alone.
         share: its root mean square over the effort's.
         foretold: its evidence (2 ln L) in each stretch by the coefficients of all others, without the best stretch.
+        growing: its amplitude grows with the square of the speed.
     """
 
     order: float
@@ -47,6 +49,7 @@ class Line:
     chance: float
     share: float
     foretold: float
+    growing: bool = False
 
     @property
     def is_there(self) -> bool:
@@ -106,12 +109,32 @@ def line_of(gathered: Candidates, white: WhiteRows) -> Line | None:
     if chance > CHANCE:
         return None
     columns = path.columns(orders[best : best + 1]) * (path.direction[:, None] if against else 1.0)
+    line = _line(gathered, white, columns, float(orders[best]), chance)
+    line = replace(line, against_motion=bool(against))
+    return line if line.is_there else None
+
+
+def growing_of(gathered: Candidates, white: WhiteRows, order: float) -> Line | None:
+    """The line of one order [rad per unit of position] that grows with the square of the speed; None where none does.
+
+    A force that goes round with the joint is as large at any speed. What grows so is an acceleration: one that the
+    joint has of a wheel off its centre, or one that never was, of an angle that is misread.
+    """
+    path = _Path.of(gathered)
+    columns = path.columns(np.array([order])) * path.speed[:, None] ** 2
+    beside = orthonormal(white.beside(columns))
+    size = float(np.sum((white.residual @ beside) ** 2))
+    line = _line(gathered, white, columns, order, white.noise.chance(size, max(beside.shape[1], 1)))
+    return replace(line, growing=True) if line.is_there else None
+
+
+def _line(gathered: Candidates, white: WhiteRows, columns: FloatArray, order: float, chance: float) -> Line:
+    """The line of cosine and sine (n, 2) of an order [rad per unit of position]."""
     coefficients, foretold = white.foretold(white.beside(columns))
     own, basis = columns @ coefficients, gathered.as_measured(WITH_CHAIN).basis
     share = rms((own - basis @ (basis.T @ own)) / gathered.weights) / rms(gathered.fit.dataset.effort[gathered.rows])
     cycles = 2.0 * np.pi if gathered.fit.dataset.facts.joint == "linear" else 1.0
-    line = Line(float(orders[best]) / cycles, bool(against), chance, share, foretold)
-    return line if line.is_there else None
+    return Line(order / cycles, False, chance, share, foretold)
 
 
 def _orders(path: _Path) -> FloatArray:

@@ -22,6 +22,7 @@ from compensator.lab.screening.evidence import Block, score_of
 
 NAME = "later in the session"
 LEAST_PART = 0.1  # of what tells of the effect, before the change and after it
+LEAST_CHANGE = 0.1  # of its size: by less, a formula that is nearly right seems to change between loads
 MOST_CHANGES = 24  # that are tried
 
 
@@ -60,9 +61,12 @@ def change_in_session(explained: Fit, gathered: Candidates, named: Block) -> InS
     own = changed.coefficients[-1 - len(explained.terms[-1].coefficients) : -1]
     fitted = explained.terms[-1].coefficients
     size = float(own @ fitted / (fitted @ fitted))
+    change = float(changed.coefficients[-1])
+    if abs(change) < LEAST_CHANGE:
+        return None
     first = int(explained.dataset.trial_index[np.flatnonzero(place == likeliest)[0]])
     trial = explained.dataset.trials[first].signals.recording.name
-    return InSession(trial, size, size + float(changed.coefficients[-1]))
+    return InSession(trial, size, size + change)
 
 
 def _share(explained: Fit) -> FloatArray:

@@ -120,7 +120,7 @@ def unexplained_in_words(
 def recurring_in_words(line: Line, facts: Facts) -> str:
     """What comes back with the position, how often, and where to look."""
     per = "a turn of the joint" if facts.joint == "rotary" else f"per {facts.position_unit}"
-    way = ", against the motion" if line.against_motion else ""
+    way = ", against the motion" if line.against_motion else ", and grows with the speed" if line.growing else ""
     return f"comes back with the position about {line.order:.3g} times {per}{way}: look at what goes round so often"
 
 

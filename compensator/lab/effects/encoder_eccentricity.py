@@ -21,8 +21,9 @@ def columns(motion: Motion, shape: Shape) -> FloatArray:
 
 
 def discrepancy(motion: Motion, shape: Shape) -> FloatArray:
-    """Twice as often round: what is off its centre is seldom round."""
-    return columns(motion, (2.0 * shape[0],))
+    """A speed that is late, having been measured over a while; and all of it twice as often round: no disc is round."""
+    late = [rate_of_change(speed, 1.0 / motion.step_s) for speed in _rates(motion, shape[0])]
+    return np.array([*late, *columns(motion, (2.0 * shape[0],))])
 
 
 def misreads(motion: Motion, shape: Shape) -> FloatArray:

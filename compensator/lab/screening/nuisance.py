@@ -16,28 +16,27 @@ from compensator.lab.rows.dataset import Dataset
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
 KNOWN_PLAY = {"known_play_less": 0.6, "known_play": 1.0, "known_play_more": 1.6}  # of what the owner knows: not missing
-STIFFNESS_TOLD = ((1.0, 0.1),)  # share of what the owner knows, damping: in steady sliding, far below any resonance
-STIFFNESS_ABOUT = tuple((share, damping) for share in (0.8, 1.25) for damping in elasticity.DAMPINGS)  # tolerance
+# shares of what the owner knows, as far as data sheets are off, and dampings
+STIFFNESS_ABOUT = tuple((share, damping) for share in (0.8, 1.25) for damping in elasticity.DAMPINGS)
 
 
 def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[str, FloatArray]:
     """Each nuisance column by name, shape (N,).
 
     The far side of teeth and shaft is not where the motor side is that is measured: what follows from the free play
-    and the stiffness that are known is not missing. Near reversals a delay looks like memory: there its own column
-    stands too, and that of flying through the free play.
+    and the stiffness that are known is not missing, be it near a reversal or where slow motion changes flanks. Near
+    reversals a delay looks like memory: there its own column stands too.
     """
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
     named = dict(zip(NAMES, stack.T, strict=True))
     named |= _far_side_weight(dataset)
-    named |= _known_stiffness(dataset, STIFFNESS_TOLD if show_in == "sliding" else STIFFNESS_ABOUT)
-    if show_in == "sliding":
-        return named
-    named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
+    named |= _known_stiffness(dataset, STIFFNESS_ABOUT)
     if dataset.facts.backlash_rad:
         gaps = [(share * dataset.facts.backlash_rad,) for share in KNOWN_PLAY.values()]
         found = dataset.unchecked_columns(backlash.EFFECT, gaps)
         named |= {name: columns[:, 0] for name, columns in zip(KNOWN_PLAY, found, strict=True)}
+    if show_in == "moving":
+        named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
     return named
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import left_over
+from compensator.lab.diagnosis import families, left_over
 from compensator.lab.diagnosis.diagnose import diagnose
 from tests.lab.diagnosis.judged import fitted
 
@@ -38,6 +38,22 @@ def test_what_is_little_beside_the_named_effect_is_not_told(monkeypatch):
     assert diagnosed(nearly_a_cosine).remains
     monkeypatch.setattr(left_over, "PART_OF_NAMED", 1.0)
     assert not diagnosed(nearly_a_cosine).remains
+
+
+def test_a_force_that_goes_round_is_as_large_at_any_speed(monkeypatch):
+    """What grows with the square of the speed is an acceleration, and that may be one that never was."""
+    monkeypatch.setattr(families, "_what_remains", lambda *_: [])  # so much of it is told as such, too
+    found = diagnose(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * (1.0 + 0.5 * x.v**2)))
+    assert found.classes[0][0] == "cogging"
+    (told,) = [note for note in found.notes if "in part" in note]
+    assert f"about {ORDER:.0f} times a turn of the joint, and grows with the speed" in told
+    assert found.remains
+
+
+def test_a_force_that_goes_round_does_not_grow():
+    found = diagnose(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q)))
+    assert found.classes[0][0] == "cogging"
+    assert not found.remains, found.notes
 
 
 @pytest.mark.parametrize("seed", range(2))

@@ -130,10 +130,11 @@ def test_what_falls_may_fall_with_the_way_instead_of_time():
         before += float(way.sum())
 
 
-def test_an_angle_may_be_misread_twice_as_often_round():
+def test_an_angle_may_be_misread_twice_as_often_round_and_a_speed_late():
     found = effect_named("encoder_eccentricity").discrepancy(motion(), (2.0,))
-    rates = [slope(part(4.0 * motion().position)) for part in (np.cos, np.sin)]
-    assert found == pytest.approx(np.array([*(0.3 * slope(rate) for rate in rates), *rates]))
+    once, twice = ([slope(part(order * motion().position)) for part in (np.cos, np.sin)] for order in (2.0, 4.0))
+    late = [slope(rate) for rate in once]
+    assert found == pytest.approx(np.array([*late, *(0.3 * slope(rate) for rate in twice), *twice]))
 
 
 def misread(one: Recording) -> Recording:

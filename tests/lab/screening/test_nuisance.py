@@ -9,6 +9,7 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing
 from compensator.lab.screening.nuisance import far_side_weight, nuisance_columns
@@ -61,6 +62,15 @@ def test_which_columns_stand_there_is_a_matter_of_the_joint_not_of_the_trials():
     unloaded = dataset_of(told, TRIALS[:1])
     for show_in in ("sliding", "moving"):
         assert [*nuisance_columns(unloaded, show_in)] == [*nuisance_columns(dataset_of(told), show_in)]
+
+
+def test_known_teeth_and_shafts_are_not_missing_in_slow_motion_either():
+    told = replace(FACTS, backlash_rad=GAP_RAD, stiffness_n_m_rad=STIFFNESS_N_M_RAD, arm_inertia_kg_m2=0.012)
+    dataset = with_own_prediction(fitted(told))
+    sliding, moving = (nuisance_columns(dataset, show_in) for show_in in ("sliding", "moving"))
+    assert {*moving} - {*sliding} == {"delay"}
+    flying = sliding["known_play"][dataset.regime == Regime.SLIDING]
+    assert np.abs(flying).max() > 0.0
 
 
 def dataset_of(facts: Facts, trials: list[Plan] = TRIALS) -> Dataset:
