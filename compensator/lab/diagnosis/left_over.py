@@ -20,6 +20,7 @@ from compensator.lab.screening.evidence import Evidence
 
 PERIODIC = ("order",)  # shape of what goes round with the position
 PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
+JUMPS_BESIDE_NAMED = 1e-4  # chance: what a formula that is nearly right leaves of friction may have two values, nearly
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +68,11 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, None, swing)
     constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
     change = change_of(constants)
+    plain = _is_plain(gathered.fit)
     wandering = wandering_of(constants) if change is None else None
-    white = WhiteRows.of(gathered) if _is_plain(gathered.fit) else None
+    if wandering is not None and wandering.jumps and not plain and wandering.chance > JUMPS_BESIDE_NAMED:
+        wandering = None
+    white = WhiteRows.of(gathered) if plain else None
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
     swing = swing or ripple_of(gathered, white)

@@ -7,11 +7,13 @@ from compensator.lab.diagnosis import cells
 from compensator.lab.diagnosis.constancy import change_of
 from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.left_over import JUMPS_BESIDE_NAMED, left_over
 from compensator.lab.diagnosis.wandering import wandering_of
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import gather_curves
 from tests.lab.diagnosis.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
@@ -99,6 +101,16 @@ def test_a_jump_that_is_too_small_for_its_variance_is_told_by_its_two_values():
     assert found.jumps
     assert found.size == pytest.approx(2.0 * SMALL * COULOMB_N_M, rel=0.5)
     assert "jumps between two values" in diagnose(fit).sentence
+
+
+def test_beside_a_name_jumps_are_asked_to_be_surer():
+    fit = fitted(jumping(SMALL))
+    found = judged(fit)
+    assert found is not None
+    assert found.chance > JUMPS_BESIDE_NAMED
+    assert left_over(gather_curves(fit)).wandering is not None
+    named = fit_effects(fit.dataset, [*fit.names, "viscous_asymmetry"], fit.training)
+    assert left_over(gather_curves(named)).wandering is None
 
 
 @pytest.mark.parametrize(
