@@ -130,25 +130,30 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
     columns, unit = columns[:, kept], units[fit.training]
     bounds = fit.bounds.of(kept)
     gram, moment = columns.T @ columns, columns.T @ effort
-    residual, doubt = np.zeros(len(units)), np.zeros(len(units))
+    residual, doubt = np.zeros(len(units)), np.zeros(len(unit))
     for label in np.unique(unit):
         own = unit == label
         inside = columns[own]
         rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
         seen = rows & (units == label)
         residual[seen] = fit.target[seen] - fit.columns[seen][:, kept] @ rest
-        doubt[seen] = _doubt(fit, kept, gram, gram - inside.T @ inside, seen)
+        doubt[own] = _doubt(inside, gram)
         if fit.dataset.is_bent and seen.any():
             residual[seen] -= _beyond_tangent(fit, kept, rest, seen)
-    return replace(_result(fit, kind, rows, residual[rows], units[rows]), doubt=doubt[rows])
+    return replace(_result(fit, kind, rows, residual[rows], units[rows]), doubt=doubt[rows[fit.training]])
 
 
-def _doubt(fit: Fit, kept: BoolArray, whole: FloatArray, rest: FloatArray, rows: BoolArray) -> FloatArray:
-    """Variance of predictions of rows (N,) by what the rest tells, normal equations (k, k), over that of the noise."""
+def _doubt(own: FloatArray, whole: FloatArray) -> FloatArray:
+    """Variance of predictions of weighted rows (n, k) by all others, over that of the noise.
+
+    Args:
+        own: the rows that are left out.
+        whole: normal equations of all rows, these included, shape (k, k).
+    """
     scale = 1.0 / np.sqrt(np.maximum(np.diag(whole), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(rest * np.outer(scale, scale))
-    turned = (fit.weight[rows, None] * fit.columns[rows][:, kept] * scale) @ vectors
-    found: FloatArray = np.sum(turned**2 / np.maximum(values, UNDETERMINED), axis=1)
+    own = own * scale
+    values, vectors = np.linalg.eigh(whole * np.outer(scale, scale) - own.T @ own)
+    found: FloatArray = (own @ vectors) ** 2 @ (1.0 / np.maximum(values, UNDETERMINED))
     return found
 
 
