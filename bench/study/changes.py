@@ -13,8 +13,6 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 
-NOTABLE = 0.05  # of a gain: how far it is from that of the errors beside it, before somebody wonders why
-
 
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
     """Refit with one more effect and keep the child model.
@@ -90,9 +88,4 @@ def _sentence(what: str, error: str, before: float, after: float, gain: Gain) ->
         advice = "It harms: drop it."
     else:
         advice = "The interval includes no change: these trials do not show that it is needed."
-    alone = abs(gain.value - (1.0 - after / before)) > NOTABLE if before > 0.0 else False
-    evenly = "; trials that the others tell nothing of count little in it" if alone else ""
-    return (
-        f"{what} changes the {error} from {before:.2%} to {after:.2%} "
-        f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%}{evenly}). {advice}"
-    )
+    return f"{what} changes the {error} from {before:.2%} to {after:.2%} ({gain.in_words(before, after)}). {advice}"

@@ -61,8 +61,7 @@ def _provisional(dataset: Dataset, curve: Provisional) -> dict[str, Any]:
         "gain_high": gain.high,
         "sentence": (
             f"Until its physics is known, {curve.effect.name} can stand in the model as a provisional term: held-out "
-            f"error {curve.before:.2%} to {curve.after:.2%} (gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. "
-            f"{gain.high:.1%})."
+            f"error {curve.before:.2%} to {curve.after:.2%} ({gain.in_words(curve.before, curve.after)})."
         ),
         "picture": _picture(dataset, curve.picture),
     }
@@ -105,7 +104,7 @@ def _sentence(candidate: diagnosis.Candidate) -> str:
     of = " of the breakaway effort" if candidate.rows == "breakaway" else ""
     parts = [
         f"held-out error{of} {candidate.before:.2%} to {candidate.after:.2%} "
-        f"(gain {gain.value:.1%}, 90 % interval {gain.low:.1%} .. {gain.high:.1%})"
+        f"({gain.in_words(candidate.before, candidate.after)})"
     ]
     if candidate.score <= 0.0:
         parts.append("its evidence does not pay for its parameters")

@@ -177,8 +177,7 @@ def _sentence(best: Candidate, p_value: float, starts: int, units: int) -> str:
     return (
         f"{best.effect.title} is missing{also}: over {starts} starts from rest ({units} of them independent), adding "
         f"it changes the held-out error of the breakaway effort from {best.before:.2%} to {best.after:.2%} "
-        f"(gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
-        f"{chance_in_words(p_value)})."
+        f"({best.gain.in_words(best.before, best.after, 0)}; {chance_in_words(p_value)})."
     )
 
 

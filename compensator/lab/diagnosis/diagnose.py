@@ -101,8 +101,7 @@ def _explains_most(answer: Answer) -> bool:
     """Whether an effect is named that makes sense of an effort that seemed alien to the motion, as a resonance can."""
     if answer.verdict != "missing":
         return False
-    best = answer.candidates[0]
-    return best.after < EXPLAINED * best.before
+    return answer.candidates[0].gain.value > 1.0 - EXPLAINED
 
 
 def _data_problem(fit: Fit, problem: str) -> Diagnosis:
@@ -172,7 +171,7 @@ def _least_p(screening: Screening) -> dict[str, float]:
 
 def _explains_more(one: Answer, other: Answer) -> bool:
     """Whether one family's best effect has more evidence, and leaves less, than another's on the same rows."""
-    return one.strength > other.strength and one.candidates[0].after < other.candidates[0].after
+    return one.strength > other.strength and one.candidates[0].gain.value > other.candidates[0].gain.value
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

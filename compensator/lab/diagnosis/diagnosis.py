@@ -38,7 +38,7 @@ class Candidate:
         detectability: d', how far the data can tell it from its nearest rival.
         rivals: effects whose evidence mostly vanishes once this one is in the model.
         before, after: relative held-out error without and with it.
-        gain: relative fall of that error.
+        gain: relative fall of that error, rows counting by how well the other trials can predict them.
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.

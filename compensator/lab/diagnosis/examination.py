@@ -10,7 +10,7 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.gain import chance_not_worse, held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out, on_even_terms
+from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions, score_of
@@ -58,7 +58,7 @@ def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
     strong = candidate.score >= VERY_STRONG
     no_luck = candidate.p_value <= SIGNIFICANT or strong
-    falls = candidate.before**2 - candidate.after**2 >= LEAST_EXPLAINED**2
+    falls = candidate.before**2 * (1.0 - (1.0 - candidate.gain.value) ** 2) >= LEAST_EXPLAINED**2
     steady = candidate.rows == "sliding"
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     helps = candidate.gain.value >= least and falls and (candidate.gain.low > 0.0 or (steady and strong))
@@ -118,7 +118,7 @@ def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: d
 def _candidate(
     gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: set[str], nearest: float
 ) -> Candidate:
-    before, after = on_even_terms(*errors)
+    before, after = errors
     return Candidate(
         effect=effect_named(item.block.name),
         shape=_shape(item),

@@ -53,8 +53,7 @@ def answer_in_words(
     also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
     return (
         f"{title} is missing{also}: adding it changes the held-out error from {best.before:.2%} to "
-        f"{best.after:.2%} (gain {best.gain.value:.0%}, 90 % interval {best.gain.low:.0%} .. {best.gain.high:.0%}; "
-        f"{chance_in_words(p_value)})."
+        f"{best.after:.2%} ({best.gain.in_words(best.before, best.after, 0)}; {chance_in_words(p_value)})."
     )
 
 

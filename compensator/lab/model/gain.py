@@ -9,15 +9,26 @@ from compensator.lab.recordings.recording import FloatArray
 
 RESAMPLES = 999
 CONFIDENCE = 0.90
+NOTABLE = 0.05  # of a gain: how far it is from that of the errors beside it, before somebody wonders why
 
 
 @dataclass(frozen=True, slots=True)
 class Gain:
-    """Relative fall of the held-out error, 1 - after / before, with a 90 % interval."""
+    """Relative fall of the held-out error, 1 - after / before, on even terms, with a 90 % interval."""
 
     value: float
     low: float
     high: float
+
+    def is_unlike(self, before: float, after: float) -> bool:
+        """Whether it is notably not what the errors themselves have, each row counting alike."""
+        return before > 0.0 and abs(self.value - (1.0 - after / before)) > NOTABLE
+
+    def in_words(self, before: float, after: float, digits: int = 1) -> str:
+        """The gain and its interval, beside relative errors."""
+        evenly = "; trials that the others tell nothing of count little in it" if self.is_unlike(before, after) else ""
+        value, low, high = (f"{one:.{digits}%}" for one in (self.value, self.low, self.high))
+        return f"gain {value}, 90 % interval {low} .. {high}{evenly}"
 
 
 def held_out_gain(before: HeldOut, after: HeldOut, seed: int = 0) -> Gain:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from compensator.lab.model.gain import chance_not_worse, error_interval, held_out_gain
+from compensator.lab.model.gain import Gain, chance_not_worse, error_interval, held_out_gain
 from compensator.lab.model.validation import HeldOut, relative_error, rms
 
 PER_UNIT = 30
@@ -79,3 +79,10 @@ def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
     assert evenly.value == pytest.approx(plain.value, abs=0.1)
     assert chance_not_worse(replace(spoilt, doubt=guess**2), before) > 0.95
     assert held_out_gain(before, replace(after, doubt=np.zeros(len(guess)))) == plain
+
+
+@pytest.mark.parametrize(("after", "unlike"), [(0.05, False), (0.052, False), (0.09, True), (0.2, True)])
+def test_a_gain_that_the_errors_beside_it_do_not_have_is_explained(after, unlike):
+    words = Gain(0.5, 0.4, 0.6).in_words(0.1, after, 0)
+    assert words.startswith("gain 50%, 90 % interval 40% .. 60%")
+    assert ("trials that the others tell nothing of count little in it" in words) == unlike
