@@ -14,7 +14,7 @@ from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset
 
-FEWEST_ROWS = 8  # of a stretch
+FEWEST_ROWS = 8  # of a stretch, each as far as the model determines its effort
 FEWEST_STRETCHES = 10
 LARGER = 4.0  # of a stretch's scatter over the median one's; noise gives less than 2, weighted by its motion
 MOST = 0.4  # share of the stretches: more are not a few
@@ -56,7 +56,8 @@ def bursts_of(dataset: Dataset, residual: FloatArray, weights: FloatArray, rows:
     labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
     count = np.bincount(stretch, minlength=len(labels))
     power = np.bincount(stretch, weights=(residual * weights) ** 2, minlength=len(labels))
-    enough = count >= FEWEST_ROWS
+    known = np.bincount(stretch, weights=dataset.steadiness[rows] ** 2, minlength=len(labels))
+    enough = known >= FEWEST_ROWS
     if int(enough.sum()) < FEWEST_STRETCHES:
         return Bursts(float("nan"), 0, int(enough.sum()), ())
     scatter = np.sqrt(power / np.maximum(count, 1))
@@ -66,7 +67,7 @@ def bursts_of(dataset: Dataset, residual: FloatArray, weights: FloatArray, rows:
     wild = enough & (scatter >= LARGER * usual)
     _, first = np.unique(stretch, return_index=True)
     trials = np.unique(dataset.trial_index[rows][first[wild]])
-    left = sum(_power(residual[stretch == one]) for one in np.flatnonzero(wild))
+    left = sum(_power((residual * dataset.steadiness[rows])[stretch == one]) for one in np.flatnonzero(wild))
     effort = dataset.effort[rows]
     of_effort = float(np.sqrt(left / (effort @ effort)))
     largest = float(scatter[enough].max() / usual)

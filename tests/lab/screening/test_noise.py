@@ -25,6 +25,7 @@ def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
         trials=tuple(SimpleNamespace(motion=SimpleNamespace(velocity=one)) for one in velocity),
         rows_of=np.concatenate,
         effort=np.full(TRIALS * ROWS, EFFORT),
+        steadiness=np.ones(TRIALS * ROWS),
         time_of=lambda _trial: time_s,
         trial_index=np.repeat(np.arange(TRIALS), ROWS),
         block_index=np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)]),
@@ -191,3 +192,13 @@ def test_bursts_are_stretches_that_scatter_more_than_the_others():
     assert found.of_effort == pytest.approx(np.sqrt(burst @ burst / len(ALL)) / EFFORT, rel=0.01)
     residual[ROWS + 7] = 1e3
     assert bursts_of(dataset(), residual, weights, ALL).of_effort == pytest.approx(found.of_effort, rel=0.5)
+
+
+def test_a_stretch_whose_effort_the_model_does_not_determine_is_no_burst():
+    """As of a voltage while no current flows, which may be anything up to what the power stage loses."""
+    residual, weights, told = coloured(np.random.default_rng(5)), np.ones(len(ALL)), dataset()
+    residual[ROWS : ROWS + 40] *= 12.0
+    told.steadiness[ROWS : ROWS + 40] = 0.4
+    found = bursts_of(told, residual, weights, ALL)
+    assert found.of == bursts_of(dataset(), residual, weights, ALL).of - 1
+    assert not found.are_there
