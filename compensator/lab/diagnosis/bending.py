@@ -16,9 +16,8 @@ from compensator.lab.screening.candidates import Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Evidence, among_all, score_of, screen_against_noise
 
-STRONG = (
-    6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995): where the held-out error must fall for sure, too
-)
+# of a score, twice a log Bayes factor (Kass, Raftery 1995); beside it the held-out error must fall for sure
+STRONG = 6.0
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from compensator.lab.diagnosis.waves import Waves
 from compensator.lab.diagnosis.white_rows import CHANCE, FORETOLD, WhiteRows
 from compensator.lab.effects.effect import Motion
 from compensator.lab.model.linear import orthonormal
@@ -26,7 +27,6 @@ MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
 SLOW = 0.1  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
-APART = 1e-3  # of cosine and sine, likewise
 TINY = float(np.finfo(float).tiny)
 LEAST_OF_EFFORT = 0.0005  # root mean square: no sensor is more linear
 
@@ -154,16 +154,5 @@ def _sizes(path: _Path, white: WhiteRows, orders: FloatArray) -> FloatArray:
 
 def _sizes_of(white: WhiteRows, columns: FloatArray) -> FloatArray:
     """Of cosines and sines (n, 2m); 0 where they cannot be told from the model, or from each other."""
-    columns = white.whitening.whitened(columns)
-    taken = white.basis.T @ columns
-    whole = np.einsum("nk,nk->k", columns, columns)
-    left = whole - np.einsum("bk,bk->k", taken, taken)
-    half = columns.shape[1] // 2
-    both = np.einsum("nk,nk->k", columns[:, :half], columns[:, half:])
-    both -= np.einsum("bk,bk->k", taken[:, :half], taken[:, half:])
-    (cosine, sine), (a, b) = np.split(white.residual @ columns, 2), np.split(left, 2)
-    area = a * b - both**2
-    told = np.all(np.reshape(left > NEW * whole, (2, half)), axis=0) & (area > APART * a * b)
-    size = (b * cosine**2 - 2.0 * both * cosine * sine + a * sine**2) / np.where(told, area, 1.0)
-    found: FloatArray = np.where(told, size, 0.0)
-    return found
+    waves = Waves.of(white.whitening.whitened(columns), white.basis, white.residual)
+    return waves.where(np.all(waves.left > NEW * waves.whole, axis=0))

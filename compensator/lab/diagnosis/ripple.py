@@ -20,6 +20,7 @@ from compensator.lab.diagnosis.swinging import (
     is_peak,
     voltage_of,
 )
+from compensator.lab.diagnosis.waves import Waves
 from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
@@ -30,7 +31,6 @@ MOST_OF_TRIAL = 5.0  # of half of what it gains: noise alone has so much once in
 LINE_HZ = 0.2  # from its middle on: what is further away is not of it
 AT_ONCE = 2**21  # values of columns
 NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
-APART = 1e-3  # of cosine and sine, likewise
 STEP = 0.05  # of a sum's distribution
 
 Indices = np.ndarray[tuple[int], np.dtype[np.intp]]
@@ -94,15 +94,5 @@ def _gains(
 
 def _gained(columns: FloatArray, basis: FloatArray, residual: FloatArray) -> FloatArray:
     """By cosines and sines (n, 2m) of one trial, beside what the model explains; 0 where they are not apart from it."""
-    half = columns.shape[1] // 2
-    taken = basis.T @ columns
-    whole = np.einsum("nk,nk->k", columns, columns)
-    left = whole - np.einsum("bk,bk->k", taken, taken)
-    both = np.einsum("nk,nk->k", columns[:, :half], columns[:, half:])
-    both -= np.einsum("bk,bk->k", taken[:, :half], taken[:, half:])
-    (cosine, sine), (a, b) = np.split(residual @ columns, 2), np.split(left, 2)
-    area = a * b - both**2
-    told = (a + b > NEW * (whole[:half] + whole[half:])) & (area > APART * a * b)
-    size = (b * cosine**2 - 2.0 * both * cosine * sine + a * sine**2) / np.where(told, area, 1.0)
-    found: FloatArray = np.where(told, 0.5 * size, 0.0)
-    return found
+    waves = Waves.of(columns, basis, residual)
+    return 0.5 * waves.where(waves.left.sum(axis=0) > NEW * waves.whole.sum(axis=0))
