@@ -75,15 +75,15 @@ def _ranking(diagnosis: dict[str, Any]) -> Table:
         (
             one["title"],
             one["score"],
+            100 * one["held_out_before"],
             100 * one["held_out_after"],
             f"{one['gain']:.1%} ({one['gain_low']:.1%} .. {one['gain_high']:.1%})",
             ", ".join(one["confused_with"]) or "-",
         )
         for one in diagnosis["ranking"]
     ]
-    return Table(
-        "Effects by evidence", ["effect", "score#", "held-out error then [%]#", "gain, 90 % interval", "rivals"], rows
-    )
+    columns = ["effect", "score#", "held out before [%]#", "then [%]#", "gain, 90 % interval", "rivals"]
+    return Table("Effects by evidence", columns, rows)
 
 
 def _ladder(ladder: dict[str, Any]) -> Table:

@@ -242,6 +242,7 @@ def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
             "yes" if one["in_class"] else "",
             _number(one["score"]),
             chance_cell(one["p_value"]),
+            _percent(one["held_out_before"]),
             _percent(one["held_out_after"]),
             f"{one['gain']:.1%} ({one['gain_low']:.1%} .. {one['gain_high']:.1%})",
             _number(one["d_prime"]),
@@ -249,7 +250,7 @@ def diagnosis_section(title: str, found: Found, compared: Found) -> Section:
         )
         for one in found["ranking"]
     ]
-    columns = ["effect", "named", "score#", "p#", "held out then#", "gain, 90 % interval", "d'#", "rivals"]
+    columns = ["effect", "named", "score#", "p#", "held out before#", "then#", "gain, 90 % interval", "d'#", "rivals"]
     shown = [*([found["provisional"]] if found["provisional"] else []), *found["ranking"][:PICTURES]]
     figures = [figure for one in shown if (figure := picture(one, compared["effort"]["unit"]))]
     tables = [Table("Effects by evidence", columns, rows)] if rows else []

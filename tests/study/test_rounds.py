@@ -86,7 +86,7 @@ def suggested(*pairs):
 
 def test_what_was_predicted_is_held_against_what_came():
     first = suggested(("spring", 1.0, 8.0), ("spring", 2.0, 6.0), ("cogging", 0.5, 5.0))
-    came = what_came(first, suggested(("spring", 7.0, 9.0), ("spring", 5.5, 9.0), ("warm_up", 1.0, 4.0)))
+    came = what_came(first, suggested(("spring", 5.5, 9.0), ("spring", 7.0, 9.0), ("warm_up", 1.0, 4.0)))
     assert came == [
         {"effect": "spring", "predicted": 6.0, "came": 5.5},
         {"effect": "cogging", "predicted": 5.0, "came": None},

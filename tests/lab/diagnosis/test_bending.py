@@ -81,6 +81,13 @@ def test_a_name_with_less_evidence_is_but_a_part_though_no_held_out_error_falls(
     assert still_bending(*named_in(bent, "spring"))
 
 
+def test_a_name_beside_which_nothing_bends_any_more_is_all_of_it_though_it_has_less_evidence(bent, monkeypatch):
+    fit, gathered, named = named_in(bent, "spring")
+    monkeypatch.setattr(own, "score_of", lambda bases, *_: 1e6 if bases is gathered.bases else -1.0)
+    monkeypatch.setattr(own, "bending", lambda *_: None)
+    assert not still_bending(fit, gathered, named)
+
+
 def test_a_name_that_is_right_leaves_nothing_that_bends():
     assert not still_bending(*named_in(fit_of(asymmetry), "viscous_asymmetry"))
 

@@ -65,6 +65,17 @@ def test_what_was_always_there_is_the_same():
     assert change(lambda trial: 0.04) is None
 
 
+def test_what_changes_by_a_little_may_be_what_the_formula_leaves_open(monkeypatch):
+    def a_little(trial: int) -> float:
+        return 0.4 if trial >= 11 else 0.38
+
+    assert change(a_little) is None
+    monkeypatch.setattr(session_constancy, "LEAST_CHANGE", 0.01)
+    found = change(a_little)
+    assert found is not None
+    assert found.since - found.before == pytest.approx(0.05, rel=0.3)
+
+
 def test_trials_are_put_in_the_order_in_which_they_were_recorded():
     shuffled = np.random.default_rng(3).permutation(len(TRIALS))
     found = change(slipped, [int(one) for one in shuffled])

@@ -1,11 +1,13 @@
 """What swings at one frequency in most trials is told from noise, and from what follows the motion."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from compensator.lab.diagnosis import ripple
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.left_over import left_over
 from compensator.lab.diagnosis.ripple import MOST_OF_TRIAL, chance_of_sum, ripple_of
@@ -22,23 +24,26 @@ from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
 SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
-SMALL_RIPPLE = 0.002
+SMALL_RIPPLE = 0.0019
 
 
 def recorded(extra=None, seed=0, noise=BENCH.noise) -> list[Recording]:
     return recordings(Joint(extra=extra), replace(BENCH, noise=noise), plans(), seed)
 
 
-def rippling(made: list[Recording], share: float, seed: int = 7) -> list[Recording]:
+def rippling(
+    made: list[Recording], share: float, seed: int = 7, at_hz: Sequence[float] = (RIPPLE_HZ,)
+) -> list[Recording]:
     """The same, the motor driven by a voltage that goes with the torque, and a supply that ripples by a share of it."""
     random, found = np.random.default_rng(seed), []
     for one in made:
         channels = one.channels
         duty = channels["torque_n_m"] / 2.0
-        phase = random.uniform(-np.pi, np.pi)
-        ripple = share * np.sin(2.0 * np.pi * RIPPLE_HZ * channels["time_s"] + phase)
+        phases = random.uniform(-np.pi, np.pi, len(at_hz))
+        turns = 2.0 * np.pi * np.outer(channels["time_s"], at_hz)
+        swings = share * np.sin(turns + phases).sum(axis=1)
         supply = np.full_like(duty, SUPPLY_V)
-        more = {"duty": duty, "supply_v": supply, "torque_n_m": channels["torque_n_m"] * (1.0 + ripple)}
+        more = {"duty": duty, "supply_v": supply, "torque_n_m": channels["torque_n_m"] * (1.0 + swings)}
         found.append(replace(one, channels={**channels, **more}))
     return found
 
@@ -92,6 +97,25 @@ def test_a_ripple_that_is_too_small_for_its_power_alone_is_told_by_a_matched_fil
 @pytest.mark.parametrize("seed", range(3))
 def test_what_does_not_ripple_is_not_said_to(seed):
     assert rippled(fitted(rippling(recorded(seed=seed, noise=0.004), 0.0))) is None
+
+
+def test_a_band_of_frequencies_is_no_line():
+    band_hz = np.arange(1.0, 2.6, 0.15)
+    assert rippled(fitted(rippling(recorded(seed=1, noise=0.004), SMALL_RIPPLE, at_hz=band_hz))) is None
+
+
+def test_what_few_trials_have_at_another_frequency_does_not_hide_the_line_of_all():
+    made = rippling(recorded(seed=1, noise=0.004), 0.0028)
+    few = rippling(recorded(seed=1, noise=0.004)[:3], 6.0 * 0.0028, at_hz=(3.1,))
+    found = rippled(fitted([*few, *made[3:]]))
+    assert found is not None
+    assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
+
+
+def test_a_line_is_paid_for_by_all_frequencies_that_were_tried(monkeypatch):
+    fit = fitted(rippling(recorded(seed=1, noise=0.004), SMALL_RIPPLE))
+    monkeypatch.setattr(ripple, "chance_of_sum", lambda _: 0.1 * ripple.CHANCE)
+    assert rippled(fit) is None
 
 
 def test_where_no_voltage_is_known_nothing_ripples_with_it():
