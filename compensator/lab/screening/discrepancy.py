@@ -6,12 +6,14 @@ discrepancy). So candidates are judged on top of
 
 - the tangent of every fitted shape,
 - columns that an effect itself says its truth may differ by (`Effect.discrepancy`),
-- what all other effects make of an angle that one of them says is misread (`Effect.misreads`), and
+- what all other effects make of an angle that one of them says is misread (`Effect.misreads`),
+- what friction of the load makes of gravity, springs and offset that are a little otherwise, and
 - the product of every two shares of dry friction, and of one with the other's tangents: what changes friction changes
   all of it, be it the weight, the angle or the grease, and an interaction of effects that are there is likelier than
   one more effect (Hamada, Wu 1992: effect heredity).
 """
 
+from dataclasses import replace
 from itertools import chain, combinations
 
 import numpy as np
@@ -21,6 +23,7 @@ from compensator.lab.model.fit import Fit, Term
 from compensator.lab.model.reading import at_position
 from compensator.lab.recordings.recording import FloatArray
 
+OFFSET = "offset"
 TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
 
 
@@ -35,7 +38,8 @@ def discrepancy_columns(fit: Fit) -> FloatArray:
     dataset = fit.dataset
     terms = [term for term in fit.terms if np.any(term.coefficients)]
     motions = [trial.motion for trial in dataset.trials]
-    full_rate = (np.array([*_own(terms, m), *_misread(terms, m), *_products(terms, m)]) for m in motions)
+    kinds = (_own, _misread, _carried, _products)
+    full_rate = (np.array([column for kind in kinds for column in kind(terms, m)]) for m in motions)
     first = next(full_rate)  # the others one by one: all of them at the full rate would need much memory
     return dataset.stack(chain([first], full_rate)) if len(first) else np.empty((len(dataset.effort), 0))
 
@@ -73,6 +77,28 @@ def _misread(terms: list[Term], motion: Motion) -> list[FloatArray]:
             changes = [_share(one, moved, one.shape) - _share(one, motion, one.shape) for one in others]
             found.append(np.sum(changes, axis=0))
     return found
+
+
+def _carried(terms: list[Term], motion: Motion) -> list[FloatArray]:
+    """What friction of the load makes of a load whose parts are each a little otherwise, (n,) each.
+
+    The parts that a load is made of are fitted for what they are themselves, not for what the teeth make of them. All
+    of the offset may be one of them, as what a spring pulls at angle 0, or none of it.
+    """
+    friction = [term for term in terms if term.effect.builds_on == "load" and term.effect.dry_friction]
+    found = []
+    for more in [more for term in terms for more in _more_load(term, motion)] if friction else []:
+        moved = replace(motion, load_effort=motion.load_effort + more)
+        changes = [_share(term, moved, term.shape) - _share(term, motion, term.shape) for term in friction]
+        found.append(np.sum(changes, axis=0))
+    return found
+
+
+def _more_load(term: Term, motion: Motion) -> list[FloatArray]:
+    """What a term's parts may add to the load beside what the model has of them there, (n,) each."""
+    share = 1.0 if term.effect.name == OFFSET else TANGENT_STEP if term.effect.carried else 0.0
+    parts = zip(term.coefficients, term.effect.columns(motion, term.shape), strict=True) if share else ()
+    return [share * coefficient * column for coefficient, column in parts if coefficient]
 
 
 def _products(terms: list[Term], motion: Motion) -> list[FloatArray]:

@@ -13,7 +13,7 @@ from compensator.lab.model.fit import Fit, Term, fit_model
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.discrepancy import _misread, discrepancy_columns
+from compensator.lab.screening.discrepancy import _carried, _misread, discrepancy_columns
 from tests.lab.effects.test_effects import motion, predicted, slope
 from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, Truth, recordings
 
@@ -164,6 +164,17 @@ def test_an_angle_that_is_misread_a_little_otherwise_is_left_open_in_any_phase()
     for column, part in zip(found, (np.cos, np.sin), strict=True):
         angle = size * part(TURNS * m.position)
         assert column == pytest.approx(-8.0 * 0.4 * np.sin(8.0 * m.position) * angle, abs=5e-7)
+
+
+def test_teeth_lose_a_part_of_what_a_spring_pulls_at_angle_0():
+    m = motion()
+    known = 0.3 * np.abs(m.load_effort) * m.direction
+    found = _carried([term("offset", [0.2]), term("spring", [0.5]), term("load_friction", [0.3])], m)
+    assert len(found) == 2  # the offset, which may be all of it, and a spring that is a little stiffer
+    assert found[0] == pytest.approx(0.3 * np.abs(m.load_effort + 0.2) * m.direction - known)
+    stiffer = 0.3 * np.abs(m.load_effort + 0.05 * 0.5 * m.position) * m.direction - known
+    assert found[1] == pytest.approx(stiffer)
+    assert _carried([term("offset", [0.2]), term("weight_friction", [0.3])], m) == []
 
 
 def test_every_effect_that_leaves_something_open_is_tested_here():
