@@ -7,7 +7,7 @@ import numpy as np
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.effects.effect import Shape
+from compensator.lab.effects.effect import MotionRows, Shape
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.gain import chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
@@ -28,11 +28,8 @@ VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
-    rows = gathered.show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
-    # near reversals a part of the whole error is asked for, since every chain leaves a little there
-    steady = fit.dataset.steadiness if gathered.show_in == "sliding" else None
-    before = held_out(fit, rows, steady)
-    afters = [held_out(with_effect(fit, item.block.name, _shape(item)), rows, steady) for item in evidence]
+    before = _held_out(fit, gathered.show_in)
+    afters = [_held_out(with_effect(fit, item.block.name, _shape(item)), gathered.show_in) for item in evidence]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
     candidates = []
@@ -41,6 +38,18 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
         candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
     return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
+
+
+def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
+    """The candidate with the held-out error of the model that it is added to: there, all shapes are found anew."""
+    before, after = (_held_out(model, show_in) for model in (fit, explained))
+    return replace(candidate, after=after.relative, gain=held_out_gain(before, after))
+
+
+def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
+    rows = show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
+    # near reversals a part of the whole error is asked for, since every chain leaves a little there
+    return held_out(fit, rows, fit.dataset.steadiness if show_in == "sliding" else None)
 
 
 def is_confirmed(candidate: Candidate) -> bool:

@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
+    as_in_the_ladder,
     examine,
     is_confirmed,
     is_past_scan,
@@ -98,6 +99,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         name = best.block.name
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+        examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
         sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(explained, gathered, name)
         notes = notes or _imitated(explained, gathered, best)
         remains, strength = bool(notes), best.noncentrality
