@@ -1,7 +1,7 @@
 """What breakaway events have to say: which effect is missing in the effort of breaking away from rest."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from compensator.lab.screening.evidence import (
     Base,
     Block,
     Evidence,
-    Screening,
     among_all,
+    inflation_of,
     kept_evidence,
     least_p_value,
     screen_events,
@@ -33,6 +33,7 @@ from compensator.lab.screening.evidence import (
 SPREAD = 3.0  # longest over shortest rest, or quickest over slowest rate, that shows an effect of it
 SHOWS = 0.01  # p in steady sliding, of one effect, from which it is seen there
 WITH_LAG, WITHOUT_LAG = 0, 1  # bases that effects are judged on top of
+TINY = float(np.finfo(float).tiny)
 RANGES = {"rest": "rests", "effort_rate": "rates of the effort"}
 
 
@@ -68,7 +69,8 @@ def breakaway_answer(
     lag = base.coefficients_of(LAG)
     late = lag is not None and bool(lag[0] > 0.0)  # no start is seen before it happens
     screening = screen_events(bases, blocks, unit, model=WITH_LAG if late else WITHOUT_LAG)
-    judged = _judge(base, screening, {effect.name: effect for effect in wanted})
+    evidence = screening.evidence if late else _over_one_model(base, bases, screening.evidence)
+    judged = _judge(base, evidence, {effect.name: effect for effect in wanted})
     if not judged:
         return Answer("nothing", "", 1.0, [], None, []), left_out
     before = held_out_breakaway(base)
@@ -125,10 +127,29 @@ def _blocks(base: BreakawayFit, wanted: list[Effect]) -> tuple[list[Block], list
     return blocks, bases, left_out
 
 
-def _judge(base: BreakawayFit, screening: Screening, known: dict[str, Effect]) -> list[_Judged]:
+def _over_one_model(base: BreakawayFit, bases: list[Base], evidence: list[Evidence]) -> list[Evidence]:
+    """The evidence by scores over the same model, where that has no late onset: best score first.
+
+    An onset would have to be early in it, and so is left out. Beside an effect it may be late after all: what it
+    explains then comes with the effect, and is no less to its credit than what an effect in its place explains.
+    """
+    inside = base.rows.training
+    lag = base.weight[inside] * lag_column(base.rows)[inside, 0]
+    left = [float(one.residual @ one.residual) for one in bases]
+    rows = len(lag) / max(inflation_of(one.residual) for one in bases)
+    gained = rows * float(np.log(max(left[WITHOUT_LAG], TINY) / max(left[WITH_LAG], TINY))) - float(np.log(rows))
+    found = []
+    for item in evidence:
+        late = float(lag @ bases[WITHOUT_LAG].extended(item.block.columns).residual) > 0.0
+        more = gained if late and item.block.base == WITH_LAG else 0.0
+        found.append(replace(item, score=item.score + more))
+    return sorted(found, key=lambda item: -item.score)
+
+
+def _judge(base: BreakawayFit, evidence: list[Evidence], known: dict[str, Effect]) -> list[_Judged]:
     """The best shape of every effect, best effect first, refitted."""
     found: dict[str, Evidence] = {}
-    for item in screening.evidence:
+    for item in evidence:
         found.setdefault(item.block.name, item)
     shapes = {share.name: share.shape for share in base.shares}
     judged = []

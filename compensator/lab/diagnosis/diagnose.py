@@ -15,18 +15,19 @@ from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.families import FORMULA_SHARE, Answer, answer_of
+from compensator.lab.diagnosis.families import FORMULA_SHARE, Answer, answer_of, what_remains
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import candidates, catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit, widened
+from compensator.lab.model.fit import Fit, fit_effects, widened
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Screening, kept_evidence, least_p_value, screen, screen_against_noise
+from compensator.lab.screening.own_load import on_own_load
 
 FEWEST_REVERSAL_ROWS = 40
 EXPLAINED = 0.75  # of the error: what an effect may leave of an effort that seemed alien to the motion
@@ -70,7 +71,8 @@ def diagnose(fit: Fit) -> Diagnosis:
         return _data_problem(fit, problems[0])
     others = [answer for answer in families if answer is not first]
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
-    notes = [*first.notes, *(answer.sentence for answer in others if answer.verdict == "missing")]
+    left = _left_in_sliding(fit, gathered, first) if first is memory else []
+    notes = [*first.notes, *left, *(answer.sentence for answer in others if answer.verdict == "missing")]
     if rest is not None and rest is not first:
         notes += rest.notes
     return Diagnosis(
@@ -84,7 +86,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
         left_out={**gathered.left_out, **not_judged, **not_at_rest},
         too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
-        remains=first.remains or (first.verdict == "nothing" and steady.remains),
+        remains=first.remains or bool(left) or (first.verdict == "nothing" and steady.remains),
     )
 
 
@@ -133,9 +135,17 @@ def _memory(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]
         why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
         return None, None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
-    gathered = gather(wide, "moving")
+    gathered = on_own_load(gather(wide, "moving"))
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
     return answer_of(wide, gathered, screening, None), gathered, gathered.left_out
+
+
+def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[str]:
+    """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
+    if memory.verdict != "missing" or memory.remains:
+        return []
+    name = memory.candidates[0].effect.name
+    return what_remains(fit_effects(fit.dataset, [*fit.names, name], fit.training), gathered, name)
 
 
 def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:

@@ -100,7 +100,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         name = best.block.name
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
-        sentence, notes = answer_in_words("missing", p_value, examined, None), _what_remains(explained, gathered, name)
+        sentence, notes = answer_in_words("missing", p_value, examined, None), what_remains(explained, gathered, name)
         notes = notes or _imitated(explained, gathered, best)
         remains, strength = bool(notes), best.noncentrality
         return Answer("missing", sentence, p_value, examined, None, notes, strength, remains, explained)
@@ -242,7 +242,7 @@ def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]
     return [] if left is None else [still_left_in_words(name, left, explained.dataset.facts)]
 
 
-def _what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
+def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
     """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it."""
     grown = gather_curves(fit, gathered.show_in)
     left = left_over(grown)

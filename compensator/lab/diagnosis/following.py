@@ -31,23 +31,25 @@ class Following:
     chance: float
     foretold: float
 
-    @property
-    def is_there(self) -> bool:
-        """Whether it is neither noise nor of one stretch alone."""
-        return self.chance <= CHANCE and self.foretold >= FORETOLD
 
+def following_of(gathered: Candidates, white: WhiteRows, most: float | None = None) -> Following | None:
+    """The variable that is followed most surely; None where each may be noise, or of one stretch alone.
 
-def following_of(gathered: Candidates, white: WhiteRows) -> Following | None:
-    """The variable that is followed most surely; None where none is for sure."""
+    Args:
+        gathered: the model and its curves.
+        white: its rows.
+        most: chance in noise alone up to which it is none; `CHANCE` where nothing is said.
+    """
+    most = CHANCE if most is None else most
     splines = gathered.curves.splines
     found = []
     for name, spline in splines.items():
         columns = _new(white, spline.columns[gathered.rows] * white.weights[:, None])
         size, rank = float(np.sum((white.residual @ columns) ** 2)), columns.shape[1]
         chance = min(1.0, len(splines) * white.noise.chance(size, rank)) if rank else 1.0
-        if chance <= CHANCE:
+        if chance <= most:
             found.append(Following(name, chance, white.foretold(columns)[1]))
-    there = [one for one in found if one.is_there]
+    there = [one for one in found if one.foretold >= FORETOLD]
     return max(there, key=lambda one: one.foretold, default=None)
 
 

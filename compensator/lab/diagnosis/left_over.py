@@ -20,6 +20,7 @@ from compensator.lab.screening.evidence import Evidence
 
 PERIODIC = ("order",)  # shape of what goes round with the position
 PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
+FOLLOWING_BESIDE_NAMED = 1e-4  # chance: complete joints are not asked, and it must be much beside the name as well
 JUMPS_BESIDE_NAMED = 1e-4  # chance: what a formula that is nearly right leaves of friction may have two values, nearly
 
 
@@ -102,7 +103,8 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     white = WhiteRows.of(grown)
     if white is None:
         return None
-    found = (line_of(grown, white), following_of(grown, white), _growing(grown, white, named.block.name))
+    follows = following_of(grown, white, FOLLOWING_BESIDE_NAMED)
+    found = (line_of(grown, white), follows, _growing(grown, white, named.block.name))
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None
 

@@ -5,15 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.at_rest.breakaway_fit import fit_breakaway, held_out_breakaway
+from compensator.lab.at_rest.breakaway_fit import LAG, fit_breakaway, held_out_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
 from compensator.lab.diagnosis.breakaway_family import FEWEST_STARTS, breakaway_answer
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.processing import make_signals
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.evidence import Base, Block, least_p_value, screen_events
-from tests.lab.ramps import COUNT_RAD, HORIZONTAL, STATIC, constant, ramp_fit, ramp_trial
+from tests.lab.ramps import COUNT_RAD, HORIZONTAL, MODEL, STATIC, constant, ramp_fit, ramp_recordings, ramp_trial
 
 
 def rising(rest_s: float, _rate: float) -> float:
@@ -62,6 +65,27 @@ def test_what_static_friction_depends_on_is_named(static, name):
     assert len(best.picture.curve.x) >= 3
     whole = diagnose(fit)
     assert any("starts from rest" in words for words in [whole.sentence, *whole.notes])
+
+
+def test_effects_are_ranked_over_one_model_though_only_one_has_a_late_onset():
+    """Quick starts follow short rests here, so that the onset would have to be early in the model without effects."""
+    sets = [((0.3, 1.5, 6.0), (0.05, 0.15, 0.5)), ((0.3,), (0.4, 0.5)), ((0.3,), (0.4, 0.5)), ((6.0,), (0.05, 0.1))]
+    made = [ramp_recordings(rising, *one, seed=seed) for seed, one in enumerate(sets, start=1)]
+    starts = [one for own in made for one in own if one.name.startswith("ramp")]
+    swings = [one for one in made[0] if not one.name.startswith("ramp")]
+    fit = fit_model(make_dataset([*swings, *starts], HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL)
+    rows = breakaway_rows(fit)
+    base = fit_breakaway(rows, fit.effects)
+    assert base.coefficients_of(LAG)[0] == 0.0
+    answer, _ = breakaway_answer(fit, rows)
+    first, second = answer.candidates
+    assert (first.effect.name, second.effect.name) == ("dwell_strengthening", "rate_dependent_breakaway")
+    left = []
+    for one in (first, second):
+        grown = fit_breakaway(rows, [*fit.effects, one.effect], {one.effect.name: one.shape})
+        left.append(float(np.sum((base.weight * grown.residual) ** 2)))
+    gained = len(rows) * np.log(left[1] / left[0])  # 2 ln L
+    assert first.score - second.score == pytest.approx(gained, abs=0.15 * gained)
 
 
 def test_a_static_friction_that_depends_on_nothing_lacks_nothing():

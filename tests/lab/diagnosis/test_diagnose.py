@@ -105,6 +105,22 @@ def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
     assert found.candidates[0].gain.low > 0.0
 
 
+@pytest.mark.parametrize("left", [[], ["After frictional_lag, something is left."]])
+def test_what_an_effect_with_memory_leaves_in_steady_sliding_is_told(monkeypatch, left):
+    made = recordings(Joint(extra=late), seed=4)
+    asked = []
+
+    def what_remains(fit, gathered, name):
+        asked.append((name in fit.names, gathered.show_in))
+        return left
+
+    monkeypatch.setattr(diagnose_module, "what_remains", what_remains)
+    found = diagnose(fit_model(make_dataset(made, FACTS, Processing()), DEFAULT))
+    assert found.classes[0][0] == "frictional_lag"
+    assert asked == [(True, "sliding")]
+    assert (found.remains, found.notes[: len(left)]) == (bool(left), left)
+
+
 @pytest.mark.parametrize(("share", "named"), [(0.9, False), (5.0, True)])
 def test_only_what_gives_more_than_the_stiffness_that_is_known_is_missing(share, named):
     made = recordings(Joint(extra=twisting), trials=[*plans(), *SHAKEN], seed=4)

@@ -37,6 +37,17 @@ def test_what_differs_by_direction_of_speed_follows_the_velocity():
     assert f"it varies with {left.following.driver}, most" in unexplained_in_words(left, None, 0.1, 40, FACTS)
 
 
+def test_less_sure_curves_are_told_where_more_of_chance_is_allowed(monkeypatch):
+    fit = fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))
+    gathered = with_noise(gather(fit))
+    white = white_rows_of(gathered)
+    told = following_of(gathered, white)
+    assert told is not None
+    monkeypatch.setattr(following, "CHANCE", 0.5 * told.chance)
+    assert following_of(gathered, white) is None
+    assert following_of(gathered, white, 2.0 * told.chance) == told
+
+
 def test_what_comes_in_one_stretch_alone_follows_nothing(monkeypatch):
     monkeypatch.setattr(following, "CHANCE", 1.0)
     hit = iter([True])

@@ -5,6 +5,7 @@ import pytest
 
 from compensator.lab.diagnosis import families, left_over
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.white_rows import CHANCE
 from tests.lab.diagnosis.judged import fitted
 
 ORDER, RIPPLE_N_M = 5.0, 0.02
@@ -34,6 +35,14 @@ def test_a_cause_that_is_imitated_leaves_much_of_what_its_formula_explains():
     assert told.startswith(IN_PART)
 
 
+def test_beside_a_name_a_curve_need_not_be_as_sure_as_where_nothing_is_named(monkeypatch):
+    asked = []
+    monkeypatch.setattr(left_over, "following_of", lambda *given: asked.append(given[2:]))
+    assert diagnosed(np.cos).classes[0][0] == "position_periodic_friction"
+    assert asked == [(left_over.FOLLOWING_BESIDE_NAMED,)]
+    assert left_over.FOLLOWING_BESIDE_NAMED > CHANCE
+
+
 def test_what_is_little_beside_the_named_effect_is_not_told(monkeypatch):
     assert diagnosed(nearly_a_cosine).remains
     monkeypatch.setattr(left_over, "PART_OF_NAMED", 1.0)
@@ -42,7 +51,7 @@ def test_what_is_little_beside_the_named_effect_is_not_told(monkeypatch):
 
 def test_a_force_that_goes_round_is_as_large_at_any_speed(monkeypatch):
     """What grows with the square of the speed is an acceleration, and that may be one that never was."""
-    monkeypatch.setattr(families, "_what_remains", lambda *_: [])  # so much of it is told as such, too
+    monkeypatch.setattr(families, "what_remains", lambda *_: [])  # so much of it is told as such, too
     found = diagnose(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * (1.0 + 0.5 * x.v**2)))
     assert found.classes[0][0] == "cogging"
     (told,) = [note for note in found.notes if "in part" in note]
