@@ -28,6 +28,15 @@ class Picture:
 
 
 @dataclass(frozen=True)
+class BesideOpen:
+    """Relative held-out errors without and with an effect, both beside what the model's formulas leave open."""
+
+    before: float
+    after: float
+    gain: Gain
+
+
+@dataclass(frozen=True)
 class Candidate:
     """One effect that may be missing.
 
@@ -42,6 +51,7 @@ class Candidate:
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
+        beside_open: errors and gain beside what the model's formulas leave open, where these decide (`second_look`).
     """
 
     effect: Effect
@@ -56,6 +66,7 @@ class Candidate:
     physical: bool
     picture: Picture | None
     rows: EffectRows = "sliding"
+    beside_open: BesideOpen | None = None
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import numpy as np
 
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.pictures import picture_of
+from compensator.lab.diagnosis.second_look import beside_open
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows, Shape
 from compensator.lab.model.fit import Fit, fit_model
@@ -37,6 +38,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         alike = _alike(item, spans)
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
         candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
+    candidates = _looked_at_again(gathered, candidates)
     return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
 
 
@@ -50,6 +52,28 @@ def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
     rows = show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
     # near reversals a part of the whole error is asked for, since every chain leaves a little there
     return held_out(fit, rows, fit.dataset.steadiness if show_in == "sliding" else None)
+
+
+def _held_out_sliding(fit: Fit) -> HeldOut:
+    return _held_out(fit, "sliding")
+
+
+def _looked_at_again(gathered: Candidates, candidates: list[Candidate]) -> list[Candidate]:
+    """The candidates; very strong ones whose gain other formulas may hide, with that beside what these leave open.
+
+    Where one is confirmed as it is, no other is looked at again.
+    """
+    if gathered.show_in != "sliding" or any(is_confirmed(one) for one in candidates):
+        return candidates
+    hidden = [one.effect.name for one in candidates if _may_be_hidden(one)]
+    found = beside_open(gathered.fit, hidden, _held_out_sliding)
+    return [replace(one, beside_open=found.get(one.effect.name)) for one in candidates]
+
+
+def _may_be_hidden(candidate: Candidate) -> bool:
+    """Whether all but the held-out gain speaks for a candidate, and that very strongly."""
+    very_strong = candidate.score >= VERY_STRONG and candidate.p_value <= SIGNIFICANT
+    return very_strong and candidate.physical and not is_sure(candidate)
 
 
 def is_confirmed(candidate: Candidate) -> bool:
@@ -67,10 +91,13 @@ def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
     strong = candidate.score >= VERY_STRONG
     no_luck = candidate.p_value <= SIGNIFICANT or strong
-    falls = candidate.before**2 * (1.0 - (1.0 - candidate.gain.value) ** 2) >= LEAST_EXPLAINED**2
+    before, gain = candidate.before, candidate.gain
+    if candidate.beside_open is not None:
+        before, gain = candidate.beside_open.before, candidate.beside_open.gain
+    falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
     steady = candidate.rows == "sliding"
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = candidate.gain.value >= least and falls and (candidate.gain.low > 0.0 or (steady and strong))
+    helps = gain.value >= least and falls and (gain.low > 0.0 or (steady and strong))
     return candidate.score > 0.0 and no_luck and helps
 
 

@@ -96,14 +96,15 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     # what explains much less than an effect that cannot be it is the shadow of something else
     share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
     enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
-    if p_value <= SIGNIFICANT and enough and is_confirmed(examined[0]):
-        name = best.block.name
+    name = best.block.name
+    own_p = _chance_of(named, examined[0]) if p_value <= SIGNIFICANT else p_value
+    if own_p <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
-        sentence, notes = answer_in_words("missing", p_value, examined, None), what_remains(explained, gathered, name)
+        sentence, notes = answer_in_words("missing", own_p, examined, None), what_remains(explained, gathered, name)
         notes = notes or _imitated(explained, gathered, best)
         remains, strength = bool(notes), best.noncentrality
-        return Answer("missing", sentence, p_value, examined, None, notes, strength, remains, explained)
+        return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained)
     found = _bends(gathered, examined, best_of_each)
     if p_value <= SIGNIFICANT and found is not None:
         bends, too_far = found
@@ -124,6 +125,14 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
             sentence = unexplained_in_words(left, nearest, p_value, stretches, facts, wanders)
             remains = True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+
+
+def _chance_of(named: Screening, best: Candidate) -> float:
+    """The chance that luck alone brings any effect to what this one reaches; twice that where it was looked at twice.
+
+    Bonferroni: of two looks at its gain, either would have done.
+    """
+    return min(1.0, (1.0 if best.beside_open is None else 2.0) * among_all(named.chance_of(best.effect.name)))
 
 
 def _bends(

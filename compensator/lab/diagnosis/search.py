@@ -3,6 +3,9 @@
 The first name is given while the others are still missing, and may be a mixture of them. So after every effect that is
 added, each earlier one is taken out again and its place is judged anew, given all the others; and what no longer helps
 on held-out rows is dropped (Efroymson 1960, with held-out error in place of F).
+
+Of two names that come close, the one with more evidence may leave what the other would not, once what its formula
+leaves open stands beside it: where the last model leaves more than noise, it gives way to one that leaves nothing.
 """
 
 from dataclasses import dataclass
@@ -10,12 +13,14 @@ from typing import Literal
 
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.examination import SIGNIFICANT, VERY_STRONG
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import Fit, fit_effects, widened
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 
 MOST_EFFECTS = 4
+MOST_TRIED = 3  # in the place of a name that leaves something
 
 Change = Literal["add", "swap", "drop"]
 
@@ -82,13 +87,35 @@ def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -
         steps += _drops(start, steps[-1].fit)
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
             break  # the same model again: the trials do not decide
-        fit = steps[-1].fit
+        fit, before = steps[-1].fit, diagnosis
         diagnosis = diagnose(fit)
+        stuck = diagnosis.remains and diagnosis.verdict != "missing"
+        if stuck and steps[-1].change == "add" and (cleared := _cleared(steps[-1], before)) is not None:
+            steps.append(cleared[0])
+            diagnosis = cleared[1]
     return Search(start, tuple(steps), diagnosis)
 
 
 def _step(change: Change, effect: str, instead_of: str | None, fit: Fit) -> Step:
     return Step(change, effect, instead_of, fit, held_out(fit))
+
+
+def _cleared(last: Step, before: Diagnosis) -> tuple[Step, Diagnosis] | None:
+    """In the place of an effect that was added, the likeliest rival whose model leaves nothing; None without one.
+
+    Args:
+        last: the step that added it, to a model that leaves more than noise.
+        before: the diagnosis that named it.
+    """
+    rivals = [one for one in before.candidates if one.physical and one.score >= VERY_STRONG]
+    names = [one.effect.name for one in sorted(rivals, key=lambda one: -one.score) if one.effect.name != last.effect]
+    for name in names[:MOST_TRIED]:
+        effects = [name if other == last.effect else other for other in last.fit.names]
+        fit = fit_effects(last.fit.dataset, effects, last.fit.training)
+        found = diagnose(fit)
+        if found.verdict == "nothing" and not found.remains and found.p_value > SIGNIFICANT:
+            return _step("swap", name, last.effect, fit), found
+    return None
 
 
 def _swaps(start: Fit, fit: Fit) -> list[Step]:

@@ -4,8 +4,9 @@ Three numbers per candidate, never mixed up: a likelihood score for naming, a p-
 autocorrelation for detection, and (elsewhere) the held-out gain. See docs/diagnosis.md.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -81,10 +82,28 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Screening:
-    """Evidence for all blocks, best score first, and the chance that the best p-value is luck over all of them."""
+    """Evidence for all blocks, best score first, and the chance that the best p-value is luck over all of them.
+
+    Attributes:
+        evidence: of all blocks.
+        p_value: the chance that luck alone brings any block's own p-value down to the least of them.
+        chance: the same of another p-value than the least; None where p-values of blocks are not of one measure, as
+            those by flips of few stretches are not.
+    """
 
     evidence: list[Evidence]
     p_value: float
+    chance: Callable[[float], float] | None = None
+
+    def chance_of(self, name: str) -> float:
+        """The chance that luck alone brings any block to what one effect's best block reaches.
+
+        What is surest is not always what is named, since it may not help on held-out rows, or may not be physical; its
+        p-value is not that of another name.
+        """
+        own = min(item.p_value for item in self.evidence if item.block.name == name)
+        least = min(item.p_value for item in self.evidence)
+        return self.p_value if self.chance is None or own <= least else self.chance(own)
 
 
 def screen(
@@ -148,7 +167,8 @@ def screen_against_noise(bases: Sequence[Base], blocks: Sequence[Block], noise: 
         score = gain - _price(block, directions, inflation)
         evidence.append(Evidence(block, score, gain, noise.chance(size, len(share)), direction / norm))
     least = min(item.p_value for item in evidence)
-    return Screening(sorted(evidence, key=lambda item: -item.score), noise.joint_chance(covariance, places, least))
+    chance = partial(noise.joint_chance, covariance, places)
+    return Screening(sorted(evidence, key=lambda item: -item.score), chance(least), chance)
 
 
 def screen_events(

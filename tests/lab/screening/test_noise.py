@@ -103,6 +103,18 @@ def test_noise_alone_is_as_strong_as_its_chance_says():
     assert np.mean(np.array(p_values) <= 0.5) == pytest.approx(0.5, abs=0.15)
 
 
+def test_the_chance_of_a_name_is_its_own_not_that_of_what_is_surest():
+    random = np.random.default_rng(3)
+    blocks = [Block(f"c{index}", coloured(random)[:, None], 0, 1) for index in range(10)]
+    noise = coloured(random)
+    effort = noise + 0.5 * blocks[2].columns[:, 0] + 0.12 * blocks[7].columns[:, 0]
+    found = screen_against_noise([Base.of(NOTHING, effort)], blocks, learnt(noise))
+    own = {item.block.name: item.p_value for item in found.evidence}
+    assert found.chance_of("c2") == found.p_value <= 0.001
+    assert own["c7"] < found.chance_of("c7")  # one of ten: any of them might have reached it
+    assert found.p_value < found.chance_of("c7") < 10.5 * own["c7"]
+
+
 def test_slow_rows_have_noise_of_a_colour_of_their_own():
     random = np.random.default_rng(8)
     slow = np.tile(np.abs(speed()) <= np.quantile(np.abs(speed()), 1.0 / 3.0), TRIALS)

@@ -1,0 +1,47 @@
+"""A small effect beside a formula that is nearly right: its gain is judged as evidence is, beside what that leaves."""
+
+import numpy as np
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.second_look import beside_open
+from compensator.lab.model.fit import fit_effects
+from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.validation import held_out
+from compensator.lab.screening.candidates import gather_curves
+from tests.lab.screening.test_discrepancy import fitted
+from tests.lab.synthetic import Joint, Truth
+
+WEIGHT = "weight_friction"
+ASYMMETRY = "viscous_asymmetry"
+
+
+def law(asymmetry: float) -> Joint:
+    """Weight that changes all of dry friction, where its formula changes Coulomb friction alone; and an asymmetry."""
+
+    def extra(x: Truth) -> np.ndarray:
+        dry = 0.08 + 0.08 * np.exp(-np.abs(x.v) / 0.25)
+        return 15.0 * x.load_kg * dry * np.sign(x.v) + asymmetry * np.abs(x.v)
+
+    return Joint(static_excess=0.08, extra=extra)
+
+
+def test_a_gain_that_another_formula_hides_shows_beside_what_that_leaves_open():
+    fit = fitted(law(0.002), WEIGHT)
+    after = fit_effects(fit.dataset, [*fit.names, ASYMMETRY], fit.training)
+    found = beside_open(gather_curves(fit).fit, [ASYMMETRY], held_out)
+    assert held_out_gain(held_out(fit), held_out(after)).low < 0.0
+    assert found[ASYMMETRY].gain.low > 0.15
+    assert found[ASYMMETRY].after < 0.8 * found[ASYMMETRY].before
+
+
+def test_what_another_formula_hides_is_named_and_nothing_is_where_nothing_is():
+    named = diagnose(fitted(law(0.0007), WEIGHT))
+    assert (named.verdict, named.classes[0]) == ("missing", (ASYMMETRY,)), named.sentence
+    assert named.candidates[0].beside_open is not None
+    assert "beside what the model's formulas leave open" in named.sentence
+    assert diagnose(fitted(law(0.0), WEIGHT)).verdict == "nothing"
+
+
+def test_a_model_whose_formulas_leave_nothing_open_is_looked_at_once():
+    fit = fitted(Joint())
+    assert beside_open(gather_curves(fit).fit, [ASYMMETRY], held_out) == {}
