@@ -8,9 +8,9 @@ from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.diagnosis.second_look import beside_open
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.effects.effect import MotionRows, Shape
+from compensator.lab.effects.effect import EffectRows, MotionRows, Shape
 from compensator.lab.model.fit import Fit, fit_model
-from compensator.lab.model.gain import chance_not_worse, held_out_gain
+from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
@@ -82,7 +82,8 @@ def is_confirmed(candidate: Candidate) -> bool:
     What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
     else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
     evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
-    falls at all.
+    falls at all; near reversals, where every chain leaves a little, if it falls as much as is asked for even without
+    the trial that gains most.
     """
     return is_sure(candidate) and candidate.physical
 
@@ -95,10 +96,16 @@ def is_sure(candidate: Candidate) -> bool:
     if candidate.beside_open is not None:
         before, gain = candidate.beside_open.before, candidate.beside_open.gain
     falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
-    steady = candidate.rows == "sliding"
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = gain.value >= least and falls and (gain.low > 0.0 or (steady and strong))
+    helps = gain.value >= least and falls and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows)))
     return candidate.score > 0.0 and no_luck and helps
+
+
+def _lasts(gain: Gain, rows: EffectRows) -> bool:
+    """Whether a gain that trials drawn again are not sure of is nevertheless one of more than a single trial."""
+    if rows == "moving":
+        return gain.without_best >= LEAST_GAIN_NEAR_REVERSALS
+    return rows == "sliding"
 
 
 def with_effect(fit: Fit, name: str, shape: Shape) -> Fit:

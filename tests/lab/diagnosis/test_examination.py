@@ -34,6 +34,21 @@ def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, co
 
 
 @pytest.mark.parametrize(
+    ("rows", "without_best", "confirmed"),
+    [
+        ("sliding", -0.1, True),
+        ("moving", 0.06, True),  # one trial holds most of the gain, and the others gain as well
+        ("moving", 0.04, False),  # no more than any measuring chain leaves
+        ("breakaway", 0.06, False),
+    ],
+)
+def test_where_one_trial_holds_most_of_a_gain_near_reversals_the_others_must_gain_too(rows, without_best, confirmed):
+    gained = Gain(0.3, -0.01, 0.4, without_best)
+    candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, True, None, rows)
+    assert is_confirmed(candidate) == confirmed
+
+
+@pytest.mark.parametrize(
     ("before", "after", "confirmed"),
     [
         (0.003, 0.00295, True),  # of the effort it explains 0.055 %

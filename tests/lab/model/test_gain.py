@@ -34,6 +34,14 @@ def test_the_gain_is_the_fall_of_the_error():
     assert found.low < found.value < found.high
 
 
+def test_what_is_gained_without_the_trial_that_gains_most_is_told():
+    noise = np.ones(12 * PER_UNIT)
+    most = np.repeat([10.0, *np.full(11, 2.0)], PER_UNIT)
+    found = held_out_gain(error_of(most * noise), error_of(np.where(most > 5.0, 1.0, 1.5) * noise))
+    assert found.value > 0.5
+    assert found.without_best == pytest.approx(0.25)
+
+
 def test_it_is_paired_so_that_scatter_between_trials_does_not_hide_it():
     random = np.random.default_rng(2)
     before, _ = pair(random, 12, 0.0)
