@@ -4,13 +4,14 @@ What is missing and follows the motion has the motion's frequencies, which diffe
 supply that hunts, or something that turns, keeps its own. In each trial the power at a frequency, over that of the
 noise around it, is exponentially distributed if it is noise (Schuster 1898). The noise itself is not white: time stamps
 that jitter move the position, and its second derivative is the steeper the higher the frequency. The lower median of
-the trials' powers tells, by the binomial distribution: a few trials that hold a line, as those of one waveform, do not
-make it so.
+the trials' powers tells, by the binomial distribution: a few trials that hold a line do not make it so. Trials of one
+motion, with whatever load, hold what the model misses of that motion in common; they tell once, by their mean.
 
 What drives the motor may swing, too: a supply that ripples, unseen, changes the effort by so much of the voltage, and
 that voltage follows the motion. Its line is found in the residual times the voltage alone, as a modulated carrier's is.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, log
 
@@ -19,7 +20,7 @@ from scipy.stats import binom
 
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, Trial
+from compensator.lab.rows.dataset import Dataset, IntArray, Trial
 
 CHANCE = 1e-3  # of such a line in noise alone
 LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
@@ -28,6 +29,8 @@ AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and a line is na
 STEPS = 4.0  # per width of a line, so that none falls between two frequencies
 FEWEST_ROWS = 20
 FEWEST_TRIALS = 4
+ALIKE = 0.9  # correlation of two trials' velocities: of one motion
+MOMENTS = 200  # of a trial, at which that is looked at
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,26 +98,44 @@ def voltage_of(trial: Trial) -> FloatArray:
 
 
 def _line(dataset: Dataset, values: FloatArray, rows: BoolArray, of_voltage: bool) -> Swing | None:
-    """The frequency that stands out in most trials; None where there are too few of them."""
+    """The frequency that stands out in most motions; None where there are too few trials."""
     index = dataset.trial_index[rows]
     parts = [
-        (dataset.time_of(trial)[rows[dataset.trial_index == number]], values[index == number])
+        (number, dataset.time_of(trial)[rows[dataset.trial_index == number]], values[index == number])
         for number, trial in enumerate(dataset.trials)
         if int((index == number).sum()) >= FEWEST_ROWS
     ]
-    parts = [(time_s, own) for time_s, own in parts if np.any(own)]
+    parts = [(number, time_s, own) for number, time_s, own in parts if np.any(own)]
     if len(parts) < FEWEST_TRIALS:
         return None
-    frequencies = Frequencies.of([time_s for time_s, _ in parts], dataset.cutoff_hz)
+    frequencies = Frequencies.of([time_s for _, time_s, _ in parts], dataset.cutoff_hz)
     at_hz = frequencies.at_hz
     if len(at_hz) < 3:
         return None
-    lower = np.sort(_over_noise(at_hz, parts), axis=0)[(len(parts) - 1) // 2]
+    over = _over_noise(at_hz, [(time_s, own) for _, time_s, own in parts])
+    motions = motions_of([dataset.trials[number] for number, _, _ in parts])
+    told = np.array([over[motions == one].mean(axis=0) for one in np.unique(motions)])
+    lower = np.sort(told, axis=0)[(len(told) - 1) // 2]
     # what falls or rises towards an end of the band is no line: a step has most at the lowest frequency
     best = 1 + int(np.argmax(np.where(is_peak(lower), lower[1:-1], 0.0)))
-    count = len(parts) - (len(parts) - 1) // 2  # trials that hold so much, or more
-    chance = float(binom.sf(count - 1, len(parts), exp(-float(lower[best]))))
+    count = len(told) - (len(told) - 1) // 2  # motions that hold so much, or more
+    chance = float(binom.sf(count - 1, len(told), exp(-float(lower[best]))))
     return Swing(float(at_hz[best]), min(1.0, frequencies.independent * chance), of_voltage)
+
+
+def motions_of(trials: Sequence[Trial]) -> IntArray:
+    """Which of the motions each trial has, counted through, shape (trials,)."""
+    found: list[FloatArray] = []
+    numbers = []
+    for trial in trials:
+        time_s, velocity = trial.motion.time_s, trial.motion.velocity
+        own = np.interp(np.linspace(time_s[0], time_s[-1], MOMENTS), time_s, velocity)
+        own = own / (float(np.linalg.norm(own)) or 1.0)
+        same = [number for number, other in enumerate(found) if float(own @ other) >= ALIKE]
+        numbers.append(same[0] if same else len(found))
+        if not same:
+            found.append(own)
+    return np.array(numbers, dtype=np.int64)
 
 
 def is_peak(values: FloatArray) -> BoolArray:

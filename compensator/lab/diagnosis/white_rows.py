@@ -5,15 +5,53 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.model.linear import orthonormal
+from compensator.lab.model.weights import NORMAL
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import IntArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-from compensator.lab.screening.noise import Noise
+from compensator.lab.screening.noise import SHRINK_ROWS, Noise
 from compensator.lab.screening.whitening import Whitening
 
 CHANCE = 1e-6  # of so much in noise alone: small, since its tails are known less well than its power
 FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of each, the best one left out
+ENDS = 3  # rows at the ends of strokes, each a kind of its own
+OUTLYING = 2.5  # standard deviations: one row in eighty of noise
 NEGLIGIBLE = 1e-8  # share of a direction in what columns explain
+
+
+def _at_ends(noise: Noise, residual: FloatArray) -> FloatArray:
+    """Factors (n,) that bring rows at the ends of strokes to the variance of others, where they have more.
+
+    The filter brings to them what a reversal does, in the same way in every trial of one motion.
+    """
+    left = [_left_of_run(place.grid) for place in noise.places]
+    kind = np.minimum(np.concatenate(left), ENDS)
+    count = np.bincount(kind, minlength=ENDS + 1)
+    power = np.bincount(kind, residual**2, ENDS + 1)
+    usual = power[ENDS] / max(count[ENDS], 1) or 1.0
+    variance = (power / usual + SHRINK_ROWS) / (count + SHRINK_ROWS)
+    factors: FloatArray = 1.0 / np.sqrt(np.maximum(variance, 1.0))[kind]
+    return factors
+
+
+def _left_of_run(grid: IntArray) -> IntArray:
+    """How many rows lie between each row and the nearer end of its run without gaps, shape (n,)."""
+    ends = np.flatnonzero(np.diff(grid) != 1)
+    starts, stops = np.append(0, ends + 1), np.append(ends, len(grid) - 1)
+    run = np.searchsorted(stops, np.arange(len(grid)))
+    place = np.arange(len(grid))
+    found: IntArray = np.minimum(place - starts[run], stops[run] - place)
+    return found
+
+
+def _bounded(residual: FloatArray) -> FloatArray:
+    """A whitened residual (n,) whose rows each hold no more than OUTLYING: what comes at the ends of strokes is wild.
+
+    A few rows that a reversal reaches through the filter have so much, in the same way in every trial, that they alone
+    would make a curve (score test of bounded influence: Huber 1981).
+    """
+    most = OUTLYING * max(1.0, NORMAL * float(np.median(np.abs(residual))))
+    return np.clip(residual, -most, most)
 
 
 @dataclass(frozen=True)
@@ -43,9 +81,12 @@ class WhiteRows:
             return None
         base = gathered.as_measured(WITH_CHAIN)
         whitening = Whitening.of(gathered.noise)
+        wild = _at_ends(gathered.noise, whitening.whitened(base.residual[:, None])[:, 0])
+        whitening = whitening.scaled(wild)
         white = whitening.whitened(np.column_stack([base.basis, base.residual]))
         basis = orthonormal(white[:, :-1])
-        residual = white[:, -1] - basis @ (basis.T @ white[:, -1])
+        residual = _bounded(white[:, -1] - basis @ (basis.T @ white[:, -1]))
+        residual -= basis @ (basis.T @ residual)
         _, stretch = np.unique(gathered.fit.dataset.block_index[gathered.rows], return_inverse=True)
         return cls(gathered.noise, whitening, gathered.weights, stretch.reshape(-1), basis, residual)
 

@@ -1,7 +1,7 @@
 """The noise that a complete model would leave, learnt before anybody knows what is missing."""
 
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import most_likely
+from compensator.lab.screening.evidence import most_likely, score_of
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.stops import StopToStop
 
@@ -9,15 +9,24 @@ CLEARED = 2  # blocks, or free curves, that are taken off at most: what is missi
 
 
 def with_noise(gathered: Candidates) -> Candidates:
-    """The same candidates, evened by the noise of what is left once the likeliest blocks are in the model."""
-    left = gathered
+    """The same candidates, evened by the noise of what is left once the likeliest blocks are in the model.
+
+    A block is taken off only where it pays against the noise as it is known so far, with its colour. Held against
+    white noise, slow blocks seem to pay wherever noise is slow; without its slow part, all slow blocks would be sure.
+    """
+    left, noise = gathered, _learnt(gathered, gathered)
     for _ in range(CLEARED):
         block = most_likely(left.bases, [*left.named, *left.curves.blocks])
-        if block is None:
+        if block is None or score_of(left.bases, block, noise) <= 0.0:
             break
         left = left.with_block(block)
+        noise = _learnt(gathered, left)
+    return gathered.evened(noise)
+
+
+def _learnt(gathered: Candidates, left: Candidates) -> Noise:
+    """From what is left of the candidates' rows."""
     before = float(gathered.bases[0].residual @ gathered.bases[0].residual)
     strokes = StopToStop.of(gathered.fit, gathered.rows, gathered.weights)
     base = left.bases[0]
-    noise = Noise.learnt(gathered.fit.dataset, gathered.rows, (base.basis, base.residual), before, strokes)
-    return gathered.evened(noise)
+    return Noise.learnt(gathered.fit.dataset, gathered.rows, (base.basis, base.residual), before, strokes)

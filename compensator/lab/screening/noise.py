@@ -8,11 +8,12 @@ their own colour, of one source (a filter that changes with the speed: Priestley
 stop to stop beside that (`stops`).
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.fft import next_fast_len
 from scipy.stats import f as fisher
 
 from compensator.lab.recordings.recording import FloatArray
@@ -23,8 +24,8 @@ from compensator.lab.screening.stops import StopToStop
 MEMORY_S = 2.0  # beyond which residuals are taken to be independent, as stretches are
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
 SHRINK_ROWS = 20  # a trial's own scale is drawn to that of all by so many rows
-STEADIEST = 0.1  # share of the noise, at any frequency, that is left to what does not last a stroke
-PASSES = 4  # of learning how much lasts a stroke, and what the rest is
+STEADIEST = 0.5  # share of the noise, at any frequency, that is left to what does not last a stroke: both look alike
+PASSES = 3  # of learning what a fit takes from the noise
 DRAWS = 9999
 
 
@@ -43,6 +44,11 @@ class _Place:
     grid: IntArray
     speed: IntArray
     power: FloatArray
+
+    @property
+    def length(self) -> int:
+        """Even, of a grid on which the rows' products by lag do not meet those from the other end."""
+        return 2 * int(next_fast_len(int(self.grid[-1]) + 1, real=True))
 
 
 @dataclass(frozen=True)
@@ -90,22 +96,20 @@ class Noise:
         found, longest = _places(dataset, rows, residual)
         products, pairs = _products(((residual, place) for place in found), longest)
         free = len(residual) / max(len(residual) - basis.shape[1], 1)
-        whole = _tapered(free * products, pairs)
         stretches = len(np.unique(dataset.block_index[rows]))
         outweighed = before > 2.0 * float(residual @ residual)
-        noise = cls(tuple(found), whole, max(stretches - 1, 1), outweighed)
+        noise = cls(tuple(found), _tapered(free * products, pairs), max(stretches - 1, 1), outweighed)
+        noise = noise._given_back(products, pairs, lambda one: one.taken(basis))
         if strokes is None:
             return noise
-        shared, _ = _products(((strokes.share, place) for place in _within(strokes, found)), longest)
         cleared = strokes.scaled(residual[:, None], np.zeros(int(strokes.index.max()) + 1))[:, 0]
-        lasting_less, _ = _products(((cleared, place) for place in found), longest)
-        noise = replace(noise, autocovariances=_tapered(free * lasting_less, pairs))
-        variance = 0.0
-        for _ in range(PASSES):
-            variance = strokes.variance(basis, residual, noise.covariance)
-            noise = replace(noise, autocovariances=_less(whole, _tapered(variance * shared, pairs)))
+        products, _ = _products(((cleared, place) for place in found), longest)
+        other = noise._given_back(products, pairs, lambda one: one.taken(basis) + one.taken_by(strokes))
+        variance = strokes.variance(basis, residual, other.covariance)
         if variance == 0.0:
             return noise
+        shared, _ = _products(((strokes.share, place) for place in _within(strokes, found)), longest)
+        noise = replace(noise, autocovariances=_less(noise.autocovariances, _tapered(variance * shared, pairs)))
         evening = strokes.evening(variance, noise.covariance)
         return replace(noise, strokes=strokes, from_stop_to_stop=variance, evening=evening)
 
@@ -126,14 +130,13 @@ class Noise:
         directions = self.evened(directions)
         total = np.zeros((directions.shape[1], directions.shape[1]))
         for place in self.places:
-            own, length = directions[place.rows], 2 * (int(place.grid[-1]) + 1)
+            own, length = directions[place.rows], place.length
             passed = np.zeros((length // 2 + 1, own.shape[1]), dtype=complex)
             for speed in np.unique(place.speed):
                 inside = place.speed == speed
-                spread = np.zeros((length, own.shape[1]))
-                spread[place.grid[inside]] = own[inside]
                 density = place.power[speed] * spectral_density(self.autocovariances[speed], length)
-                passed += np.sqrt(density)[:, None] * np.fft.rfft(spread, axis=0)
+                filled = _filled(place.grid[inside], own[inside], length)
+                passed += np.sqrt(density)[:, None] * np.fft.rfft(filled, axis=0)
             passed[1:-1] *= np.sqrt(2.0)  # negative frequencies, too
             total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / length
         if self.strokes is not None and self.from_stop_to_stop > 0.0:
@@ -141,6 +144,64 @@ class Noise:
             total += self.from_stop_to_stop * (sums.T @ sums)
         symmetric: FloatArray = 0.5 * (total + total.T)
         return symmetric
+
+    def _given_back(self, products: FloatArray, pairs: FloatArray, taken: Callable[["Noise"], FloatArray]) -> "Noise":
+        """The same, its autocovariances those of products (SPEEDS, lags) and of what was taken from them."""
+        noise = self
+        for _ in range(PASSES):
+            noise = replace(noise, autocovariances=_tapered(products + taken(noise), pairs))
+        return noise
+
+    def taken(self, basis: FloatArray) -> FloatArray:
+        """What a fit of an orthonormal basis (n, b) of rows as they were measured takes from noise's products by lag.
+
+        A residual is e - BB'e, so that of its covariance BA' + AB' is missing, A = CB - BB'CB / 2 (the correction of
+        restricted likelihood, by moments: Patterson, Thompson 1971). A fit takes most where its columns vary as slowly
+        as the noise does. Shape (SPEEDS, lags).
+        """
+        spread = np.concatenate([self._spread(place, basis[place.rows]) for place in self.places])
+        other = spread - 0.5 * basis @ (basis.T @ spread)
+        products = [self._crossed(place, basis[place.rows], other[place.rows]) for place in self.places]
+        found: FloatArray = np.sum(products, axis=0)
+        return found
+
+    def taken_by(self, strokes: StopToStop) -> FloatArray:
+        """The same of a fit of each stroke's share of static friction; shape (SPEEDS, lags)."""
+        products = np.zeros((SPEEDS, self.autocovariances.shape[1]))
+        for place in self.places:
+            there, own = np.unique(strokes.index[place.rows], return_inverse=True)
+            basis = np.where(own[:, None] == np.arange(len(there)), strokes.share[place.rows][:, None], 0.0)
+            size = np.linalg.norm(basis, axis=0)
+            basis = basis / np.where(size > 0.0, size, 1.0)
+            spread = self._spread(place, basis)
+            products += self._crossed(place, basis, spread - 0.5 * basis @ (basis.T @ spread))
+        return products
+
+    def _spread(self, place: _Place, values: FloatArray) -> FloatArray:
+        """The covariance of one trial's rows, but for what lasts a stroke, times values (n, k)."""
+        length = place.length
+        found, passed = np.zeros_like(values), np.zeros((length // 2 + 1, values.shape[1]), dtype=complex)
+        kinds = []
+        for speed in np.unique(place.speed):
+            inside = place.speed == speed
+            gain = np.sqrt(place.power[speed] * spectral_density(self.autocovariances[speed], length))[:, None]
+            passed += gain * np.fft.rfft(_filled(place.grid[inside], values[inside], length), axis=0)
+            kinds.append((inside, gain))
+        for inside, gain in kinds:
+            found[inside] = np.fft.irfft(gain * passed, length, axis=0)[place.grid[inside]]
+        return found
+
+    def _crossed(self, place: _Place, one: FloatArray, other: FloatArray) -> FloatArray:
+        """Sums of products by lag of two of one trial's columns (n, k) each, both ways, by kind; (SPEEDS, lags)."""
+        length, longest = place.length, self.autocovariances.shape[1]
+        lags = min(longest, length // 2)
+        products = np.zeros((SPEEDS, longest))
+        for speed in np.unique(place.speed):
+            inside = place.speed == speed
+            a, b = (np.fft.rfft(_filled(place.grid[inside], of[inside], length), axis=0) for of in (one, other))
+            both = np.sum(a.real * b.real + a.imag * b.imag, axis=1)
+            products[speed, :lags] = 2.0 * np.fft.irfft(both, length)[:lags]
+        return products
 
     def chance(self, strength_found: float, rank: int) -> float:
         """The chance that noise alone is as strong in one block of that rank (Snedecor's F: the noise is learnt)."""
@@ -220,14 +281,13 @@ def _products(parts: Iterator[tuple[FloatArray, _Place]], longest: int) -> tuple
     """Sums of products of two values (n,) of one place and kind, by lag, and of how many; (SPEEDS, longest) each."""
     products, pairs = np.zeros((SPEEDS, longest)), np.zeros((SPEEDS, longest))
     for values, place in parts:
-        span = int(place.grid[-1]) + 1
-        lags = min(longest, span)
+        lags = min(longest, place.length // 2)
         for speed in np.unique(place.speed):
             inside = place.speed == speed
-            filled = np.zeros((2, 2 * span))
+            filled = np.zeros((2, place.length))
             filled[0, place.grid[inside]], filled[1, place.grid[inside]] = values[place.rows][inside], 1.0
             spectra = np.abs(np.fft.rfft(filled, axis=1)) ** 2
-            found = np.fft.irfft(spectra, 2 * span, axis=1)[:, :lags]
+            found = np.fft.irfft(spectra, place.length, axis=1)[:, :lags]
             products[speed, :lags] += found[0]
             pairs[speed, :lags] += np.round(found[1])
     return products, pairs
@@ -250,6 +310,13 @@ def _less(whole: FloatArray, part: FloatArray) -> FloatArray:
         for a, b in zip(whole, part, strict=True)
     ]
     found: FloatArray = np.fft.irfft(np.array(kept), 2 * lags, axis=1)[:, :lags]
+    return found
+
+
+def _filled(grid: IntArray, values: FloatArray, length: int) -> FloatArray:
+    """Values (n, k) on an even grid of so many places; zero where there is no row."""
+    found = np.zeros((length, values.shape[1]))
+    found[grid] = values
     return found
 
 

@@ -27,6 +27,10 @@ class Whitening:
 
     pieces: tuple[tuple[slice, FloatArray], ...]
 
+    def scaled(self, factors: FloatArray) -> "Whitening":
+        """The same, each row (n,) times a factor."""
+        return Whitening(tuple((rows, factors[rows, None] * root) for rows, root in self.pieces))
+
     @classmethod
     def of(cls, noise: Noise) -> "Whitening":
         """Of a noise."""

@@ -33,6 +33,15 @@ def test_noise_is_as_dense_in_the_band_of_the_motion_as_above(seed):
     assert not found.is_more_than_noise
 
 
+def test_what_noise_fills_of_the_motions_band_is_not_left_over():
+    """Little that follows the motion, in much noise: that it is denser below says nothing of how much it is."""
+    found = left(fitted(lambda x: 0.004 * np.sign(x.q - 0.4), noise=0.03))
+    assert found.share > 0.01
+    assert found.in_band < 0.01
+    more = left(fitted(lambda x: 0.05 * np.abs(x.q - 0.4), noise=0.03))
+    assert more.is_more_than_noise
+
+
 def test_coloured_noise_is_noise():
     found = left(fitted(noise_memory=0.8))
     assert found.denser > 1.0

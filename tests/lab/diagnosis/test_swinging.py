@@ -11,7 +11,7 @@ from compensator.lab.diagnosis import ripple
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.left_over import left_over
 from compensator.lab.diagnosis.ripple import MOST_OF_TRIAL, chance_of_sum, ripple_of
-from compensator.lab.diagnosis.swinging import Swing, swing_of
+from compensator.lab.diagnosis.swinging import Swing, motions_of, swing_of
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model, widened
 from compensator.lab.recordings.recording import Recording
@@ -105,8 +105,8 @@ def test_a_band_of_frequencies_is_no_line():
 
 
 def test_what_few_trials_have_at_another_frequency_does_not_hide_the_line_of_all():
-    made = rippling(recorded(seed=1, noise=0.004), 0.0028)
-    few = rippling(recorded(seed=1, noise=0.004)[:3], 6.0 * 0.0028, at_hz=(3.1,))
+    made = rippling(recorded(seed=1, noise=0.004), 0.003)
+    few = rippling(recorded(seed=1, noise=0.004)[:3], 6.0 * 0.003, at_hz=(3.1,))
     found = rippled(fitted([*few, *made[3:]]))
     assert found is not None
     assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
@@ -138,6 +138,26 @@ def test_a_line_in_a_few_trials_is_theirs_alone():
         for time_s in [one.channels["time_s"]]
     ]
     assert swing(fitted([*few, *made[len(few) :]])) is None
+
+
+def test_trials_of_one_motion_tell_once():
+    """What the model misses of a motion comes back with it, whatever the load: here in two motions of six."""
+    few = plans()[:6]
+    loads = (0.02, 0.05, 0.1, 0.15, 0.2)
+    many = [*few, *(replace(one, load_kg=load) for one in few[:2] for load in loads)]
+    made = recordings(Joint(), BENCH, many, seed=2)
+    swung = [
+        replace(
+            one, channels={**one.channels, "torque_n_m": one.channels["torque_n_m"] + 0.004 * np.sin(12.0 * time_s)}
+        )
+        if index in (0, 1) or index >= len(few)
+        else one
+        for index, one in enumerate(made)
+        for time_s in [one.channels["time_s"]]
+    ]
+    fit = fitted(swung)
+    assert motions_of(fit.dataset.trials).tolist() == [0, 1, 2, 3, 4, 5, *[0] * len(loads), *[1] * len(loads)]
+    assert swing(fit) is None
 
 
 def ringing(x: Truth) -> np.ndarray:

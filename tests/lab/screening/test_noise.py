@@ -92,6 +92,25 @@ def test_rows_left_out_count_for_nothing():
     )
 
 
+def test_what_a_wide_fit_takes_from_slow_noise_is_given_back():
+    """A fit of every other slow direction takes half of the slow noise, and none of the quick."""
+    random = np.random.default_rng(11)
+    at = (np.arange(ROWS) + 0.5) / ROWS
+    slow = np.kron(np.eye(TRIALS), np.column_stack([np.cos(np.pi * order * at) for order in range(4)]))
+    slow /= np.linalg.norm(slow, axis=0)
+    fitted, new = slow[:, ::2], slow[:, 1::2]
+    bare, found, true = [], [], []
+    for _ in range(12):
+        noise = coloured(random, 0.85)
+        left = noise - fitted @ (fitted.T @ noise)
+        known = Noise.learnt(dataset(STEADY), ALL, (fitted, left), before=float(left @ left))
+        found.append(np.trace(known.covariance(new)))
+        bare.append(np.trace(learnt(left).covariance(new)))
+        true.append(np.sum((new.T @ noise) ** 2))
+    assert np.mean(found) == pytest.approx(np.mean(true), rel=0.25)
+    assert np.mean(bare) < 0.7 * np.mean(true)
+
+
 def test_noise_alone_is_as_strong_as_its_chance_says():
     random = np.random.default_rng(3)
     blocks = [Block(str(index), coloured(random)[:, None], 0, 1) for index in range(12)]
