@@ -13,6 +13,7 @@ from compensator.lab.diagnosis.wandering import Wandering, wandering_of
 from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit
+from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise
@@ -60,7 +61,8 @@ def left_over(gathered: Candidates) -> LeftOver:
     dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
     friction = gathered.fit.dry_friction
     steady = gathered.show_in == "sliding"
-    remainder = remainder_of(dataset, base.residual / gathered.weights, rows)
+    determined = RowWeights.learnt(dataset, gathered.fit.residual, rows).determined(dataset, rows)
+    remainder = remainder_of(dataset, determined * base.residual / gathered.weights, rows)
     sliding = dataset.regime[rows] == Regime.SLIDING
     swing = swing_of(dataset, base.residual[sliding], rows & (dataset.regime == Regime.SLIDING))
     if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:

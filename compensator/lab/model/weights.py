@@ -1,4 +1,4 @@
-"""Weights of rows: near reversals, and where acceleration and jerk are large, residuals are larger."""
+"""Weights of rows: near reversals, at large acceleration and jerk, and where a model bends, residuals are larger."""
 
 from dataclasses import dataclass
 
@@ -13,6 +13,8 @@ NORMAL = 1.4826  # standard deviation over median absolute deviation
 OUTLYING = 4.0  # standard deviations: one row in 16,000 of noise
 TINY = float(np.finfo(float).tiny)
 LIMITS = (0.3, 3.0)  # a weight never says that a row is ten times better than another
+BENDS = np.array([0.3, 0.5, 0.7, 0.9])  # of `Dataset.steadiness`, between classes; the last one hardly bends
+DRAWN = 20.0  # rows by which a class of few is drawn to what all have
 
 
 @dataclass(frozen=True)
@@ -22,33 +24,51 @@ class RowWeights:
     Attributes:
         edges: between bins of acceleration and of jerk, shape (2, BINS - 1).
         factor: weight of each bin, shape (2 * BINS * BINS,).
+        bent: weight, at most 1, of each class of rows where the model bends, shape (len(BENDS) + 1,).
     """
 
     edges: FloatArray
     factor: FloatArray
+    bent: FloatArray
 
     @classmethod
     def learnt(cls, dataset: Dataset, residual: FloatArray, rows: BoolArray) -> "RowWeights":
-        """From the residual (N,) of the chosen rows (N,): the weighted residual has the same variance everywhere."""
+        """From the residual (N,) of the chosen rows (N,): the weighted residual has the same variance everywhere.
+
+        A model that bends (see `Dataset.steadiness`) determines some rows not at all, as a dead time does where hardly
+        any current flows. How much less is learnt from what it leaves there, since its own bend says only how errors
+        are multiplied.
+        """
         sizes = _sizes(dataset, rows)
         edges = np.array([np.quantile(size, np.linspace(0.0, 1.0, BINS + 1)[1:-1]) for size in sizes])
-        bins = _bins(dataset, rows, sizes, edges)
-        chosen = residual[rows]
-        overall = float(np.mean(chosen**2))
-        count = np.bincount(bins, minlength=2 * BINS * BINS)
-        power = np.bincount(bins, weights=chosen**2, minlength=2 * BINS * BINS)
-        variance = (power + 20.0 * overall) / (count + 20.0)  # a bin with few rows is drawn to the overall variance
-        factor = 1.0 / np.sqrt(np.maximum(variance, np.finfo(float).tiny))
-        return cls(edges, np.clip(factor / np.median(factor[bins]), *LIMITS))
+        bins, bends = _bins(dataset, rows, sizes, edges), _bends(dataset, rows)
+        chosen = dataset.steadiness[rows] * residual[rows]
+        straightest = int(bends.max(initial=0))
+        known = bends == straightest
+        variance = _variances(chosen[known], bins[known], 2 * BINS * BINS)
+        factor = 1.0 / np.sqrt(np.maximum(variance, TINY))
+        factor = np.clip(factor / np.median(factor[bins]), *LIMITS)
+        variance = _variances(factor[bins] * chosen, bends, len(BENDS) + 1)
+        least = max(float(variance[straightest]), TINY)
+        bent = np.sqrt(least / np.maximum(variance, least))
+        return cls(edges, factor, bent)
 
     def of(self, dataset: Dataset, rows: BoolArray) -> FloatArray:
-        """Factors for the chosen rows of any dataset, shape (rows.sum(),)."""
-        factors: FloatArray = self.factor[_bins(dataset, rows, _sizes(dataset, rows), self.edges)]
+        """Factors for the chosen rows of any dataset, shape (rows.sum(),), beside their steadiness."""
+        bins = _bins(dataset, rows, _sizes(dataset, rows), self.edges)
+        factors: FloatArray = self.factor[bins] * self.bent[_bends(dataset, rows)]
         return factors
+
+    def determined(self, dataset: Dataset, rows: BoolArray) -> FloatArray:
+        """How well the model determines the effort of each chosen row, at most 1, its steadiness included."""
+        found: FloatArray = dataset.steadiness[rows] * self.bent[_bends(dataset, rows)]
+        return found
 
 
 def row_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> FloatArray:
-    """Factors for the chosen rows, shape (rows.sum(),), median 1; residuals so weighted have like variance.
+    """Factors for the chosen rows, shape (rows.sum(),), median 1.
+
+    Residuals so weighted, and by the rows' steadiness, have like variance.
 
     Args:
         dataset: of the rows.
@@ -85,6 +105,21 @@ def _bins(dataset: Dataset, rows: BoolArray, sizes: list[FloatArray], edges: Flo
     for size, between in zip(sizes, edges, strict=True):
         bins = bins * BINS + np.searchsorted(between, size)
     found: IntArray = 2 * bins + (dataset.regime[rows] != Regime.SLIDING)
+    return found
+
+
+def _bends(dataset: Dataset, rows: BoolArray) -> IntArray:
+    """Class of each chosen row by how much the model bends there, len(BENDS) where it hardly does."""
+    found: IntArray = np.searchsorted(BENDS, dataset.steadiness[rows])
+    return found
+
+
+def _variances(residual: FloatArray, bins: IntArray, count: int) -> FloatArray:
+    """Mean square in each bin, shape (count,): one with few rows is drawn to that of all."""
+    rows = np.bincount(bins, minlength=count)
+    power = np.bincount(bins, weights=residual**2, minlength=count)
+    overall = float(np.mean(residual**2)) if len(residual) else 0.0
+    found: FloatArray = (power + DRAWN * overall) / (rows + DRAWN)
     return found
 
 
