@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compensator.lab.diagnosis.cells import CellsOfTrial
-from compensator.lab.diagnosis.jumps import jumps_of
-from compensator.lab.diagnosis.variance_components import Part, likeliest
-from compensator.lab.diagnosis.wandering import CHANCE, chance_of
+from compensator.lab.left_over.cells import CellsOfTrial
+from compensator.lab.left_over.jumps import jumps_of
+from compensator.lab.left_over.variance_components import Part, likeliest
+from compensator.lab.left_over.wandering import CHANCE, chance_of
 from tests.lab.line import Line, print_table
 
 TRIALS, CELLS, LASTS_S, EVERY_S = 18, 16, 6.0, 4.0

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.diagnosis.bending import bending, still_bending
-from compensator.lab.diagnosis.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
@@ -18,8 +17,6 @@ from compensator.lab.diagnosis.examination import (
     is_too_small,
     is_within_bounds,
 )
-from compensator.lab.diagnosis.left_over import LeftOver, left_beside, left_over
-from compensator.lab.diagnosis.remainder import LEAST_SHARE
 from compensator.lab.diagnosis.session_constancy import change_in_session
 from compensator.lab.diagnosis.wording import (
     answer_in_words,
@@ -34,6 +31,9 @@ from compensator.lab.diagnosis.wording import (
     wandering_in_words,
 )
 from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
+from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
+from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.model.fit import Fit, fit_effects, with_columns
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import held_out

@@ -3,17 +3,17 @@
 from collections.abc import Sequence
 
 from compensator.lab.chance import chance_in_words
-from compensator.lab.diagnosis.bursts import Bursts
-from compensator.lab.diagnosis.constancy import Change
-from compensator.lab.diagnosis.constants import DRY_FRICTION
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.following import Following
-from compensator.lab.diagnosis.left_over import LeftOver
-from compensator.lab.diagnosis.orders import Line
 from compensator.lab.diagnosis.session_constancy import InSession
-from compensator.lab.diagnosis.swinging import Swing
-from compensator.lab.diagnosis.wandering import Wandering
+from compensator.lab.left_over.bursts import Bursts
+from compensator.lab.left_over.constancy import Change
+from compensator.lab.left_over.constants import DRY_FRICTION
+from compensator.lab.left_over.following import Following
+from compensator.lab.left_over.left_over import LeftOver
+from compensator.lab.left_over.orders import Line
+from compensator.lab.left_over.swinging import Swing
+from compensator.lab.left_over.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.evidence import least_p_value

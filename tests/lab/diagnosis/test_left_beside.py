@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import families, left_over
+from compensator.lab.diagnosis import families
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.white_rows import CHANCE
-from tests.lab.diagnosis.judged import fitted
+from compensator.lab.left_over import left_over
+from compensator.lab.left_over.white_rows import CHANCE
+from tests.lab.left_over.judged import fitted
 
 ORDER, RIPPLE_N_M = 5.0, 0.02
 IN_PART = "position_periodic_friction describes it in part: beside it, what is left comes back with the position"

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.left_over import left_over
-from compensator.lab.diagnosis.remainder import remainder_of
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.left_over import left_over
+from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.weights import BENDS, RowWeights, row_weights
 from compensator.lab.recordings.recording import Recording

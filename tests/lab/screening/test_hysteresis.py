@@ -3,7 +3,7 @@
 import numpy as np
 
 from compensator.lab.screening.hysteresis import SHARES, hysteresis_columns
-from tests.lab.diagnosis.judged import fitted
+from tests.lab.left_over.judged import fitted
 
 
 def test_from_what_slides_most_of_the_way_to_what_hardly_does():

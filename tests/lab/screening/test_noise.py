@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from compensator.lab.diagnosis.bursts import bursts_of
+from compensator.lab.left_over.bursts import bursts_of
 from compensator.lab.screening.evidence import Base, Block, screen, screen_against_noise
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.stops import StopToStop

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.waves import Waves
-from compensator.lab.diagnosis.white_rows import CHANCE, FORETOLD, WhiteRows
 from compensator.lab.effects.effect import Motion
+from compensator.lab.left_over.waves import Waves
+from compensator.lab.left_over.white_rows import CHANCE, FORETOLD, WhiteRows
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.low_pass import FILTER_ORDER

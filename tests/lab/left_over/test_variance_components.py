@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from compensator.lab.diagnosis.variance_components import Part, likeliest, likeliest_of_moments, likelihood
+from compensator.lab.left_over.variance_components import Part, likeliest, likeliest_of_moments, likelihood
 
 
 def parts(variances, count=40, size=12, seed=2):

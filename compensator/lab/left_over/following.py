@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.diagnosis.white_rows import CHANCE, FORETOLD, WhiteRows
+from compensator.lab.left_over.white_rows import CHANCE, FORETOLD, WhiteRows
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import cells
-from compensator.lab.diagnosis.constancy import change_of
-from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.left_over import JUMPS_BESIDE_NAMED, left_over
-from compensator.lab.diagnosis.wandering import wandering_of
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over import cells
+from compensator.lab.left_over.constancy import change_of
+from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET
+from compensator.lab.left_over.left_over import JUMPS_BESIDE_NAMED, left_over
+from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather_curves
-from tests.lab.diagnosis.judged import constants_of
+from tests.lab.left_over.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 COULOMB_N_M = 0.08

@@ -2,16 +2,16 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.diagnosis.constancy import Change, change_of
-from compensator.lab.diagnosis.constants import Constants
-from compensator.lab.diagnosis.following import Following, following_of
-from compensator.lab.diagnosis.orders import Line, growing_of, line_of
-from compensator.lab.diagnosis.remainder import LEAST_SHARE, Remainder, remainder_of
-from compensator.lab.diagnosis.ripple import ripple_of
-from compensator.lab.diagnosis.swinging import Swing, swing_of
-from compensator.lab.diagnosis.wandering import Wandering, wandering_of
-from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.constancy import Change, change_of
+from compensator.lab.left_over.constants import Constants
+from compensator.lab.left_over.following import Following, following_of
+from compensator.lab.left_over.orders import Line, growing_of, line_of
+from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
+from compensator.lab.left_over.ripple import ripple_of
+from compensator.lab.left_over.swinging import Swing, swing_of
+from compensator.lab.left_over.wandering import Wandering, wandering_of
+from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fit import Fit
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.regimes import Regime

@@ -5,11 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.bursts import bursts_of, is_rattle
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.remainder import remainder_of
-from compensator.lab.diagnosis.swinging import swing_of
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.bursts import bursts_of, is_rattle
+from compensator.lab.left_over.remainder import remainder_of
+from compensator.lab.left_over.swinging import swing_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.diagnosis.constants import Constants
-from compensator.lab.diagnosis.variance_components import Part
+from compensator.lab.left_over.constants import Constants
+from compensator.lab.left_over.variance_components import Part
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import IntArray
 

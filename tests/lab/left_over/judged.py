@@ -1,8 +1,8 @@
 """Short trials of a known joint, fitted, and what is judged of a fitted model."""
 
-from compensator.lab.diagnosis.constants import Constants
-from compensator.lab.diagnosis.white_rows import WhiteRows
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.constants import Constants
+from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

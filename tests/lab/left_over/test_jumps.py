@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from compensator.lab.diagnosis.cells import CellsOfTrial
-from compensator.lab.diagnosis.jumps import jumps_of
-from compensator.lab.diagnosis.variance_components import Part, likeliest
+from compensator.lab.left_over.cells import CellsOfTrial
+from compensator.lab.left_over.jumps import jumps_of
+from compensator.lab.left_over.variance_components import Part, likeliest
 
 CELLS, CELL_S = 20, 0.25
 SCATTER = (0.6, 0.3)  # white, and alike for half a second
@@ -58,6 +58,6 @@ def test_noise_gains_no_more_than_half_a_chi_squared_of_one_degree_of_freedom():
 
 
 def test_of_long_trials_some_moments_are_looked_at(monkeypatch):
-    monkeypatch.setattr("compensator.lab.diagnosis.jumps.MOST_MOMENTS", 8)
+    monkeypatch.setattr("compensator.lab.left_over.jumps.MOST_MOMENTS", 8)
     found, _ = asked(trials(HEIGHT, seed=4)[0])
     assert found.gained > 20.0

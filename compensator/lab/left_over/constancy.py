@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET, Constants
-from compensator.lab.diagnosis.drift import Moments, chance_of_drift, moments_of
+from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
+from compensator.lab.left_over.drift import Moments, chance_of_drift, moments_of
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import IntArray

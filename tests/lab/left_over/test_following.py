@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import following
-from compensator.lab.diagnosis.following import Following, following_of
-from compensator.lab.diagnosis.left_over import left_over
 from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
+from compensator.lab.left_over import following
+from compensator.lab.left_over.following import Following, following_of
+from compensator.lab.left_over.left_over import left_over
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
-from tests.lab.diagnosis.judged import fitted, white_rows_of
+from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import FACTS
 
 DRAG_N_M_S_RAD = 0.003  # more one way than the other: a tenth of viscous friction

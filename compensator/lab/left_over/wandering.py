@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from compensator.lab.diagnosis.cells import CellsOfTrial, cells_of, most_changed
-from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET, Constants
-from compensator.lab.diagnosis.jumps import jumps_of
-from compensator.lab.diagnosis.variance_components import likeliest
+from compensator.lab.left_over.cells import CellsOfTrial, cells_of, most_changed
+from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
+from compensator.lab.left_over.jumps import jumps_of
+from compensator.lab.left_over.variance_components import likeliest
 from compensator.lab.model.validation import rms
 
 CHANCE = 0.0025  # of so much wandering in noise alone

@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import ripple
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.left_over import left_over
-from compensator.lab.diagnosis.ripple import MOST_OF_TRIAL, chance_of_sum, ripple_of
-from compensator.lab.diagnosis.swinging import Swing, motions_of, swing_of
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over import ripple
+from compensator.lab.left_over.left_over import left_over
+from compensator.lab.left_over.ripple import MOST_OF_TRIAL, chance_of_sum, ripple_of
+from compensator.lab.left_over.swinging import Swing, motions_of, swing_of
 from compensator.lab.model.fit import Fit, fit_model, widened
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather, gather_curves
 from compensator.lab.screening.clearing import with_noise
-from tests.lab.diagnosis.judged import white_rows_of
+from tests.lab.left_over.judged import white_rows_of
 from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.drift import MEMORY_S, MOMENT_S, chance_of_drift
+from compensator.lab.left_over.drift import MEMORY_S, MOMENT_S, chance_of_drift
 from compensator.lab.screening.evidence import Base
 
 TRIALS, MOMENTS, ROWS = 8, 12, 10  # rows in a moment

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.constancy import _change, change_of, inflation_of
-from compensator.lab.diagnosis.constants import DRY_FRICTION, OFFSET
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.constancy import _change, change_of, inflation_of
+from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.evidence import Base
-from tests.lab.diagnosis.judged import constants_of
+from tests.lab.left_over.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 JUMP_N_M = 0.02

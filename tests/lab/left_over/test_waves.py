@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.waves import Waves
+from compensator.lab.left_over.waves import Waves
 from compensator.lab.model.linear import orthonormal
 
 ROWS, PAIRS = 90, 6

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.white_rows import OUTLYING, WhiteRows, _at_ends, _bounded
+from compensator.lab.left_over.white_rows import OUTLYING, WhiteRows, _at_ends, _bounded
 from compensator.lab.screening.whitening import Whitening
 from tests.lab.screening.test_noise import ROWS, TRIALS, coloured, learnt
 

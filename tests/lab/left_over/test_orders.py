@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import orders
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.orders import Line, line_of
+from compensator.lab.left_over import orders
+from compensator.lab.left_over.orders import Line, line_of
 from compensator.lab.model.fit import Fit
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
-from tests.lab.diagnosis.judged import fitted, white_rows_of
+from tests.lab.left_over.judged import fitted, white_rows_of
 
 ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known
 RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise

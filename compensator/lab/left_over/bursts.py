@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.diagnosis.remainder import remainder_of
+from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray

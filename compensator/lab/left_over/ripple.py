@@ -11,7 +11,7 @@ by the frequencies around a line than noise would, the line counts for less by a
 
 import numpy as np
 
-from compensator.lab.diagnosis.swinging import (
+from compensator.lab.left_over.swinging import (
     AROUND_HZ,
     FEWEST_ROWS,
     FEWEST_TRIALS,
@@ -20,8 +20,8 @@ from compensator.lab.diagnosis.swinging import (
     is_peak,
     voltage_of,
 )
-from compensator.lab.diagnosis.waves import Waves
-from compensator.lab.diagnosis.white_rows import WhiteRows
+from compensator.lab.left_over.waves import Waves
+from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
 
