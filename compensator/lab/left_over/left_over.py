@@ -22,7 +22,6 @@ from compensator.lab.screening.evidence import Evidence
 PERIODIC = ("order",)  # shape of what goes round with the position
 PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
 FOLLOWING_BESIDE_NAMED = 1e-4  # chance: complete joints are not asked, and it must be much beside the name as well
-JUMPS_BESIDE_NAMED = 1e-4  # chance: what a formula that is nearly right leaves of friction may have two values, nearly
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +72,6 @@ def left_over(gathered: Candidates) -> LeftOver:
     change = change_of(constants)
     plain = _is_plain(gathered.fit)
     wandering = wandering_of(constants) if change is None else None
-    if wandering is not None and wandering.jumps and not plain and wandering.chance > JUMPS_BESIDE_NAMED:
-        wandering = None
     white = WhiteRows.of(gathered) if plain else None
     if white is None:
         return LeftOver(remainder, change, swing, wandering)

@@ -26,7 +26,7 @@ from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
 
 CARRIERS = 2  # the other is none, of `swinging.py`
-CHANCE = 2e-4  # of such a line in noise alone: smaller than asked of medians, which few trials cannot move
+CHANCE = 2e-4  # of such a line in noise alone, with any carrier
 MOST_OF_TRIAL = 5.0  # of half of what it gains: noise alone has so much once in 150
 LINE_HZ = 0.2  # from its middle on: what is further away is not of it
 AT_ONCE = 2**21  # values of columns

@@ -23,7 +23,8 @@ from compensator.lab.left_over.jumps import jumps_of
 from compensator.lab.left_over.variance_components import likeliest
 from compensator.lab.model.validation import rms
 
-CHANCE = 0.0025  # of so much wandering in noise alone
+# of so much wandering in noise alone; small, since a formula that is nearly right leaves some of friction, too
+CHANCE = 1e-4
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
 LEAST_OF_EFFORT = 0.001  # the same of a constant force
 FEWEST_CELLS = 40

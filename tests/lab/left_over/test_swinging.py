@@ -24,7 +24,7 @@ from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
 SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
-SMALL_RIPPLE = 0.0019
+SMALL_RIPPLE = 0.002
 
 
 def recorded(extra=None, seed=0, noise=BENCH.noise) -> list[Recording]:

@@ -8,17 +8,15 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over import cells
 from compensator.lab.left_over.constancy import change_of
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET
-from compensator.lab.left_over.left_over import JUMPS_BESIDE_NAMED, left_over
 from compensator.lab.left_over.wandering import wandering_of
-from compensator.lab.model.fit import fit_effects, fit_model
+from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather_curves
 from tests.lab.left_over.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 COULOMB_N_M = 0.08
-SMALL = 0.012  # of dry friction, half of a jump: its variance is not sure
+SMALL = 0.013  # of dry friction, half of a jump: its variance is not sure
 
 
 def fitted(extra=None, seed=0, **bench):
@@ -101,16 +99,6 @@ def test_a_jump_that_is_too_small_for_its_variance_is_told_by_its_two_values():
     assert found.jumps
     assert found.size == pytest.approx(2.0 * SMALL * COULOMB_N_M, rel=0.5)
     assert "jumps between two values" in diagnose(fit).sentence
-
-
-def test_beside_a_name_jumps_are_asked_to_be_surer():
-    fit = fitted(jumping(SMALL))
-    found = judged(fit)
-    assert found is not None
-    assert found.chance > JUMPS_BESIDE_NAMED
-    assert left_over(gather_curves(fit)).wandering is not None
-    named = fit_effects(fit.dataset, [*fit.names, "viscous_asymmetry"], fit.training)
-    assert left_over(gather_curves(named)).wandering is None
 
 
 @pytest.mark.parametrize(
