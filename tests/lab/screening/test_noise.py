@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 from compensator.lab.left_over.bursts import bursts_of
 from compensator.lab.screening.evidence import Base, Block, screen, screen_against_noise
-from compensator.lab.screening.noise import Noise
+from compensator.lab.screening.noise import Noise, spectral_density
 from compensator.lab.screening.stops import StopToStop
 
 TRIALS, ROWS, PERIOD_S = 12, 120, 0.05  # 6 s each
@@ -161,6 +161,18 @@ def test_how_much_static_friction_differs_from_stop_to_stop_is_learnt():
         noises = [Noise.learnt(dataset(), ALL, one, before=1.0, strokes=from_stop_to_stop()) for one in left]
         found = np.sqrt(np.mean([noise.from_stop_to_stop for noise in noises]))
         assert found == pytest.approx(deviation, abs=0.03, rel=0.25)
+
+
+def test_half_of_the_noise_at_any_frequency_is_left_to_what_does_not_last_a_stroke():
+    """Noise as slow as strokes looks the same: were all of it static friction's, a slow effect would seem sure."""
+    residual = scattering(np.random.default_rng(12), 1.0)
+    noises = [
+        Noise.learnt(dataset(), ALL, (NOTHING, residual), before=1.0, strokes=strokes)
+        for strokes in (None, from_stop_to_stop())
+    ]
+    whole, own = ([spectral_density(one, 2 * len(one)) for one in noise.autocovariances] for noise in noises)
+    shares = np.sum(own, axis=1) / np.sum(whole, axis=1)
+    assert shares[0] == pytest.approx(0.5, abs=0.05)  # slow rows: static friction has nearly all
 
 
 def test_what_differs_between_slow_strokes_is_no_evidence_for_what_differs_between_trials():
