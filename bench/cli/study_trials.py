@@ -40,6 +40,7 @@ def carry_out_all(
     """Suggest, run, add and diagnose in rounds; what completed is added, also where a later one did not."""
     running = _Running(session, study_id, model_id, as_json)
     tried = in_rounds(running.ask, running.run, running.learn, trials, at_once)
+    running.tell_last()
     if as_json:
         print_json(running.told())
     elif running.rounds[-1].get("diagnosis"):
@@ -79,6 +80,21 @@ class _Running:
 
     def ask(self, most: int, kept_out: Collection[str]) -> Sequence[_Suggested]:
         """What is suggested now."""
+        found = self._next(most, kept_out)
+        if found is None:
+            return []
+        self.rounds.append({"suggested": found, "experiments": []})
+        if not self._quiet:
+            tables.suggestion(found)
+        return [_Suggested(one) for one in found["trials"]]
+
+    def tell_last(self) -> None:
+        """What came of the last round, where nothing was suggested after it."""
+        if self.signal_code is None and self.rounds[-1].get("diagnosis") and "end" not in self.rounds[-1]:
+            self._next(1, ())
+
+    def _next(self, most: int, kept_out: Collection[str]) -> dict[str, Any] | None:
+        """What is suggested now, with what came of the last round; None where the rounds end."""
         try:
             found = suggested(self._session, self._study_id, self._model_id, most, kept_out)
         except StudyError as error:
@@ -87,15 +103,12 @@ class _Running:
             self.rounds[-1]["end"] = str(error)  # what was recorded since is in the study all the same
             if not self._quiet:
                 say(str(error))
-            return []
+            return None
         if self.rounds and "diagnosis" in self.rounds[-1]:
             self.rounds[-1]["came"] = what_came(self.rounds[-1]["suggested"], found)
             if not self._quiet and self.rounds[-1]["came"]:
                 say(in_words(self.rounds[-1]["came"]))
-        self.rounds.append({"suggested": found, "experiments": []})
-        if not self._quiet:
-            tables.suggestion(found)
-        return [_Suggested(one) for one in found["trials"]]
+        return found
 
     def run(self, trial: _Suggested) -> str:
         """One trial; however it ends, the joint is powered off."""
