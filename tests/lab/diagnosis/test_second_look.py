@@ -1,8 +1,13 @@
 """A small effect beside a formula that is nearly right: its gain is judged as evidence is, beside what that leaves."""
 
-import numpy as np
+from types import SimpleNamespace
 
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis import examination
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.families import _chance_of
 from compensator.lab.diagnosis.second_look import beside_open
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.gain import held_out_gain
@@ -45,3 +50,18 @@ def test_what_another_formula_hides_is_named_and_nothing_is_where_nothing_is():
 def test_a_model_whose_formulas_leave_nothing_open_is_looked_at_once():
     fit = fitted(Joint())
     assert beside_open(gather_curves(fit).fit, [ASYMMETRY], held_out) == {}
+
+
+def test_where_one_is_confirmed_no_other_is_looked_at_again(monkeypatch):
+    monkeypatch.setattr(examination, "is_confirmed", lambda one: one == "confirmed")
+    monkeypatch.setattr(examination, "beside_open", lambda *_: pytest.fail("looked at again"))
+    candidates = ["confirmed", "hidden"]
+    assert examination._looked_at_again(SimpleNamespace(show_in="sliding"), candidates) is candidates
+
+
+def test_two_looks_at_a_gain_are_paid_for():
+    screening = SimpleNamespace(chance_of=lambda _name: 1e-4)
+    effect = SimpleNamespace(name=ASYMMETRY)
+    once, twice = (_chance_of(screening, SimpleNamespace(effect=effect, beside_open=look)) for look in (None, object()))
+    assert twice == pytest.approx(2.0 * once)
+    assert once >= 1e-4

@@ -8,7 +8,7 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.bursts import bursts_of, is_rattle
-from compensator.lab.left_over.remainder import remainder_of
+from compensator.lab.left_over.remainder import Remainder, remainder_of
 from compensator.lab.left_over.swinging import swing_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
@@ -40,6 +40,11 @@ def test_what_noise_fills_of_the_motions_band_is_not_left_over():
     assert found.in_band < 0.01
     more = left(fitted(lambda x: 0.05 * np.abs(x.q - 0.4), noise=0.03))
     assert more.is_more_than_noise
+
+
+def test_what_is_surely_denser_but_small_beside_the_noise_is_not_told():
+    assert not Remainder(share=0.05, in_band=0.008, denser=4.0, certainty=9.0).is_more_than_noise
+    assert Remainder(share=0.05, in_band=0.012, denser=4.0, certainty=9.0).is_more_than_noise
 
 
 def test_coloured_noise_is_noise():

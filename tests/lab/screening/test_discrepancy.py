@@ -177,6 +177,15 @@ def test_teeth_lose_a_part_of_what_a_spring_pulls_at_angle_0():
     assert _carried([term("offset", [0.2]), term("weight_friction", [0.3])], m) == []
 
 
+def test_a_load_that_is_a_little_otherwise_is_among_what_a_model_leaves_open():
+    fit = fitted(Joint(static_excess=0.08, extra=meshed), "load_friction")
+    wide = discrepancy_columns(fit)
+    carried = fit.dataset.stack([np.array(_carried(list(fit.terms), one.motion)) for one in fit.dataset.trials])
+    assert carried.shape[1] > 0
+    missed = carried - wide @ np.linalg.lstsq(wide, carried, rcond=None)[0]
+    assert np.linalg.norm(missed) < 1e-6 * np.linalg.norm(carried)
+
+
 def test_every_effect_that_leaves_something_open_is_tested_here():
     assert {n for n, e in catalogue().items() if e.discrepancy is not None} == {
         *NEAR,
