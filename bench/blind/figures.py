@@ -72,6 +72,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
         _share("the same, where two were named and no other", 0.05, exact, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
+        _share("the same, where d' >= 6", 0.9, [one for one in memory if _must_be_named(one)], _is_right),
         _share("named alone after at most six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
         _gain_over_chance(answered),
     ]
@@ -207,6 +208,10 @@ def _standing(one: Result) -> Standing:
 
 def _first(one: Result) -> tuple[str, ...]:
     return _answer(one).first
+
+
+def _must_be_named(one: Result) -> bool:
+    return one.standings[0] is not None and one.standings[0].detectability >= MUST_NAME
 
 
 def _is_right(one: Result) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 from bench.blind.items import FAMILIES, Item
 from bench.blind.lab_answer import LabAnswer, ask_lab, base_fit
-from bench.blind.oracle import Standing, standing
+from bench.blind.oracle import Standing, standing, standing_at_breakaway
 from bench.blind.recorded import bench_for, recorded, unexplained
 from bench.blind.rivals import RIVALS
 from bench.blind.settling import Settled, settle
@@ -133,8 +133,17 @@ def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[S
     standings = []
     for name in names:
         others = [other for other in known if other != name]
-        standings.append(standing(_judged(fit, base, others, name), name) if name in known else None)
+        standings.append(_best_standing(fit, base, others, name) if name in known else None)
     return tuple(standings), held_out(whole).relative
+
+
+def _best_standing(fit: Fit, base: Candidates, others: list[str], name: str) -> Standing | None:
+    """Where it stands out most: in motion, or, of what memory leaves for the starts from rest, there."""
+    found = [standing(_judged(fit, base, others, name), name)]
+    if not others and effect_named(name).rows != "sliding":
+        found.append(standing_at_breakaway(fit, name))
+    known = [one for one in found if one is not None]
+    return max(known, key=lambda one: one.detectability, default=None)
 
 
 def _judged(fit: Fit, base: Candidates, others: list[str], name: str) -> Candidates:

@@ -7,10 +7,11 @@ from bench.challenge.session import Protocol
 from bench.configuration import BenchConfiguration
 
 WAVEFORMS = ("slow-sine", "small-sine", "sweep", "triangles")
-BREAKAWAY_SHARE = 0.1  # of the search's ceiling, roughly: ramps reach it in 3.3, 1.3 and 0.5 s
-RATES_PER_S = (0.3, 0.8, 2.0)
+BREAKAWAY_SHARE = 0.1  # of the search's ceiling, roughly: ramps reach it in 2, 0.8 and 0.3 s, which are rest, too
+RATES_PER_S = (0.5, 1.25, 3.0)
 LEAST_RATE_A_S = 0.005
-DWELLS_S = (0.2, 1.0, 5.0)
+DWELLS_S = (0.0, 1.0, 5.0)
+ORDERS = (1, -1, -1, 1)  # of passes: no line and no parabola in time goes with rest or rate (Thue, Morse)
 EXCURSION_RAD = 0.15
 AMPLITUDES_RAD = (0.5, 0.1, 0.02)
 CHIRP_HZ = (0.5, 8.0)
@@ -21,22 +22,21 @@ ACCELERATION_SHARE = 0.8  # of what the bench allows, at the chirp's highest fre
 def memory_protocol(
     configuration: BenchConfiguration, heaviest_kg: float, top_rad_s: float, duration_s: float
 ) -> Protocol:
-    """Excitation, reversals, breakaway ramps there and back through rests and rates, and a chirp with a load.
+    """Excitation, reversals, breakaway ramps there and back through rests and rates, twice, and a chirp with a load.
 
-    The second ramps run in the opposite order, so that neither warmth nor running-in goes with rest or rate.
+    Friction scatters from stop to stop, so that a rise of a fifth takes some seventy starts to be sure of.
     """
     motions: dict[str, Any] = {"loads_kg": [0.0, heaviest_kg], "repeats": 1, "waveforms": list(WAVEFORMS)}
     motions |= {"speed_rad_s": round(top_rad_s, 2), "duration_s": duration_s}
     breakaway_a = BREAKAWAY_SHARE * configuration.search.ceiling_a
     rates = [max(round(share * breakaway_a, 4), LEAST_RATE_A_S) for share in RATES_PER_S]
-    ramps = {"excursion_rad": EXCURSION_RAD}
+    passes = [{"rates_a_s": rates[::order], "dwells_s": list(DWELLS_S[::order])} for order in ORDERS]
     low_hz, high_hz = CHIRP_HZ
     amplitude_rad = ACCELERATION_SHARE * configuration.motion.acceleration_rad_s2 / (2.0 * pi * high_hz) ** 2
     chirp = {"load_kg": heaviest_kg, "amplitude_rad": round(amplitude_rad, 5), "low_hz": low_hz, "high_hz": high_hz}
     return [
         ("excitation", motions),
         ("reversals", {"amplitudes_rad": list(AMPLITUDES_RAD)}),
-        ("breakaway-ramps", {**ramps, "rates_a_s": rates, "dwells_s": list(DWELLS_S)}),
-        ("breakaway-ramps", {**ramps, "rates_a_s": rates[::-1], "dwells_s": list(DWELLS_S[::-1])}),
+        *(("breakaway-ramps", {"excursion_rad": EXCURSION_RAD, **ramps}) for ramps in passes),
         ("chirp", {**chirp, "duration_s": CHIRP_S}),
     ]

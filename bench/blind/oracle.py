@@ -5,10 +5,17 @@ lambda = n / v ln(1 + r^2),   v = rows per independent row, from what the true m
 d' = sqrt(lambda (1 - rho^2)), rho the largest projected correlation with any other effect of the catalogue
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
+from compensator.lab.at_rest.breakaway_fit import fit_breakaway
+from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.diagnosis.breakaway_family import breakaway_blocks
+from compensator.lab.effects.catalogue import candidates, effect_named
+from compensator.lab.model.fit import Fit
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
@@ -36,16 +43,36 @@ class Standing:
 
 def standing(gathered: Candidates, name: str) -> Standing | None:
     """How far an effect stands out of a model without it; None where these trials cannot show it at all."""
-    blocks = [block for block in gathered.named if block.name == name]
-    found = [(one, _share(gathered, block), block) for block in blocks if (one := _own(gathered, block)) is not None]
-    if not found:
+    return _standing_among(gathered.bases, gathered.named, name)
+
+
+def standing_at_breakaway(fit: Fit, name: str) -> Standing | None:
+    """The same in the effort of starts from rest, each weighed as the true model knows it; None where there are few.
+
+    Args:
+        fit: of the model without the effect.
+        name: of the effect.
+    """
+    rows, effect = breakaway_rows(fit), effect_named(name)
+    if rows is None or effect.breakaway is None or int(rows.training.sum()) < FEWEST_STARTS:
         return None
-    own, share, block = max(found, key=lambda item: item[1])
-    base = gathered.bases[block.base]
+    true = fit_breakaway(rows, [*fit.effects, effect])
+    base = replace(fit_breakaway(rows, fit.effects), weight=true.weight)
+    blocks, bases, _ = breakaway_blocks(base, candidates(fit.names, fit.dataset.facts))
+    return _standing_among(bases, blocks, name)
+
+
+def _standing_among(bases: Sequence[Base], blocks: Sequence[Block], name: str) -> Standing | None:
+    own_blocks = [block for block in blocks if block.name == name]
+    known = [(one, bases[block.base], block) for block in own_blocks if (one := _own(bases, block)) is not None]
+    if not known:
+        return None
+    own, base, block = max(known, key=lambda item: _share(item[1], item[2]))
     left = base.residual - own * float(own @ base.residual)
     independent = len(left) / _inflation(left)
+    share = _share(base, block)
     noncentrality = -independent * np.log1p(-share)
-    correlation, rival = _nearest(gathered, name, own)
+    correlation, rival = _nearest(bases, blocks, name, own)
     return Standing(
         float(np.sqrt(share / (1.0 - share))),
         float(np.sqrt(max(noncentrality, 0.0) * (1.0 - correlation**2))),
@@ -54,27 +81,26 @@ def standing(gathered: Candidates, name: str) -> Standing | None:
     )
 
 
-def _own(gathered: Candidates, block: Block) -> FloatArray | None:
+def _own(bases: Sequence[Base], block: Block) -> FloatArray | None:
     """What the block explains beyond the base, unit norm."""
-    base = gathered.bases[block.base]
+    base = bases[block.base]
     directions = _new(base, block)
     own = directions @ (directions.T @ base.residual)
     norm = float(np.linalg.norm(own))
     return own / norm if norm > 0.0 else None
 
 
-def _share(gathered: Candidates, block: Block) -> float:
+def _share(base: Base, block: Block) -> float:
     """Share of the base's residual power that the block explains."""
-    base = gathered.bases[block.base]
     explained = _new(base, block).T @ base.residual
     return min(float(explained @ explained) / float(base.residual @ base.residual), 1.0 - 1e-9)
 
 
-def _nearest(gathered: Candidates, name: str, own: FloatArray) -> tuple[float, str]:
+def _nearest(bases: Sequence[Base], blocks: Sequence[Block], name: str, own: FloatArray) -> tuple[float, str]:
     largest, rival = 0.0, ""
-    for block in gathered.named:
+    for block in blocks:
         if block.name != name:
-            correlation = float(np.linalg.norm(_new(gathered.bases[block.base], block).T @ own))
+            correlation = float(np.linalg.norm(_new(bases[block.base], block).T @ own))
             if correlation > largest:
                 largest, rival = correlation, block.name
     return min(largest, 1.0), rival

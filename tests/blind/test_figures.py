@@ -52,6 +52,16 @@ def test_what_must_be_named_and_what_must_not() -> None:
     assert _figure(results, "over the oracle's, mean").measured == pytest.approx(1.05)
 
 
+def test_of_memory_what_theory_can_name_has_a_line_of_its_own() -> None:
+    results = [
+        _result("memory", "backlash", ("backlash",), 1.0, 9.0),
+        _result("memory", "backlash", (), 1.0, 6.0),
+        _result("memory", "dwell_strengthening", (), 1.0, 5.9),
+    ]
+    found = [one for one in figures(results) if "memory" in one.what or one.what == "the same, where d' >= 6"]
+    assert [(one.items, one.measured) for one in found] == [(3, pytest.approx(1 / 3)), (2, 0.5)]
+
+
 def test_what_was_withheld_has_to_be_flagged_whatever_is_named_instead() -> None:
     def asked(ratio: float, withheld: LabAnswer | None) -> Result:
         return replace(_result("single", "spring", ("spring",), ratio, 9.0), withheld=withheld)

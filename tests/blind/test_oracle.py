@@ -1,8 +1,14 @@
 import numpy as np
 import pytest
 
-from bench.blind.oracle import NEEDED, standing
+from bench.blind import judge
+from bench.blind.figures import MUST_NAME
+from bench.blind.oracle import NEEDED, Standing, standing, standing_at_breakaway
+from compensator.lab.screening.candidates import gather
 from tests.blind.columns import ROWS, gathered, independent
+from tests.lab.ramps import STATIC, ramp_fit
+
+NAME = "dwell_strengthening"
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.2, 1.0])
@@ -35,3 +41,23 @@ def test_rows_that_repeat_each_other_count_less() -> None:
 
 def test_an_effect_that_is_no_candidate_has_no_standing() -> None:
     assert standing(gathered(independent(3, 1)[0], {}), "effect") is None
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_an_effect_with_memory_stands_out_where_it_shows_most(monkeypatch: pytest.MonkeyPatch, seen: bool) -> None:
+    fit = ramp_fit(lambda rest_s, _rate: STATIC * (1.0 + 0.4 * rest_s / (rest_s + 1.0)))
+    at_breakaway = standing_at_breakaway(fit, NAME)
+    assert at_breakaway is not None
+    assert at_breakaway.detectability > MUST_NAME
+    in_motion = Standing(0.3, at_breakaway.detectability + 1.0, "pre_sliding", 0.1) if seen else None
+    monkeypatch.setattr(judge, "standing", lambda *_: in_motion)
+    found = judge._oracle(fit, gather(fit), (NAME,))[0][0]
+    assert found == (in_motion or at_breakaway)
+
+
+def test_nothing_stands_out_at_breakaway_where_nothing_is_hidden_or_nothing_can_be_seen() -> None:
+    constant = standing_at_breakaway(ramp_fit(), NAME)
+    assert constant is not None
+    assert constant.detectability < 3.0
+    assert standing_at_breakaway(ramp_fit(dwells_s=(0.3, 3.0), rates=(0.1,)), NAME) is None  # too few starts
+    assert standing_at_breakaway(ramp_fit(), "backlash") is None  # none of its share is there

@@ -1,6 +1,6 @@
 """What breakaway events have to say: which effect is missing in the effort of breaking away from rest."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,7 +64,7 @@ def breakaway_answer(
         only = [effect for effect in wanted if effect.rows == "breakaway"]
         return None, {effect.name: f"{effect.name} needs more: {why}{effect.excited_by}" for effect in only}
     base = fit_breakaway(rows, fit.effects)
-    blocks, bases, left_out = _blocks(base, wanted)
+    blocks, bases, left_out = breakaway_blocks(base, wanted)
     unit = rows.unit[rows.training]
     lag = base.coefficients_of(LAG)
     late = lag is not None and bool(lag[0] > 0.0)  # no start is seen before it happens
@@ -88,14 +88,15 @@ def breakaway_answer(
     return Answer(verdict, sentence, p_value, ranked, None, notes, best.noncentrality), left_out
 
 
-def _shows_where_due(candidate: Candidate, sliding: Mapping[str, float] | None) -> bool:
-    """Whether steady sliding does not speak against an effect that shows there, too."""
-    due = sliding is not None and candidate.effect.rows == "sliding"
-    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SHOWS
+def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list[Block], list[Base], dict[str, str]]:
+    """Candidates' columns on the training rows, the two bases, and why effects cannot be judged.
 
+    The first base has the column of the late onset, the second has not.
 
-def _blocks(base: BreakawayFit, wanted: list[Effect]) -> tuple[list[Block], list[Base], dict[str, str]]:
-    """Candidates' columns on the training rows, and the two bases: with the column of the late onset, and without."""
+    Args:
+        base: fit of the model's own shares; rows count by its weights.
+        wanted: effects; those with a share in breakaway are judged.
+    """
     rows = base.rows
     inside, weight = rows.training, base.weight[rows.training]
     model = base.columns[:, :-1]
@@ -125,6 +126,12 @@ def _blocks(base: BreakawayFit, wanted: list[Effect]) -> tuple[list[Block], list
                     Block(effect.name, weighted, WITHOUT_LAG if share.replaces_lag else WITH_LAG, len(shapes), shape)
                 )
     return blocks, bases, left_out
+
+
+def _shows_where_due(candidate: Candidate, sliding: Mapping[str, float] | None) -> bool:
+    """Whether steady sliding does not speak against an effect that shows there, too."""
+    due = sliding is not None and candidate.effect.rows == "sliding"
+    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SHOWS
 
 
 def _over_one_model(base: BreakawayFit, bases: list[Base], evidence: list[Evidence]) -> list[Evidence]:
