@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from compensator.lab.diagnosis import examination
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import is_confirmed, is_possible, is_within_bounds
 from compensator.lab.effects.catalogue import effect_named
@@ -46,6 +47,26 @@ def test_where_one_trial_holds_most_of_a_gain_near_reversals_the_others_must_gai
     gained = Gain(0.3, -0.01, 0.4, without_best)
     candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, True, None, rows)
     assert is_confirmed(candidate) == confirmed
+
+
+@pytest.mark.parametrize(("rows", "weighted"), [("sliding", True), ("moving", False)])
+def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypatch, rows, weighted):
+    asked: list[Any] = []
+    steadiness = np.ones(3)
+    fit: Any = SimpleNamespace(dataset=SimpleNamespace(rows="sliding", steadiness=steadiness))
+
+    def held_out(model, chosen, weights):
+        asked.append((chosen, weights))
+        return SimpleNamespace(relative=0.05)
+
+    monkeypatch.setattr(examination, "held_out", held_out)
+    monkeypatch.setattr(examination, "held_out_gain", lambda *_: Gain(0.5, 0.4, 0.6))
+    one = Candidate(
+        effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, Gain(0.3, 0.2, 0.4), True, None, rows
+    )
+    found = examination.as_in_the_ladder(one, fit, fit, rows)
+    assert asked == [(rows, steadiness if weighted else None)] * 2
+    assert (found.after, found.gain.value) == (0.05, 0.5)
 
 
 @pytest.mark.parametrize(
