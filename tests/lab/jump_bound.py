@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from compensator.lab.left_over.cells import CellsOfTrial
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.jumps import jumps_of
 from compensator.lab.left_over.variance_components import Part, likeliest
-from compensator.lab.left_over.wandering import CHANCE, chance_of
+from compensator.lab.left_over.wandering import chance_of
 from tests.lab.line import Line, print_table
 
 TRIALS, CELLS, LASTS_S, EVERY_S = 18, 16, 6.0, 4.0
@@ -46,7 +47,7 @@ def lab_tells(height: float, random: np.random.Generator) -> bool:
     """Whether it does, of trials of its own."""
     trials = [one.cells for one in draw(height, random)]
     alone, _ = likeliest([one.part.without_last for one in trials])
-    return chance_of(jumps_of(trials, alone).gained) <= CHANCE
+    return chance_of(jumps_of(trials, alone).gained) <= PLAIN.wandering
 
 
 def draw(height: float, random: np.random.Generator) -> list[Drawn]:
@@ -117,7 +118,7 @@ def bound(height: float, random: np.random.Generator) -> float:
         ratios += np.concatenate(found)
     surest = np.sort(ratios)[::-1]
     chance = np.cumsum(np.exp(-surest)) / BOUND
-    return float(np.mean(chance <= CHANCE))
+    return float(np.mean(chance <= PLAIN.wandering))
 
 
 if __name__ == "__main__":

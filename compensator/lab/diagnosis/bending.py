@@ -16,8 +16,7 @@ from compensator.lab.screening.candidates import Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Evidence, among_all, score_of, screen_against_noise
 
-# of a score, twice a log Bayes factor (Kass, Raftery 1995); beside it the held-out error must fall for sure
-STRONG = 6.0
+STRONG = 6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,9 @@ class Bending:
 
 
 def bending(fit: Fit, gathered: Candidates) -> Bending | None:
-    """The free hysteresis, if its evidence is strong and it lowers the held-out error for sure.
+    """The free hysteresis, if its evidence is no luck and it lowers the held-out error for sure.
+
+    The error need only fall where the evidence is very strong: few trials may turn back where it shows.
 
     Args:
         fit: of the model.
@@ -44,12 +45,13 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     if gathered.noise is None:
         return None
     found = screen_against_noise(gathered.bases, [gathered.curves.hysteresis], gathered.noise).evidence
-    if not found or found[0].score < STRONG or among_all(found[0].p_value) > SIGNIFICANT:
+    if not found or found[0].score <= 0.0 or among_all(found[0].p_value) > SIGNIFICANT:
         return None
     bent = with_columns(fit, found[0].block.name, gathered.curves.hysteresis_columns)
     before, after = (held_out(model, None, fit.dataset.steadiness) for model in (fit, bent))
     gain = held_out_gain(before, after)
-    return Bending(found[0], after) if gain.low > 0.0 and gain.value >= LEAST_GAIN else None
+    sure = gain.low > 0.0 or found[0].score >= VERY_STRONG
+    return Bending(found[0], after) if sure and gain.value >= LEAST_GAIN else None
 
 
 def still_bending(explained: Fit, gathered: Candidates, named: Evidence) -> bool:

@@ -13,13 +13,14 @@ import numpy as np
 
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.drift import Moments, chance_of_drift, moments_of
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import IntArray
 from compensator.lab.screening.evidence import Base, inflation_of
 
 FEWEST_ROWS = 8  # of a stretch
-CHANCE = 1e-4  # of so much change in noise alone
+CHANCE = PLAIN.change  # of so much change in noise alone
 LEAST_SHARE = 0.004  # of dry friction: what scatters by 2 % over 0.05 rad leaves so much of a mean over some 2 rad
 LEAST_OF_EFFORT = 0.005  # as little, of all that the motor gives, is nothing to repeat a trial for
 MOST_STATIC = 0.05  # share of dry friction, in a stroke: it scatters by some percent, of which this is next to nothing

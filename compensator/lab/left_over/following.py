@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.left_over.white_rows import CHANCE, FORETOLD, WhiteRows
+from compensator.lab.left_over.error_budget import PLAIN
+from compensator.lab.left_over.white_rows import FORETOLD, WhiteRows
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
@@ -32,15 +33,14 @@ class Following:
     foretold: float
 
 
-def following_of(gathered: Candidates, white: WhiteRows, most: float | None = None) -> Following | None:
+def following_of(gathered: Candidates, white: WhiteRows, most: float = PLAIN.following) -> Following | None:
     """The variable that is followed most surely; None where each may be noise, or of one stretch alone.
 
     Args:
         gathered: the model and its curves.
         white: its rows.
-        most: chance in noise alone up to which it is none; `CHANCE` where nothing is said.
+        most: chance in noise alone up to which it is none.
     """
-    most = CHANCE if most is None else most
     splines = gathered.curves.splines
     found = []
     for name, spline in splines.items():

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constancy import Change, change_of
 from compensator.lab.left_over.constants import Constants
+from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.orders import Line, growing_of, line_of
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
@@ -21,7 +22,6 @@ from compensator.lab.screening.evidence import Evidence
 
 PERIODIC = ("order",)  # shape of what goes round with the position
 PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
-FOLLOWING_BESIDE_NAMED = 1e-4  # chance: complete joints are not asked, and it must be much beside the name as well
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +71,11 @@ def left_over(gathered: Candidates) -> LeftOver:
     constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
     change = change_of(constants)
     plain = _is_plain(gathered.fit)
-    wandering = wandering_of(constants) if change is None else None
+    wandering = wandering_of(constants, (PLAIN if plain else NAMED).wandering) if change is None else None
     white = WhiteRows.of(gathered) if plain else None
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
-    swing = swing or ripple_of(gathered, white)
+    swing = swing or ripple_of(gathered)
     return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))
 
 
@@ -102,7 +102,7 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     white = WhiteRows.of(grown)
     if white is None:
         return None
-    follows = following_of(grown, white, FOLLOWING_BESIDE_NAMED)
+    follows = following_of(grown, white, NAMED.following)
     found = (line_of(grown, white), follows, _growing(grown, white, named.block.name))
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None

@@ -1,16 +1,17 @@
-"""Whether the voltage that drives the motor ripples unseen, on rows whitened by the noise that a model would leave.
+"""Whether the voltage that drives the motor ripples unseen: a matched filter for what a supply does to the effort.
 
-A matched filter: cosine and sine of every frequency, times the voltage, as a supply that ripples makes them, whitened,
-without what the model explains of them, by least squares in each trial (Lomb 1976, Scargle 1982; the phase is another
-one in each). Twice what a trial gains by them is in noise alone chi-squared of two degrees of freedom. The gains of all
+Cosine and sine of every frequency, times the voltage, as a supply that ripples makes them, without what the model
+explains of them, by least squares in each trial (Lomb 1976, Scargle 1982; the phase is another one in each). What a
+trial gains by them is, over the noise's density there, an exponential variable if nothing ripples. The gains of all
 trials are summed, each up to a bound, so that no few trials, whose motion has that frequency, make a line.
 
-Noise is known for all rows together, and there may be more of it at some frequencies than that: where trials gain more
-by the frequencies around a line than noise would, the line counts for less by as much.
+The density is what trials gain by the frequencies around, without the line's own. Noise that is learnt from all that
+the model leaves would have the ripple in it, and hide it: what is periodic is no noise, but lies in a band of it.
 """
 
 import numpy as np
 
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.swinging import (
     AROUND_HZ,
     FEWEST_ROWS,
@@ -21,22 +22,25 @@ from compensator.lab.left_over.swinging import (
     voltage_of,
 )
 from compensator.lab.left_over.waves import Waves
-from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.screening.candidates import Candidates
+from compensator.lab.rows.dataset import IntArray
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.evidence import Base
 
 CARRIERS = 2  # the other is none, of `swinging.py`
-CHANCE = 2e-4  # of such a line in noise alone, with any carrier
-MOST_OF_TRIAL = 5.0  # of half of what it gains: noise alone has so much once in 150
-LINE_HZ = 0.2  # from its middle on: what is further away is not of it
+CHANCE = PLAIN.ripple  # of such a line in noise alone, with any carrier
+MOST_OF_TRIAL = 5.0  # of what it gains over the noise: noise alone has so much once in 150
+LINE_HZ = 0.3  # from its middle on, in a trial of some seconds: what is further away is not of it
 AT_ONCE = 2**21  # values of columns
 NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
 STEP = 0.05  # of a sum's distribution
+NODES = 9  # of an integral over the noise
+TINY = float(np.finfo(float).tiny)
 
 Indices = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 
-def ripple_of(gathered: Candidates, white: WhiteRows) -> Swing | None:
+def ripple_of(gathered: Candidates) -> Swing | None:
     """The frequency at which what is left swings most surely with the voltage; None where it does not for sure."""
     dataset, rows = gathered.fit.dataset, gathered.rows
     voltage = dataset.rows_of([voltage_of(trial) for trial in dataset.trials])[rows]
@@ -50,24 +54,42 @@ def ripple_of(gathered: Candidates, white: WhiteRows) -> Swing | None:
     at_hz = frequencies.at_hz
     if len(at_hz) < 3:
         return None
-    carrier = white.weights * voltage
+    base, carrier = gathered.as_measured(WITH_CHAIN), gathered.weights * voltage
     portions = -(-2 * len(at_hz) * len(carrier) // AT_ONCE)
-    parts = [_gains(white, carrier, time_s, some, trials) for some in np.array_split(at_hz, portions)]
-    gains = np.concatenate(parts, axis=1)
+    parts = [_gains(base, carrier, time_s, some, trials) for some in np.array_split(at_hz, portions)]
+    gains, around = _over_noise(at_hz, np.concatenate(parts, axis=1))
     whole = np.minimum(gains, MOST_OF_TRIAL).sum(axis=0)
     best = 1 + int(np.argmax(np.where(is_peak(whole), whole[1:-1], 0.0)))
-    noise = _noise_around(at_hz, gains, best)
-    chance = frequencies.independent * chance_of_sum(gains[:, best] / noise)
+    lasted_s = sum(float(np.ptp(time_s[own])) for own in trials)
+    independent = float(around[best]) * float(at_hz[1] - at_hz[0]) * lasted_s
+    chance = min(1.0, frequencies.independent * chance_over_noise(gains[:, best], independent))
     return Swing(float(at_hz[best]), chance, of_voltage=True) if CARRIERS * chance <= CHANCE else None
 
 
-def _noise_around(at_hz: FloatArray, gains: FloatArray, best: int) -> float:
-    """What trials gain (trials, m) around a frequency, over what noise would, if it is more."""
-    apart_hz = np.abs(at_hz - at_hz[best])
-    around = gains[:, (apart_hz <= AROUND_HZ) & (apart_hz > LINE_HZ)]
-    if around.size == 0:
-        return 1.0
-    return max(float(np.minimum(around, MOST_OF_TRIAL).mean()) / (1.0 - float(np.exp(-MOST_OF_TRIAL))), 1.0)
+def _over_noise(at_hz: FloatArray, gains: FloatArray) -> tuple[FloatArray, IntArray]:
+    """What trials gain (trials, m) over what they would by noise alone, and how many frequencies around tell that.
+
+    That is the mean around each frequency, of all trials; a trial's own scale is its mean over all frequencies.
+    """
+    gains = gains / np.maximum(gains.mean(axis=1, keepdims=True), TINY)
+    bounded = np.minimum(gains, MOST_OF_TRIAL).mean(axis=0) / (1.0 - float(np.exp(-MOST_OF_TRIAL)))
+    apart_hz = np.abs(np.subtract.outer(at_hz, at_hz))
+    around = (apart_hz <= AROUND_HZ) & (apart_hz > LINE_HZ)
+    count = around.sum(axis=1)
+    floor = (around @ bounded) / np.maximum(count, 1)
+    return gains / np.maximum(floor, TINY), count
+
+
+def chance_over_noise(gains: FloatArray, independent: float) -> float:
+    """The chance of such a sum of gains (n,) over noise that is known from so many independent powers.
+
+    The mean of so many exponential variables scatters by one over their root, which a sum of gains far in its tail
+    takes for evidence: the chance is the mean over what the noise may be (as Snedecor's F is).
+    """
+    places, shares = np.polynomial.hermite_e.hermegauss(NODES)
+    scales = np.exp(places / np.sqrt(max(independent, 1.0)))
+    chances = [chance_of_sum(gains * scale) for scale in scales]
+    return float(shares @ chances / shares.sum())
 
 
 def chance_of_sum(gains: FloatArray) -> float:
@@ -82,17 +104,14 @@ def chance_of_sum(gains: FloatArray) -> float:
     return float(np.clip(sums[max(at, 0) :].sum(), 0.0, 1.0))
 
 
-def _gains(
-    white: WhiteRows, carrier: FloatArray, time_s: FloatArray, at_hz: FloatArray, trials: list[Indices]
-) -> FloatArray:
-    """Half of what each trial gains by each frequency (m,), shape (trials, m)."""
+def _gains(base: Base, carrier: FloatArray, time_s: FloatArray, at_hz: FloatArray, trials: list[Indices]) -> FloatArray:
+    """What each trial gains by each frequency (m,), shape (trials, m)."""
     phase = 2.0 * np.pi * np.outer(time_s, at_hz)
     columns = carrier[:, None] * np.concatenate([np.cos(phase), np.sin(phase)], axis=1)
-    columns = white.whitening.whitened(columns)
-    return np.array([_gained(columns[own], white.basis[own], white.residual[own]) for own in trials])
+    return np.array([_gained(columns[own], base.basis[own], base.residual[own]) for own in trials])
 
 
 def _gained(columns: FloatArray, basis: FloatArray, residual: FloatArray) -> FloatArray:
     """By cosines and sines (n, 2m) of one trial, beside what the model explains; 0 where they are not apart from it."""
     waves = Waves.of(columns, basis, residual)
-    return 0.5 * waves.where(waves.left.sum(axis=0) > NEW * waves.whole.sum(axis=0))
+    return waves.where(waves.left.sum(axis=0) > NEW * waves.whole.sum(axis=0))

@@ -18,11 +18,12 @@ from math import exp, log
 import numpy as np
 from scipy.stats import binom
 
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset, IntArray, Trial
 
-CHANCE = 1e-4  # of such a line in noise alone, with any carrier: a complete model is asked for many things
+CHANCE = PLAIN.swing  # of such a line in noise alone, with any carrier
 LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
 BAND = 0.9  # of the cut-off
 AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and a line is narrower

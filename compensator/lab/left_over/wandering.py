@@ -19,12 +19,11 @@ from scipy.stats import chi2
 
 from compensator.lab.left_over.cells import CellsOfTrial, cells_of, most_changed
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.jumps import jumps_of
 from compensator.lab.left_over.variance_components import likeliest
 from compensator.lab.model.validation import rms
 
-# of so much wandering in noise alone; small, since a formula that is nearly right leaves some of friction, too
-CHANCE = 1e-4
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
 LEAST_OF_EFFORT = 0.001  # the same of a constant force
 FEWEST_CELLS = 40
@@ -50,27 +49,31 @@ class Wandering:
     changes: tuple[tuple[int, float], ...]
     jumps: bool = False
 
-    @property
-    def is_there(self) -> bool:
-        """Whether it is neither noise nor next to nothing."""
+    def is_there(self, most: float) -> bool:
+        """Whether it is neither noise, by the chance up to which it is none, nor next to nothing."""
         least = LEAST_OF_FRICTION if self.what == DRY_FRICTION else LEAST_OF_EFFORT
-        return self.chance <= CHANCE and self.share > least
+        return self.chance <= most and self.share > least
 
 
-def wandering_of(constants: Constants) -> Wandering | None:
-    """What wanders most surely; None where nothing does for sure, or where there are too few rows to tell."""
+def wandering_of(constants: Constants, most: float = PLAIN.wandering) -> Wandering | None:
+    """What wanders most surely; None where nothing does for sure, or where there are too few rows to tell.
+
+    Args:
+        constants: of the rows.
+        most: chance in noise alone up to which it is none.
+    """
     direction = constants.direction
     whole = {DRY_FRICTION: (constants.friction, direction), OFFSET: (rms(constants.effort), np.ones(len(direction)))}
     found = [
         one
         for what, (size, sign) in whole.items()
         if size > 0.0
-        for one in _wandering(what, size, cells_of(constants, constants.weights * size * sign))
+        for one in _wandering(what, size, cells_of(constants, constants.weights * size * sign), most)
     ]
-    return min((one for one in found if one.is_there), key=lambda one: one.chance, default=None)
+    return min((one for one in found if one.is_there(most)), key=lambda one: one.chance, default=None)
 
 
-def _wandering(what: str, size: float, trials: list[CellsOfTrial]) -> list[Wandering]:
+def _wandering(what: str, size: float, trials: list[CellsOfTrial], most: float) -> list[Wandering]:
     """How much of something of a size wanders, and, if it is dry friction, jumps; none where too few rows can tell."""
     if sum(len(trial.time_s) for trial in trials) < FEWEST_CELLS:
         return []
@@ -81,7 +84,7 @@ def _wandering(what: str, size: float, trials: list[CellsOfTrial]) -> list[Wande
     courses = [one.part.kernels[-1] @ own / one.size for one, own in zip(trials, having.weighed, strict=True)]
     chance = chance_of(2.0 * (having.value - without.value))
     found = [Wandering(what, chance, share * size, share, most_changed(trials, courses))]
-    if what == DRY_FRICTION and not found[0].is_there:
+    if what == DRY_FRICTION and not found[0].is_there(most):
         jumps = jumps_of(trials, alone)
         chance, changes = chance_of(jumps.gained), most_changed(trials, jumps.courses)
         found.append(Wandering(what, chance, jumps.height * size, jumps.height, changes, jumps=True))

@@ -12,7 +12,6 @@ from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.noise import SHRINK_ROWS, Noise
 from compensator.lab.screening.whitening import Whitening
 
-CHANCE = 1e-6  # of so much in noise alone: small, since its tails are known less well than its power
 FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of each, the best one left out
 ENDS = 3  # rows at the ends of strokes, each a kind of its own
 OUTLYING = 2.5  # standard deviations: one row in eighty of noise

@@ -6,7 +6,7 @@ import pytest
 from compensator.lab.diagnosis import families
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import left_over
-from compensator.lab.left_over.white_rows import CHANCE
+from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from tests.lab.left_over.judged import fitted
 
 ORDER, RIPPLE_N_M = 5.0, 0.02
@@ -40,8 +40,8 @@ def test_beside_a_name_a_curve_need_not_be_as_sure_as_where_nothing_is_named(mon
     asked = []
     monkeypatch.setattr(left_over, "following_of", lambda *given: asked.append(given[2:]))
     assert diagnosed(np.cos).classes[0][0] == "position_periodic_friction"
-    assert asked == [(left_over.FOLLOWING_BESIDE_NAMED,)]
-    assert left_over.FOLLOWING_BESIDE_NAMED > CHANCE
+    assert asked == [(NAMED.following,)]
+    assert NAMED.following > PLAIN.following
 
 
 def test_what_is_little_beside_the_named_effect_is_not_told(monkeypatch):

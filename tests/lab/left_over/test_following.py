@@ -6,6 +6,7 @@ import pytest
 from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.left_over import following
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.model.fit import Fit, fit_model
@@ -17,9 +18,9 @@ from tests.lab.synthetic import FACTS
 DRAG_N_M_S_RAD = 0.003  # more one way than the other: a tenth of viscous friction
 
 
-def found(fit: Fit) -> Following | None:
+def found(fit: Fit, most: float = PLAIN.following) -> Following | None:
     gathered = with_noise(gather(fit))
-    return following_of(gathered, white_rows_of(gathered))
+    return following_of(gathered, white_rows_of(gathered), most)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -37,19 +38,17 @@ def test_what_differs_by_direction_of_speed_follows_the_velocity():
     assert f"it varies with {left.following.driver}, most" in unexplained_in_words(left, None, 0.1, 40, FACTS)
 
 
-def test_less_sure_curves_are_told_where_more_of_chance_is_allowed(monkeypatch):
+def test_less_sure_curves_are_told_where_more_of_chance_is_allowed():
     fit = fitted(lambda x: DRAG_N_M_S_RAD * np.abs(x.v))
     gathered = with_noise(gather(fit))
     white = white_rows_of(gathered)
     told = following_of(gathered, white)
     assert told is not None
-    monkeypatch.setattr(following, "CHANCE", 0.5 * told.chance)
-    assert following_of(gathered, white) is None
+    assert following_of(gathered, white, 0.5 * told.chance) is None
     assert following_of(gathered, white, 2.0 * told.chance) == told
 
 
 def test_what_comes_in_one_stretch_alone_follows_nothing(monkeypatch):
-    monkeypatch.setattr(following, "CHANCE", 1.0)
     hit = iter([True])
 
     def extra(x):
@@ -57,9 +56,9 @@ def test_what_comes_in_one_stretch_alone_follows_nothing(monkeypatch):
         return 0.01 * here * np.cos(3.0 * x.q)
 
     fit = fitted(extra)
-    assert found(fit) is None
+    assert found(fit, 1.0) is None
     monkeypatch.setattr(following, "FORETOLD", -np.inf)
-    assert found(fit) is not None
+    assert found(fit, 1.0) is not None
 
 
 def test_without_known_noise_nothing_of_the_kind_is_asked():

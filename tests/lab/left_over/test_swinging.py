@@ -11,7 +11,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over import ripple
 from compensator.lab.left_over.left_over import left_over
-from compensator.lab.left_over.ripple import MOST_OF_TRIAL, chance_of_sum, ripple_of
+from compensator.lab.left_over.ripple import MOST_OF_TRIAL, chance_of_sum, chance_over_noise, ripple_of
 from compensator.lab.left_over.swinging import Swing, motions_of, swing_of
 from compensator.lab.model.fit import Fit, fit_model, widened
 from compensator.lab.recordings.recording import Recording
@@ -19,7 +19,6 @@ from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather, gather_curves
 from compensator.lab.screening.clearing import with_noise
-from tests.lab.left_over.judged import white_rows_of
 from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
@@ -81,8 +80,7 @@ def test_a_ripple_of_the_supply_is_told_where_it_follows_the_voltage():
 
 
 def rippled(fit: Fit) -> Swing | None:
-    gathered = with_noise(gather(fit))
-    return ripple_of(gathered, white_rows_of(gathered))
+    return ripple_of(with_noise(gather(fit)))
 
 
 def test_a_ripple_that_is_too_small_for_its_power_alone_is_told_by_a_matched_filter():
@@ -92,6 +90,13 @@ def test_a_ripple_that_is_too_small_for_its_power_alone_is_told_by_a_matched_fil
     assert found is not None
     assert found.of_voltage
     assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
+
+
+def test_a_ripple_does_not_hide_itself_as_noise_of_its_own_frequency():
+    """In few trials: noise that is learnt from all that is left has it in a band, over which it is spread."""
+    found = rippled(fitted(rippling(recorded(seed=2, noise=0.004)[:6], 0.003, at_hz=(0.6,))))
+    assert found is not None
+    assert found.frequency_hz == pytest.approx(0.6, rel=0.05)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -128,6 +133,17 @@ def test_the_chance_of_a_sum_is_that_of_as_many_exponential_variables():
     for share in (0.5, 0.1, 0.01):
         at = float(np.quantile(gains, 1.0 - share))
         assert chance_of_sum(np.full(12, at / 12)) == pytest.approx(share, rel=0.15)
+
+
+def test_the_noise_around_a_line_is_known_no_better_than_from_so_many_powers():
+    random, powers, trials = np.random.default_rng(5), 40, 10
+    found = []
+    for _ in range(1000):
+        gains = random.exponential(size=trials) / random.exponential(size=powers).mean()
+        found.append((chance_over_noise(gains, powers), chance_of_sum(gains)))
+    by_what_is_known, as_if_sure = (np.array(found) <= 0.02).mean(axis=0)
+    assert by_what_is_known <= 0.03
+    assert as_if_sure > 0.03
 
 
 def test_a_line_in_a_few_trials_is_theirs_alone():

@@ -1,0 +1,45 @@
+"""What chance of a false alarm each question about what a model leaves may spend: all of them, in one place.
+
+A complete model is asked many things, and is falsely alarmed about where noise alone answers any of them: their
+chances add up (Bonferroni). So each has its part of one percent, the larger the more a moderate cause needs it. A part
+is smaller where the tails of a statistic are known less well than its middle, or where joints that lack nothing have a
+little of what is asked for.
+"""
+
+from dataclasses import dataclass, fields
+
+MOST = 0.01  # of complete models
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ErrorBudget:
+    """Chances in noise alone, each over all that its question tries.
+
+    Attributes:
+        change: something constant is another one in each stretch.
+        wandering: dry friction, or a constant force, wanders in time, or jumps; of each of the three.
+        swing: it swings at one frequency, the motor's voltage or none as its carrier.
+        ripple: it swings with the voltage, by a matched filter.
+        line: it comes back with the position.
+        following: it follows a variable that is measured.
+    """
+
+    change: float
+    wandering: float
+    swing: float
+    ripple: float
+    line: float
+    following: float
+
+    @property
+    def whole(self) -> float:
+        """The chance that any of them is answered by noise alone, at most."""
+        return float(sum(getattr(self, one.name) for one in fields(self))) + 2.0 * self.wandering
+
+
+PLAIN = ErrorBudget(change=1e-4, wandering=2.5e-3, swing=1e-4, ripple=1e-3, line=1e-6, following=1e-5)
+"""Of a model that is what every joint has."""
+
+NAMED = ErrorBudget(change=1e-4, wandering=1e-4, swing=1e-4, ripple=0.0, line=1e-6, following=1e-4)
+"""Of one with a further formula: though nearly right, it leaves some of friction. Lines and curves must be much beside
+the name as well, which those of complete joints never are; ripples are not asked for."""
