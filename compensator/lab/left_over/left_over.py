@@ -103,7 +103,7 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     if white is None:
         return None
     follows = following_of(grown, white, NAMED.following)
-    found = (line_of(grown, white), follows, _growing(grown, white, named.block.name))
+    found = (line_of(grown, white, NAMED.line, 0.0), follows, _growing(grown, white, named.block.name))
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None
 
@@ -111,4 +111,4 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
 def _growing(grown: Candidates, white: WhiteRows, name: str) -> Line | None:
     """What grows with the speed at the very order of an effect that goes round with the position, and is named."""
     term = next(term for term in grown.fit.terms if term.effect.name == name)
-    return growing_of(grown, white, term.shape[0]) if term.effect.shape_names == PERIODIC else None
+    return growing_of(grown, white, term.shape[0], NAMED.line) if term.effect.shape_names == PERIODIC else None

@@ -5,6 +5,9 @@ turn. A periodogram over the position, on rows whitened by the noise that a comp
 sine of every order against that noise, once as a force and once against the motion, as friction is (Lomb 1976, Scargle
 1982: least squares at uneven places). Chance has as many tries as there are independent orders, twice.
 
+Noise that is learnt from all that is left has a line in it, spread over a band, and so hides it. What may be a line is
+looked at again, against noise that it has no part in.
+
 A line in one stretch may be of time as well as of position, so that the others must foretell what each stretch holds.
 """
 
@@ -23,7 +26,7 @@ from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
-CHANCE = PLAIN.line  # of a line at any order in noise alone
+LOOK_AGAIN = 0.01  # chance of a line in noise that is learnt with it
 STEPS = 3.0  # per width of a line, so that none falls between two orders
 MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
 SLOW = 0.1  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
@@ -53,10 +56,9 @@ class Line:
     foretold: float
     growing: bool = False
 
-    @property
-    def is_there(self) -> bool:
-        """Whether it is neither noise, nor next to nothing, nor of one stretch alone."""
-        return self.chance <= CHANCE and self.foretold >= FORETOLD and self.share >= LEAST_OF_EFFORT
+    def is_there(self, most: float) -> bool:
+        """Whether it is no noise, by the chance up to which it is none, nor next to nothing, nor of one stretch."""
+        return self.chance <= most and self.foretold >= FORETOLD and self.share >= LEAST_OF_EFFORT
 
 
 @dataclass(frozen=True)
@@ -100,34 +102,51 @@ class _Path:
         return np.concatenate([passed * np.cos(phase), passed * np.sin(phase)], axis=1)
 
 
-def line_of(gathered: Candidates, white: WhiteRows) -> Line | None:
-    """The line that is least by chance; None where none is there for sure."""
+def line_of(
+    gathered: Candidates, white: WhiteRows, most: float = PLAIN.line, look_again: float = LOOK_AGAIN
+) -> Line | None:
+    """The line that is least by chance; None where none is there for sure.
+
+    Args:
+        gathered: the model.
+        white: its rows.
+        most: chance in noise alone up to which it is none.
+        look_again: the same in noise that is learnt with it, up to which one without it is asked.
+    """
     path = _Path.of(gathered)
     orders = _orders(path)
     portions = np.array_split(orders, -(-4 * len(orders) * len(path.position) // AT_ONCE))
     sizes = np.concatenate([_sizes(path, white, some) for some in portions], axis=1)
     against, best = divmod(int(np.argmax(sizes)), len(orders))
-    chance = min(1.0, sizes.size / STEPS * white.noise.chance(float(sizes[against, best]), 2))
-    if chance > CHANCE:
+    tries = sizes.size / STEPS
+    chance = min(1.0, tries * white.noise.chance(float(sizes[against, best]), 2))
+    if chance > max(most, look_again):
         return None
     columns = path.columns(orders[best : best + 1]) * (path.direction[:, None] if against else 1.0)
+    if most < chance <= look_again:
+        white = white.cleared(gathered, columns)
+        chance = min(1.0, tries * _chance(white, columns))
     line = _line(gathered, white, columns, float(orders[best]), chance)
     line = replace(line, against_motion=bool(against))
-    return line if line.is_there else None
+    return line if line.is_there(most) else None
 
 
-def growing_of(gathered: Candidates, white: WhiteRows, order: float) -> Line | None:
+def growing_of(gathered: Candidates, white: WhiteRows, order: float, most: float) -> Line | None:
     """The line of one order [rad per unit of position] that grows with the square of the speed; None where none does.
 
     A force that goes round with the joint is as large at any speed. What grows so is an acceleration: one that the
-    joint has of a wheel off its centre, or one that never was, of an angle that is misread.
+    joint has of a wheel off its centre, or one that never was, of an angle that is misread. Arguments as `line_of`.
     """
     path = _Path.of(gathered)
     columns = path.columns(np.array([order])) * path.speed[:, None] ** 2
+    line = _line(gathered, white, columns, order, _chance(white, columns))
+    return replace(line, growing=True) if line.is_there(most) else None
+
+
+def _chance(white: WhiteRows, columns: FloatArray) -> float:
+    """Of so much in noise alone at one order, by its cosine and sine (n, 2)."""
     beside = orthonormal(white.beside(columns))
-    size = float(np.sum((white.residual @ beside) ** 2))
-    line = _line(gathered, white, columns, order, white.noise.chance(size, max(beside.shape[1], 1)))
-    return replace(line, growing=True) if line.is_there else None
+    return white.noise.chance(float(np.sum((white.residual @ beside) ** 2)), max(beside.shape[1], 1))
 
 
 def _line(gathered: Candidates, white: WhiteRows, columns: FloatArray, order: float, chance: float) -> Line:

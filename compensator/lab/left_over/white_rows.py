@@ -9,6 +9,7 @@ from compensator.lab.model.weights import NORMAL
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import IntArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.clearing import noise_without
 from compensator.lab.screening.noise import SHRINK_ROWS, Noise
 from compensator.lab.screening.whitening import Whitening
 
@@ -76,18 +77,24 @@ class WhiteRows:
     @classmethod
     def of(cls, gathered: Candidates) -> "WhiteRows | None":
         """The tested rows on top of all that the chain can produce; None where the noise is not known."""
-        if gathered.noise is None:
-            return None
+        return None if gathered.noise is None else cls._made(gathered, gathered.noise)
+
+    def cleared(self, gathered: Candidates, columns: FloatArray) -> "WhiteRows":
+        """The same rows, of noise that columns (n, k) have no part in: weighted ones, as they were measured."""
+        return self._made(gathered, noise_without(gathered, columns))
+
+    @classmethod
+    def _made(cls, gathered: Candidates, noise: Noise) -> "WhiteRows":
         base = gathered.as_measured(WITH_CHAIN)
-        whitening = Whitening.of(gathered.noise)
-        wild = _at_ends(gathered.noise, whitening.whitened(base.residual[:, None])[:, 0])
+        whitening = Whitening.of(noise)
+        wild = _at_ends(noise, whitening.whitened(base.residual[:, None])[:, 0])
         whitening = whitening.scaled(wild)
         white = whitening.whitened(np.column_stack([base.basis, base.residual]))
         basis = orthonormal(white[:, :-1])
         residual = _bounded(white[:, -1] - basis @ (basis.T @ white[:, -1]))
         residual -= basis @ (basis.T @ residual)
         _, stretch = np.unique(gathered.fit.dataset.block_index[gathered.rows], return_inverse=True)
-        return cls(gathered.noise, whitening, gathered.weights, stretch.reshape(-1), basis, residual)
+        return cls(noise, whitening, gathered.weights, stretch.reshape(-1), basis, residual)
 
     def beside(self, columns: FloatArray) -> FloatArray:
         """Weighted columns (n, k), whitened, without what the model explains of them."""

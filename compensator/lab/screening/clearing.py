@@ -1,6 +1,9 @@
 """The noise that a complete model would leave, learnt before anybody knows what is missing."""
 
-from compensator.lab.screening.candidates import Candidates
+from dataclasses import replace
+
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import most_likely, score_of
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.stops import StopToStop
@@ -22,6 +25,12 @@ def with_noise(gathered: Candidates) -> Candidates:
         left = left.with_block(block)
         noise = _learnt(gathered, left)
     return gathered.evened(noise)
+
+
+def noise_without(gathered: Candidates, columns: FloatArray) -> Noise:
+    """Of the same rows, where something else may be missing, too: columns (n, k), weighted, as they were measured."""
+    plain = replace(gathered, bases=[gathered.as_measured(WITH_CHAIN)])
+    return _learnt(plain, replace(plain, bases=[plain.bases[0].extended(columns)]))
 
 
 def _learnt(gathered: Candidates, left: Candidates) -> Noise:

@@ -1,11 +1,15 @@
 """Questions about what a model leaves share one budget, and each asks for its own part of it."""
 
 from dataclasses import fields
+from inspect import signature
 
 import pytest
 
-from compensator.lab.left_over import constancy, left_over, orders, ripple, swinging
+from compensator.lab.left_over import constancy, left_over, ripple, swinging
 from compensator.lab.left_over.error_budget import MOST, NAMED, PLAIN
+from compensator.lab.left_over.following import following_of
+from compensator.lab.left_over.orders import line_of
+from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.screening.candidates import gather
 from tests.lab.left_over.judged import fitted
@@ -18,8 +22,9 @@ def test_a_complete_model_is_not_alarmed_about_more_often_than_the_budget_says()
 
 
 def test_each_question_has_its_own_part():
-    own = (constancy.CHANCE, swinging.CHANCE, ripple.CHANCE, orders.CHANCE)
-    assert own == (PLAIN.change, PLAIN.swing, PLAIN.ripple, PLAIN.line)
+    assert (PLAIN.change, PLAIN.swing, PLAIN.ripple) == (constancy.CHANCE, swinging.CHANCE, ripple.CHANCE)
+    for question, part in ((line_of, PLAIN.line), (following_of, PLAIN.following), (wandering_of, PLAIN.wandering)):
+        assert signature(question).parameters["most"].default == part
 
 
 @pytest.mark.parametrize(("more", "budget"), [([], PLAIN), (["spring"], NAMED)])

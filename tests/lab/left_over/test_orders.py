@@ -7,6 +7,7 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.orders import Line, line_of
 from compensator.lab.model.fit import Fit
 from compensator.lab.screening.candidates import Candidates, gather
@@ -17,12 +18,12 @@ ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multipl
 RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise
 
 
-def line(fit: Fit) -> Line | None:
-    return line_in(with_noise(gather(fit)))
+def line(fit: Fit, most: float = PLAIN.line) -> Line | None:
+    return line_in(with_noise(gather(fit)), most)
 
 
-def line_in(gathered: Candidates) -> Line | None:
-    return line_of(gathered, white_rows_of(gathered))
+def line_in(gathered: Candidates, most: float = PLAIN.line) -> Line | None:
+    return line_of(gathered, white_rows_of(gathered), most)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -32,9 +33,9 @@ def test_noise_does_not_come_back(seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_best_of_a_thousand_orders_is_no_small_chance(seed, monkeypatch):
-    for bound, anything in (("CHANCE", 1.0), ("FORETOLD", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
+    for bound, anything in (("FORETOLD", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
         monkeypatch.setattr(orders, bound, anything)
-    found = line(fitted(seed=seed))
+    found = line(fitted(seed=seed), 1.0)
     assert found is not None
     assert found.chance > 0.01
 
@@ -59,6 +60,15 @@ def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
     assert f"comes back with the position about {found.order:.3g} times a turn of the joint:" in answer.sentence
 
 
+def test_a_line_does_not_hide_itself_in_noise_that_is_learnt_with_it():
+    gathered = with_noise(gather(fitted(lambda x: 0.55 * RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))))
+    white = white_rows_of(gathered)
+    assert line_of(gathered, white, look_again=0.0) is None
+    found = line_of(gathered, white)
+    assert found is not None
+    assert found.order == pytest.approx(ORDER, rel=0.02)
+
+
 def test_friction_that_rises_and_falls_with_the_position_is_told_as_such():
     found = line(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * np.sign(x.v)))
     assert found is not None
@@ -79,7 +89,6 @@ def test_what_differs_along_the_path_but_does_not_come_back_is_no_line():
 
 def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
     """It may be of time as well as of position, however little chance has to do with it."""
-    monkeypatch.setattr(orders, "CHANCE", 1.0)
     hit = iter([True])
 
     def extra(x):
@@ -87,9 +96,9 @@ def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
         return 0.02 * here * np.cos(ORDER * x.q)
 
     fit = fitted(extra)
-    assert line(fit) is None
+    assert line(fit, 1.0) is None
     monkeypatch.setattr(orders, "FORETOLD", -np.inf)
-    assert line(fit) is not None
+    assert line(fit, 1.0) is not None
 
 
 def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
