@@ -12,6 +12,7 @@ from tests.lab.synthetic import Array, Joint, Truth
 STEPS = 50  # per sample
 ARM_KG_M2 = 0.012  # of the whole 0.02 kg m2; the rest is the rotor
 FRICTION_N_M = 0.003
+GAP_RAD = 0.03
 
 
 def missing_torque(x: Truth, stiffness_n_m_rad: float, damping_n_m_s_rad: float, gap_rad: float = 0.0) -> Array:
@@ -34,7 +35,7 @@ def missing_torque(x: Truth, stiffness_n_m_rad: float, damping_n_m_s_rad: float,
 
 def loose_teeth(x: Truth) -> Array:
     """Teeth of 400 N m/rad that hardly bounce, with 30 mrad of free play."""
-    return missing_torque(x, 400.0, 2.0, 0.03)
+    return missing_torque(x, 400.0, 2.0, GAP_RAD)
 
 
 def twisting(x: Truth) -> Array:

@@ -28,8 +28,8 @@ class Bending:
 
     def predicts_best(self, fit: Fit, candidates: Sequence[Candidate]) -> bool:
         """Whether it has a lower held-out error, for sure, than the model with any of the effects that can be it."""
-        steady = fit.dataset.steadiness
-        others = [held_out(with_effect(fit, one.effect.name, one.shape), None, steady) for one in _possible(candidates)]
+        known = fit.determination
+        others = [held_out(with_effect(fit, one.effect.name, one.shape), None, known) for one in _possible(candidates)]
         return all(held_out_gain(other, self.after).low > 0.0 for other in others)
 
 
@@ -48,7 +48,7 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     if not found or found[0].score <= 0.0 or among_all(found[0].p_value) > SIGNIFICANT:
         return None
     bent = with_columns(fit, found[0].block.name, gathered.curves.hysteresis_columns)
-    before, after = (held_out(model, None, fit.dataset.steadiness) for model in (fit, bent))
+    before, after = (held_out(model, None, fit.determination) for model in (fit, bent))
     gain = held_out_gain(before, after)
     sure = gain.low > 0.0 or found[0].score >= VERY_STRONG
     return Bending(found[0], after) if sure and gain.value >= LEAST_GAIN else None

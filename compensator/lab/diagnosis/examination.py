@@ -51,7 +51,7 @@ def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: Mo
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
     rows = show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
     # near reversals a part of the whole error is asked for, since every chain leaves a little there
-    return held_out(fit, rows, fit.dataset.steadiness if show_in == "sliding" else None)
+    return held_out(fit, rows, fit.determination if show_in == "sliding" else None)
 
 
 def _held_out_sliding(fit: Fit) -> HeldOut:

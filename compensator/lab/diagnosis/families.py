@@ -202,8 +202,8 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | Non
     if best.score <= 0.0 or best.p_value > SIGNIFICANT or _noise_draws_curves(gathered):
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
-    steady = fit.dataset.steadiness
-    return best if held_out_gain(held_out(fit, None, steady), held_out(with_curve, None, steady)).low > 0.0 else None
+    known = fit.determination
+    return best if held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known)).low > 0.0 else None
 
 
 def _noise_draws_curves(gathered: Candidates) -> bool:

@@ -129,8 +129,8 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
             swapped = fit_effects(
                 fit.dataset, [better if other == name else other for other in fit.names], fit.training
             )
-            steady = without.dataset.steadiness
-            if held_out(swapped, weight=steady).rms < held_out(fit, weight=steady).rms:
+            known = without.determination
+            if held_out(swapped, weight=known).rms < held_out(fit, weight=known).rms:
                 fit = swapped
                 steps.append(_step("swap", str(better), name, fit))
     return steps
@@ -143,8 +143,8 @@ def _drops(start: Fit, fit: Fit) -> list[Step]:
         without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
-        steady = without.dataset.steadiness
-        if held_out_gain(held_out(alike, rows, steady), held_out(fit, rows, steady)).low <= 0.0:
+        known = without.determination
+        if held_out_gain(held_out(alike, rows, known), held_out(fit, rows, known)).low <= 0.0:
             fit = without
             steps.append(_step("drop", name, None, fit))
     return steps

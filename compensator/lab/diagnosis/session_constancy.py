@@ -55,7 +55,7 @@ def change_in_session(explained: Fit, gathered: Candidates, named: Block) -> InS
     if score_of(grown.bases, _block(grown, share, later), grown.noise) < VERY_STRONG:
         return None
     changed = with_columns(explained, NAME, (share * later)[:, None])
-    before, after = (held_out(one, None, explained.dataset.steadiness) for one in (explained, changed))
+    before, after = (held_out(one, None, explained.determination) for one in (explained, changed))
     if after.rms >= before.rms:
         return None
     own = changed.coefficients[-1 - len(explained.terms[-1].coefficients) : -1]

@@ -34,6 +34,7 @@ class Motion:
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
         bend: what effects of the model with a `slope` add for each unit of effort that is predicted more.
+        doubt: by how much these may be wrong for what teeth do in known free play, in the measure of `bend`.
         temperature_c, supply_v: NaN where not measured.
         position_span: range of position over all trials of the study.
         session_span_s: from the first trial's start to the last one's end, as far as the conditions tell.
@@ -67,6 +68,7 @@ class Motion:
     session_span_s: float
     slow: float
     fast: float
+    doubt: FloatArray | float = 0.0
     misread_acceleration: FloatArray | float = 0.0
     travelled: float = 0.0
     usual_speed: float = 0.0

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.linear import Bounds, Solution, solve
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.shape_search import find_shapes, first_shapes
-from compensator.lab.model.weights import regime_weights
+from compensator.lab.model.weights import RowWeights, regime_weights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
@@ -106,6 +107,18 @@ class Fit:
         """Weighted columns (n, K) and target (n,) of the training rows."""
         weight = self.weight[self.training]
         return weight[:, None] * self.columns[self.training], weight * self.target[self.training]
+
+    @cached_property
+    def determination(self) -> FloatArray:
+        """How well the model determines the effort of every row, at most 1, shape (N,): less where it bends.
+
+        Models are held against each other by what they know: beside a dead time, rows without current say nothing.
+        """
+        dataset = self.dataset
+        if not dataset.is_bent:
+            return np.ones(len(dataset.effort))
+        every = np.ones(len(dataset.effort), dtype=bool)
+        return RowWeights.learnt(dataset, self.residual, self.training).determined(dataset, every)
 
     @property
     def predicted(self) -> FloatArray:

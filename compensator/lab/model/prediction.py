@@ -13,6 +13,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Motion
 from compensator.lab.model.reading import at_true_position
+from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
 
 if TYPE_CHECKING:
@@ -44,7 +45,10 @@ def with_own_prediction(fit: "Fit") -> "Dataset":
         wholes.append(whole)
     dataset = fit.dataset.with_prediction(loads, totals, beyond, wholes)
     steep = [term for term in fit.terms if term.effect.slope is not None and np.any(term.coefficients)]
-    return dataset.with_bend([_bend(steep, trial.motion) for trial in dataset.trials]) if steep else dataset
+    if not steep:
+        return dataset
+    motions = [trial.motion for trial in dataset.trials]
+    return dataset.with_bend([_bend(steep, one) for one in motions], [_doubt(steep, one) for one in motions])
 
 
 def beyond_tangent(fit: "Fit", index: int, coefficients: FloatArray) -> FloatArray:
@@ -75,6 +79,26 @@ def _bend(steep: Sequence["Term"], motion: Motion) -> FloatArray:
         assert term.effect.slope is not None
         bend += term.coefficients @ term.effect.slope(motion, term.shape)
     return bend
+
+
+def _doubt(steep: Sequence["Term"], motion: Motion) -> FloatArray:
+    """By how much steep terms may be wrong for what teeth do in the free play that is known, shape (n,).
+
+    Where the far side flies, or is caught, the effort is another one than a rigid gear's, and so may its sign be. In
+    the measure of a bend: over the effort at which steep terms are steep.
+    """
+    doubt, gap = np.zeros(len(motion.time_s)), motion.facts.backlash_rad
+    if not gap or motion.inertia_beyond == 0.0:
+        return doubt
+    around_zero = replace(motion, predicted=np.zeros(1))
+    for second in flights(motion.parting, gap, motion.step_s):
+        moved = replace(motion, predicted=motion.predicted - motion.inertia_beyond * second)
+        for term in steep:
+            assert term.effect.slope is not None
+            change = term.effect.columns(moved, term.shape) - term.effect.columns(motion, term.shape)
+            steepest = term.effect.slope(around_zero, term.shape)
+            doubt = np.maximum(doubt, np.abs(np.abs(term.coefficients) @ (np.abs(change) * steepest)))
+    return doubt
 
 
 def effort_per_torque(fit: "Fit") -> float | None:

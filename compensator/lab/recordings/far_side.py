@@ -15,6 +15,7 @@ from compensator.lab.recordings.recording import FloatArray
 PLAUSIBLE_SHARE = (0.3, 3.0)
 # of free play or compliance: up to so many times what the owner tells, teeth that bounce and data sheets explain it
 TOLD = 2.0
+ABOUT_KNOWN = (0.6, 1.0, 1.6)  # shares of the free play that is told: so little is it known
 
 
 def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> FloatArray:
@@ -32,6 +33,11 @@ def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> Floa
         return parting
     second: FloatArray = np.diff(_ways_in_free_play(parting, 0.5 * gap, step_s), 2) / step_s**2
     return second
+
+
+def flights(parting: FloatArray, gap: float, step_s: float) -> list[FloatArray]:
+    """`parting_in_free_play` for free play as little known as a data sheet tells it. Arguments as there."""
+    return [parting_in_free_play(parting, share * gap, step_s) for share in ABOUT_KNOWN]
 
 
 @njit(cache=True)

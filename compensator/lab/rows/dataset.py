@@ -117,7 +117,8 @@ class Dataset:
         """Weight of each row, shape (N,): where the model bends, whatever it misses comes multiplied."""
         if not self.is_bent:
             return np.ones(len(self.effort))
-        bends = self.stack([np.abs(trial.motion.bend)[None] for trial in self.trials])[:, 0]
+        motions = [trial.motion for trial in self.trials]
+        bends = self.stack([np.maximum(np.abs(motion.bend), motion.doubt)[None] for motion in motions])[:, 0]
         return 1.0 / (1.0 + np.maximum(bends, 0.0))
 
     @cached_property
@@ -268,6 +269,7 @@ class Dataset:
                     effort_rate=rate_of_change(total, trial.signals.rate_hz),
                     largest_effort=largest,
                     bend=np.zeros(len(total)),
+                    doubt=0.0,
                 ),
             )
             for trial, load, total, (part, parting), whole in zip(
@@ -276,15 +278,18 @@ class Dataset:
         )
         return replace(self, trials=trials)
 
-    def with_bend(self, bends: Sequence[FloatArray]) -> "Dataset":
+    def with_bend(self, bends: Sequence[FloatArray], doubts: Sequence[FloatArray | float] | None = None) -> "Dataset":
         """The same rows of a model f(p) + p that is steep in what it predicts, p, linearised about that (Gauss-Newton).
 
         Every column that p is made of carries 1 + f'(p), and f'(p) p is added to the effort that they are fitted to.
 
         Args:
             bends: f'(p) of each trial's motion, shape (n,).
+            doubts: `Motion.doubt` of each trial's; None: none.
         """
-        motions = [replace(trial.motion, bend=bend) for trial, bend in zip(self.trials, bends, strict=True)]
+        doubts = doubts or [0.0] * len(self.trials)
+        each = zip(self.trials, bends, doubts, strict=True)
+        motions = [replace(trial.motion, bend=bend, doubt=doubt) for trial, bend, doubt in each]
         trials = tuple(replace(trial, motion=motion) for trial, motion in zip(self.trials, motions, strict=True))
         return replace(self, trials=trials)
 

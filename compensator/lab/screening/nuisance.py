@@ -11,11 +11,12 @@ import numpy as np
 from compensator.lab.effects import backlash, elasticity, measurement_delay
 from compensator.lab.effects.effect import Motion, MotionRows
 from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.far_side import ABOUT_KNOWN
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
-KNOWN_PLAY = {"known_play_less": 0.6, "known_play": 1.0, "known_play_more": 1.6}  # of what the owner knows: not missing
+KNOWN_PLAY = dict(zip(("known_play_less", "known_play", "known_play_more"), ABOUT_KNOWN, strict=True))  # not missing
 # shares of what the owner knows, as far as data sheets are off, and dampings
 STIFFNESS_ABOUT = tuple((share, damping) for share in (0.8, 1.25) for damping in elasticity.DAMPINGS)
 

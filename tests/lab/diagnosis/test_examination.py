@@ -52,8 +52,8 @@ def test_where_one_trial_holds_most_of_a_gain_near_reversals_the_others_must_gai
 @pytest.mark.parametrize(("rows", "weighted"), [("sliding", True), ("moving", False)])
 def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypatch, rows, weighted):
     asked: list[Any] = []
-    steadiness = np.ones(3)
-    fit: Any = SimpleNamespace(dataset=SimpleNamespace(rows="sliding", steadiness=steadiness))
+    known = np.ones(3)
+    fit: Any = SimpleNamespace(dataset=SimpleNamespace(rows="sliding"), determination=known)
 
     def held_out(model, chosen, weights):
         asked.append((chosen, weights))
@@ -65,7 +65,7 @@ def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypa
         effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, Gain(0.3, 0.2, 0.4), True, None, rows
     )
     found = examination.as_in_the_ladder(one, fit, fit, rows)
-    assert asked == [(rows, steadiness if weighted else None)] * 2
+    assert asked == [(rows, known if weighted else None)] * 2
     assert (found.after, found.gain.value) == (0.05, 0.5)
 
 

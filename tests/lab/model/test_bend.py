@@ -14,7 +14,8 @@ from compensator.lab.recordings.recording import Recording
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from tests.lab.synthetic import FACTS, Bench, Joint, Truth, recordings
+from tests.lab.far_side import ARM_KG_M2, GAP_RAD, loose_teeth
+from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 LOST, ORDER, WAVE = 0.1, 6.0, 0.03
 DEFAULT = default_effects(FACTS)
@@ -97,3 +98,18 @@ def test_weights_go_over_residual_and_effort(both):
     half = held_out(both).weighted(np.full(int(both.training.sum()), 0.5))
     assert half.rms == pytest.approx(0.5 * held_out(both).rms)
     assert half.relative == pytest.approx(held_out(both).relative)
+
+
+def test_where_teeth_that_fly_may_turn_the_sign_rows_count_less():
+    """The far side of known free play is not where a rigid gear has it, nor is the sign of the current."""
+    made = [estimated(one) for one in recordings(Joint(extra=loose_teeth), Bench(noise=0.003), plans()[:6], seed=3)]
+    told = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, arm_moment_n_m=Joint().arm_moment, backlash_rad=GAP_RAD)
+    fit = fit_model(make_dataset(made, told, Processing(rows="moving")), [*DEFAULT, "dead_time"])
+    motions = [trial.motion for trial in fit.dataset.trials]
+    bent = fit.dataset.with_bend([motion.bend for motion in motions]).steadiness
+    left = np.abs(fit.residual[fit.training])
+    straight = bent[fit.training] > 0.9
+    flown = fit.dataset.steadiness[fit.training] < 0.6
+    assert np.median(left[straight & flown]) > 4.0 * np.median(left[straight & ~flown])
+    tight = fit_model(make_dataset(made, FACTS, Processing(rows="moving")), [*DEFAULT, "dead_time"]).dataset
+    assert all(np.all(trial.motion.doubt == 0.0) for trial in tight.trials)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.diagnosis.examination import examine
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.remainder import remainder_of
@@ -13,10 +14,12 @@ from compensator.lab.model.weights import BENDS, RowWeights, row_weights
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather_curves
+from compensator.lab.screening.candidates import gather, gather_curves
+from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import screen_against_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, recordings
 
-LOST, NO_CURRENT = 0.15, 0.03
+LOST, NO_CURRENT, WAVE = 0.15, 0.03, 0.004
 
 
 def estimated(one: Recording, random: np.random.Generator) -> Recording:
@@ -75,6 +78,20 @@ def test_determined_rows_are_those_that_do_not_bend(bent, straight):
     assert determined[steady > BENDS[-1]] == pytest.approx(steady[steady > BENDS[-1]])
     learnt = RowWeights.learnt(straight.dataset, straight.residual, straight.training)
     assert (learnt.determined(straight.dataset, straight.training) == 1.0).all()
+
+
+def test_models_are_held_against_each_other_by_rows_that_they_determine(straight):
+    """A smaller effect beside a dead time: what a duty does that makes no current would hide its gain."""
+    random = np.random.default_rng(7)
+    joint = Joint(extra=lambda x: WAVE * np.cos(6.0 * x.q) * np.sign(x.v))
+    made = [estimated(one, random) for one in recordings(joint, Bench(noise=0.002), seed=3)]
+    fit = fit_model(make_dataset(made, FACTS, Processing()), [*default_effects(FACTS), "dead_time"])
+    gathered = with_noise(gather(fit))
+    assert gathered.noise is not None
+    found = screen_against_noise(gathered.bases, gathered.named, gathered.noise).evidence
+    wave = examine(fit, gathered, [one for one in found if one.block.name == "position_periodic_friction"][:1])[0]
+    assert wave.gain.low > 0.15
+    assert (straight.determination == 1.0).all()
 
 
 def test_where_nothing_bends_residuals_of_each_kind_have_like_variance(straight):
