@@ -3,6 +3,9 @@
 Flips of stretches know a curve's evidence no better than so few stretches can; rows whitened by the noise that a
 complete model would leave know it by that noise. A curve that is told so need not be what is missing, so that it is
 not offered for the model: it says that something is.
+
+A joint that lacks nothing follows variables, too, by some thousandths of its dry friction, which is not quite the same
+along its path, at each load and at each speed: what is so small must be beyond doubt.
 """
 
 from dataclasses import dataclass
@@ -10,11 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.left_over.white_rows import FORETOLD, WhiteRows
+from compensator.lab.left_over.white_rows import FORETOLD, LOOK_AGAIN, WhiteRows
 from compensator.lab.model.linear import orthonormal
+from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
+LEAST_OF_FRICTION = 0.005  # root mean square: less may be the joint's own
 NEW = 0.05  # of a column's norm beside the model: of less, little can be told from the model itself
 
 
@@ -33,24 +38,53 @@ class Following:
     foretold: float
 
 
-def following_of(gathered: Candidates, white: WhiteRows, most: float = PLAIN.following) -> Following | None:
+def following_of(
+    gathered: Candidates,
+    white: WhiteRows,
+    most: float = PLAIN.following,
+    most_if_large: float = PLAIN.following_far,
+    look_again: float = LOOK_AGAIN,
+) -> Following | None:
     """The variable that is followed most surely; None where each may be noise, or of one stretch alone.
 
     Args:
         gathered: the model and its curves.
         white: its rows.
-        most: chance in noise alone up to which it is none.
+        most: chance in noise alone up to which it is none, however little it is.
+        most_if_large: the same of what is more than the joint's own.
+        look_again: the same in noise that is learnt with the curve, up to which noise without it is asked.
     """
     splines = gathered.curves.splines
-    found = []
-    for name, spline in splines.items():
-        columns = _new(white, spline.columns[gathered.rows] * white.weights[:, None])
-        size, rank = float(np.sum((white.residual @ columns) ** 2)), columns.shape[1]
-        chance = min(1.0, len(splines) * white.noise.chance(size, rank)) if rank else 1.0
-        if chance <= most:
-            found.append(Following(name, chance, white.foretold(columns)[1]))
-    there = [one for one in found if one.foretold >= FORETOLD]
-    return max(there, key=lambda one: one.foretold, default=None)
+    weighted = {name: one.columns[gathered.rows] * white.weights[:, None] for name, one in splines.items()}
+    followed = {name: _followed(name, white, columns, len(splines)) for name, columns in weighted.items()}
+    sure = [one for one in followed.values() if one.chance <= most and one.foretold >= FORETOLD]
+    likely = [one for one in followed.values() if most < one.chance <= most_if_large and one.foretold >= FORETOLD]
+    there = [*sure, *(one for one in likely if _is_large(gathered, white, weighted[one.driver]))]
+    if there or not followed:
+        return max(there, key=lambda one: one.foretold, default=None)
+    best = min(followed.values(), key=lambda one: one.chance)
+    columns = weighted[best.driver]
+    if not most_if_large < best.chance <= look_again or not _is_large(gathered, white, columns):
+        return None
+    again = _followed(best.driver, white.cleared(gathered, columns), columns, len(splines))
+    return again if again.chance <= most_if_large and again.foretold >= FORETOLD else None
+
+
+def _followed(name: str, white: WhiteRows, weighted: FloatArray, tries: int) -> Following:
+    """How surely a curve of weighted columns (n, k), one of so many, is followed."""
+    columns = _new(white, weighted)
+    if columns.shape[1] == 0:
+        return Following(name, 1.0, 0.0)
+    chance = tries * white.noise.chance(float(np.sum((white.residual @ columns) ** 2)), columns.shape[1])
+    return Following(name, min(1.0, chance), white.foretold(columns)[1])
+
+
+def _is_large(gathered: Candidates, white: WhiteRows, columns: FloatArray) -> bool:
+    """Whether what a curve of weighted columns (n, k) adds to the model is more than the joint's own."""
+    coefficients, _ = white.foretold(white.beside(columns))
+    own, basis = columns @ coefficients, gathered.as_measured(WITH_CHAIN).basis
+    size = rms((own - basis @ (basis.T @ own)) / gathered.weights)
+    return 0.0 < LEAST_OF_FRICTION * gathered.fit.dry_friction < size
 
 
 def _new(white: WhiteRows, columns: FloatArray) -> FloatArray:

@@ -102,7 +102,7 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     white = WhiteRows.of(grown)
     if white is None:
         return None
-    follows = following_of(grown, white, NAMED.following)
+    follows = following_of(grown, white, NAMED.following, NAMED.following_far, 0.0)
     found = (line_of(grown, white, NAMED.line, 0.0), follows, _growing(grown, white, named.block.name))
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None

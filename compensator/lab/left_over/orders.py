@@ -19,14 +19,13 @@ import numpy as np
 from compensator.lab.effects.effect import Motion
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.waves import Waves
-from compensator.lab.left_over.white_rows import FORETOLD, WhiteRows
+from compensator.lab.left_over.white_rows import FORETOLD, LOOK_AGAIN, WhiteRows
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
-LOOK_AGAIN = 0.01  # chance of a line in noise that is learnt with it
 STEPS = 3.0  # per width of a line, so that none falls between two orders
 MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
 SLOW = 0.1  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show

@@ -14,6 +14,7 @@ from compensator.lab.screening.noise import SHRINK_ROWS, Noise
 from compensator.lab.screening.whitening import Whitening
 
 FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of each, the best one left out
+LOOK_AGAIN = 0.01  # chance in noise that is learnt with what may be there, and so hides it
 ENDS = 3  # rows at the ends of strokes, each a kind of its own
 OUTLYING = 2.5  # standard deviations: one row in eighty of noise
 NEGLIGIBLE = 1e-8  # share of a direction in what columns explain

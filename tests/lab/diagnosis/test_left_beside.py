@@ -40,7 +40,7 @@ def test_beside_a_name_a_curve_need_not_be_as_sure_as_where_nothing_is_named(mon
     asked = []
     monkeypatch.setattr(left_over, "following_of", lambda *given: asked.append(given[2:]))
     assert diagnosed(np.cos).classes[0][0] == "position_periodic_friction"
-    assert asked == [(NAMED.following,)]
+    assert asked == [(NAMED.following, NAMED.following_far, 0.0)]
     assert NAMED.following > PLAIN.following
 
 

@@ -9,8 +9,9 @@ from compensator.lab.left_over import following
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.left_over import left_over
+from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fit import Fit, fit_model
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import FACTS
@@ -44,8 +45,34 @@ def test_less_sure_curves_are_told_where_more_of_chance_is_allowed():
     white = white_rows_of(gathered)
     told = following_of(gathered, white)
     assert told is not None
-    assert following_of(gathered, white, 0.5 * told.chance) is None
+    assert following_of(gathered, white, 0.5 * told.chance, 0.0) is None
     assert following_of(gathered, white, 2.0 * told.chance) == told
+
+
+def asymmetric(n_m_s_rad: float, seed: int) -> tuple[Candidates, WhiteRows]:
+    """Drag that is more one way than the other, as if the catalogue had no name for it."""
+    with withheld(["viscous_asymmetry"]):
+        gathered = with_noise(gather(fitted(lambda x: n_m_s_rad * np.abs(x.v), seed)))
+    return gathered, white_rows_of(gathered)
+
+
+def test_less_sure_curves_are_told_where_they_are_more_than_the_joints_own(monkeypatch):
+    given = asymmetric(0.0015, seed=2)
+    told = following_of(*given)
+    assert told is not None
+    assert PLAIN.following < told.chance <= PLAIN.following_far
+    monkeypatch.setattr(following, "LEAST_OF_FRICTION", 1.0)
+    assert following_of(*given) is None
+
+
+def test_a_curve_does_not_hide_itself_in_noise_that_is_learnt_with_it(monkeypatch):
+    given = asymmetric(0.0014, seed=0)
+    assert following_of(*given, look_again=0.0) is None
+    told = following_of(*given)
+    assert told is not None
+    assert told.driver.startswith("velocity")
+    monkeypatch.setattr(following, "LEAST_OF_FRICTION", 1.0)
+    assert following_of(*given) is None
 
 
 def test_what_comes_in_one_stretch_alone_follows_nothing(monkeypatch):
