@@ -30,6 +30,7 @@ from compensator.lab.screening.evidence import Base
 CARRIERS = 2  # the other is none, of `swinging.py`
 CHANCE = PLAIN.ripple  # of such a line in noise alone, with any carrier
 MOST_OF_TRIAL = 5.0  # of what it gains over the noise: noise alone has so much once in 150
+LEAST_TURNS = 2.0  # in the longest trial: of less, noise that is the denser the slower it is cannot be told
 LINE_HZ = 0.3  # from its middle on, in a trial of some seconds: what is further away is not of it
 AT_ONCE = 2**21  # values of columns
 NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
@@ -59,9 +60,12 @@ def ripple_of(gathered: Candidates) -> Swing | None:
     parts = [_gains(base, carrier, time_s, some, trials) for some in np.array_split(at_hz, portions)]
     gains, around = _over_noise(at_hz, np.concatenate(parts, axis=1))
     whole = np.minimum(gains, MOST_OF_TRIAL).sum(axis=0)
-    best = 1 + int(np.argmax(np.where(is_peak(whole), whole[1:-1], 0.0)))
-    lasted_s = sum(float(np.ptp(time_s[own])) for own in trials)
-    independent = float(around[best]) * float(at_hz[1] - at_hz[0]) * lasted_s
+    lasted_s = [float(np.ptp(time_s[own])) for own in trials]
+    turning = is_peak(whole) & (at_hz[1:-1] * max(lasted_s) >= LEAST_TURNS)
+    if not turning.any():
+        return None
+    best = 1 + int(np.argmax(np.where(turning, whole[1:-1], 0.0)))
+    independent = float(around[best]) * float(at_hz[1] - at_hz[0]) * sum(lasted_s)
     chance = min(1.0, frequencies.independent * chance_over_noise(gains[:, best], independent))
     return Swing(float(at_hz[best]), chance, of_voltage=True) if CARRIERS * chance <= CHANCE else None
 

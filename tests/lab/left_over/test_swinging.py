@@ -146,6 +146,17 @@ def test_the_noise_around_a_line_is_known_no_better_than_from_so_many_powers():
     assert as_if_sure > 0.03
 
 
+def test_what_turns_less_than_twice_in_a_trial_is_no_line(monkeypatch):
+    slow = recordings(Joint(), replace(BENCH, noise=0.004, duration_s=5.0), plans(), seed=1)
+    fit = fitted(rippling(slow, 0.02, at_hz=(0.33,)))
+    found = rippled(fit)
+    assert found is None or found.frequency_hz > 0.4
+    monkeypatch.setattr(ripple, "LEAST_TURNS", 1.0)
+    told = rippled(fit)
+    assert told is not None
+    assert told.frequency_hz < 0.4
+
+
 def test_a_line_in_a_few_trials_is_theirs_alone():
     made = recorded()
     few = [
