@@ -24,6 +24,7 @@ LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: les
 NOT_WORSE = 0.10  # one-sided
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
 UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
+ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
@@ -220,11 +221,12 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the shape lies at the end of a scan that holds all that the effect can be: what fits there goes on."""
+    """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
     effect, shape = effect_named(item.block.name), _shape(item)
     if not effect.ends_within_scan or not shape:
         return False
-    return shape[0] >= max(scanned[0] for scanned in effect.shapes(gathered.fit.dataset.trials[0].motion))
+    ends = np.max(effect.shapes(gathered.fit.dataset.trials[0].motion), axis=0)
+    return bool(np.any(np.array(shape) >= (1.0 - ROUNDING) * ends))
 
 
 def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:

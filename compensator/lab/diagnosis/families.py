@@ -98,9 +98,11 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
     name = best.block.name
     own_p = _chance_of(named, examined[0]) if p_value <= SIGNIFICANT else p_value
+    explained = None
     if own_p <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
+    if explained is not None and (gathered.show_in == "sliding" or is_confirmed(examined[0])):
         sentence, notes = answer_in_words("missing", own_p, examined, None), what_remains(explained, gathered, name)
         notes = notes or _imitated(explained, gathered, best)
         remains, strength = bool(notes), best.noncentrality

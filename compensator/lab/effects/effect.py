@@ -240,7 +240,7 @@ class Effect:
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
-        ends_within_scan: what fits best at the upper end of its scan goes on beyond it, and is something else.
+        ends_within_scan: what fits best at an upper end of its scan goes on beyond it, and is something else.
     """
 
     name: str

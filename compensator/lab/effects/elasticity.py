@@ -7,9 +7,10 @@ from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, parting_on_a_spring
 from compensator.lab.recordings.recording import FloatArray
 
-# of critical: material and teeth alone; with the arm's bearings and what it drags. A column that swings more than the
-# joint does would take a share of the load that is far too small
-DAMPINGS = (0.06, 0.25)
+# of critical: material and teeth alone; with the arm's bearings; where friction of the arm soon ends the swing, too. A
+# column that swings more than the joint does would take a share of the load that is far too small
+DAMPINGS = (0.06, 0.25, 0.7)
+SCANNED = 10  # anti-resonances; between them the shape is looked for once it speaks
 
 
 def known_hz(facts: Facts) -> float | None:
@@ -28,7 +29,7 @@ def told(facts: Facts, shape: Shape) -> bool:
 
 def shapes(motion: Motion) -> list[Shape]:
     """Anti-resonances [Hz] of the arm without load, up to 0.4 of the sample rate, and how they are damped."""
-    return [(float(hz), damping) for hz in np.geomspace(3.0, 0.4 / motion.step_s, 14) for damping in DAMPINGS]
+    return [(float(hz), damping) for hz in np.geomspace(3.0, 0.4 / motion.step_s, SCANNED) for damping in DAMPINGS]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:

@@ -4,7 +4,7 @@ Linear coefficients are eliminated for every shape tried (Golub, Pereyra 1973), 
 searched: over the effect's grid first, then, where the shape is continuous, between its values.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from scipy.optimize import minimize
@@ -17,6 +17,7 @@ from compensator.lab.rows.dataset import Dataset
 
 SWEEPS = 2  # the first shape is found while the others' are guesses
 REFINEMENTS = 24  # evaluations between the grid's values
+STEP = 0.2  # of the logarithm, at first
 
 
 def first_shapes(dataset: Dataset, effects: Sequence[Effect]) -> dict[str, Shape]:
@@ -67,18 +68,17 @@ class _Search:
         effort = weight * dataset.target[rows]
         self._rest = effort - self._basis @ (self._basis.T @ effort)
         self._grid = effect.grid([trial.motion for trial in dataset.trials])
-        parameters = effect.parameters
-        self._signs = [1 if p.low >= 0.0 else -1 if p.high <= 0.0 else 0 for p in parameters]
+        self._bounds = [(parameter.low, parameter.high) for parameter in effect.parameters]
 
     def explained(self, columns: FloatArray) -> float:
-        """Power that columns (N, k) explain of what the fixed ones leave; 0 where the sign is not physical."""
+        """Power that columns (N, k) explain of what the fixed ones leave; of one alone, within its bounds."""
         inside = self._weight * columns[self._rows]
         inside = inside - self._basis @ (self._basis.T @ inside)
+        if len(self._bounds) == 1:
+            return power_within(inside[:, 0], self._rest, self._bounds[0])
         basis = orthonormal(inside)
-        share = basis.T @ self._rest
-        if len(self._signs) == 1 and self._signs[0] * float(inside[:, 0] @ self._rest) < 0.0:
-            return 0.0
-        return float(share @ share)
+        shares = basis.T @ self._rest
+        return float(shares @ shares)
 
     def scan(self) -> Shape:
         """The best shape of the effect's grid."""
@@ -86,20 +86,34 @@ class _Search:
         return self._grid[int(np.argmax(powers))]
 
     def refine(self, start: Shape) -> Shape:
-        """The best shape between the grid's values, from a start, on a logarithmic scale."""
-        low, high = np.log(np.min(self._grid, axis=0)), np.log(np.max(self._grid, axis=0))
+        """The best shape between the grid's values, from a start."""
 
-        def shape_of(logs: FloatArray) -> Shape:
-            return tuple(float(x) for x in np.exp(np.clip(logs, low, high)))
-
-        def loss(logs: FloatArray) -> float:
-            motions = [self._effect.columns(trial.motion, shape_of(logs)) for trial in self._dataset.trials]
+        def loss(shape: Shape) -> float:
+            motions = [self._effect.columns(trial.motion, shape) for trial in self._dataset.trials]
             return -self.explained(self._dataset.stack(motions))
 
-        centre = np.log(np.array(start))
-        simplex = np.clip(centre + np.vstack([np.zeros(len(start)), 0.2 * np.eye(len(start))]), low, high)
-        simplex[1:] += np.where(np.abs(simplex[1:] - centre).max(axis=1) < 1e-6, -0.2, 0.0)[:, None] * np.eye(
-            len(start)
-        )
-        options = {"maxfev": REFINEMENTS, "xatol": 0.01, "fatol": 0.0, "initial_simplex": simplex}
-        return shape_of(minimize(loss, centre, method="Nelder-Mead", options=options).x)
+        return between(self._grid, start, loss)
+
+
+def power_within(column: FloatArray, rest: FloatArray, bounds: tuple[float, float]) -> float:
+    """Power that a column (n,) explains of what is left (n,), its coefficient within its bounds."""
+    size, share = float(column @ column), float(column @ rest)
+    coefficient = float(np.clip(share / size, *bounds)) if size > 0.0 else 0.0
+    return coefficient * (2.0 * share - coefficient * size)
+
+
+def between(grid: Sequence[Shape], start: Shape, loss: Callable[[Shape], float]) -> Shape:
+    """The shape of least loss between a grid's values, from one of them, on a logarithmic scale.
+
+    The simplex method (Nelder, Mead 1965), in so many evaluations that the shape is known to a percent or so.
+    """
+    low, high = np.log(np.min(grid, axis=0)), np.log(np.max(grid, axis=0))
+
+    def shape_of(logs: FloatArray) -> Shape:
+        return tuple(float(x) for x in np.exp(np.clip(logs, low, high)))
+
+    centre, axes = np.log(np.array(start)), np.eye(len(start))
+    simplex = np.clip(centre + np.vstack([np.zeros(len(start)), STEP * axes]), low, high)
+    simplex[1:] += np.where(np.abs(simplex[1:] - centre).max(axis=1) < 1e-6, -STEP, 0.0)[:, None] * axes
+    options = {"maxfev": REFINEMENTS, "xatol": 0.01, "fatol": 0.0, "initial_simplex": simplex}
+    return shape_of(minimize(lambda logs: loss(shape_of(logs)), centre, method="Nelder-Mead", options=options).x)

@@ -17,8 +17,9 @@ from compensator.lab.rows.dataset import Dataset
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
 KNOWN_PLAY = dict(zip(("known_play_less", "known_play", "known_play_more"), ABOUT_KNOWN, strict=True))  # not missing
-# shares of what the owner knows, as far as data sheets are off, and dampings
-STIFFNESS_ABOUT = tuple((share, damping) for share in (0.8, 1.25) for damping in elasticity.DAMPINGS)
+# shares of what the owner knows, as far as data sheets are off, and dampings of teeth that swing: a spring that hardly
+# swings would take what other causes leave
+STIFFNESS_ABOUT = tuple((share, damping) for share in (0.8, 1.25) for damping in (0.06, 0.25))
 
 
 def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[str, FloatArray]:

@@ -8,7 +8,7 @@ import pytest
 
 from compensator.lab.diagnosis import examination
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import is_confirmed, is_possible, is_within_bounds
+from compensator.lab.diagnosis.examination import is_confirmed, is_past_scan, is_possible, is_within_bounds
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
 from compensator.lab.recordings.facts import Facts
@@ -130,3 +130,20 @@ def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possibl
         fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
         gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), column)], fit=fit, show_in="moving")
         assert is_possible(gathered, item) == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "past"),
+    [
+        ((38.0, 0.3), False),
+        ((3.0, 0.06), False),  # at the lower ends
+        ((40.0, 0.3), True),
+        ((40.0 * (1.0 - 1e-15), 0.3), True),  # a logarithm and back may make that of 40
+        ((8.0, 0.7), True),  # nothing swings
+    ],
+)
+def test_a_shape_at_an_upper_end_of_a_scan_goes_on_beyond_it(shape, past):
+    trial = SimpleNamespace(motion=SimpleNamespace(step_s=0.01))
+    gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
+    block = Block("elasticity", np.zeros((1, 1)), 0, 1, shape)
+    assert is_past_scan(gathered, Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))) == past

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.effects import elasticity
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.prediction import with_own_prediction
@@ -12,7 +13,7 @@ from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing
-from compensator.lab.screening.nuisance import far_side_weight, nuisance_columns
+from compensator.lab.screening.nuisance import STIFFNESS_ABOUT, far_side_weight, nuisance_columns
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, recordings
 
 GAP_RAD, STIFFNESS_N_M_RAD = 0.004, 200.0
@@ -84,3 +85,8 @@ def test_an_arm_whose_weight_is_known_stays_on_one_flank_away_from_the_bottom():
     kept = [int(dataset_of(facts, trials).counted.sum()) for facts in (FACTS, heavy, loose)]
     assert kept[1] == kept[0]
     assert kept[2] < 0.8 * kept[0]
+
+
+def test_a_known_stiffness_stands_for_teeth_that_swing_not_for_all_that_a_shaft_may_do():
+    assert {damping for _, damping in STIFFNESS_ABOUT} < set(elasticity.DAMPINGS)
+    assert max(damping for _, damping in STIFFNESS_ABOUT) < max(elasticity.DAMPINGS)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from compensator.lab.effects.catalogue import default_effects
@@ -13,7 +14,7 @@ from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.evidence import score_of
 from compensator.lab.screening.own_load import on_own_load
 from tests.lab.diagnosis.test_diagnose import SHAKEN
-from tests.lab.far_side import ARM_KG_M2, missing_torque
+from tests.lab.far_side import ARM_KG_M2, missing_torque, twisting
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
 
@@ -38,12 +39,28 @@ def test_the_cause_gains_by_the_load_that_it_leaves(gathered):
     own = on_own_load(gathered)
     gained = {name: best_score(own, name) - best_score(gathered, name) for name in ("backlash", "elasticity")}
     assert gained["backlash"] > max(5.0, gained["elasticity"])
-    others = [block for block in gathered.named if block.name not in gained]
-    assert [block for block in own.named if block.name not in gained] == others
-    assert [(block.name, block.key) for block in own.named] == [(block.name, block.key) for block in gathered.named]
+    scanned = own.named[: len(gathered.named)]
+    assert [(block.name, block.key) for block in scanned] == [(block.name, block.key) for block in gathered.named]
+    for block, before in zip(scanned, gathered.named, strict=True):
+        assert (block is before) == (block.name not in gained)
+    assert [block.name for block in own.named[len(scanned) :]] == ["backlash", "elasticity"]
 
 
-def test_an_effect_without_a_rival_stays_as_it_is(gathered, monkeypatch):
+def test_an_effect_without_a_rival_stays_on_the_load_of_the_model(gathered, monkeypatch):
     alone = replace(gathered, named=[block for block in gathered.named if block.name != "elasticity"])
     monkeypatch.setattr(own_load, "fit_model", lambda *_: pytest.fail("nothing is to be fitted"))
-    assert on_own_load(alone) is alone
+    own = on_own_load(alone)
+    assert all(one is before for one, before in zip(own.named, alone.named, strict=False))
+    assert [block.name for block in own.named[len(alone.named) :]] == ["backlash"]
+
+
+def test_a_shape_is_found_between_those_scanned_and_pays_for_having_been_looked_for():
+    drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2)
+    made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
+    fit = fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn))
+    scanned = gather(widened(fit, "moving"), "moving")
+    found = on_own_load(scanned).named[-1]
+    assert found.name == "elasticity"
+    assert found.key[0] == pytest.approx(50.0 / (2.0 * np.pi), rel=0.05)
+    assert score_of(scanned.bases, found) > best_score(scanned, "elasticity") + 10.0
+    assert found.scanned > next(block.scanned for block in scanned.named if block.name == "elasticity")

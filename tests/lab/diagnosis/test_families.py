@@ -1,0 +1,33 @@
+"""What one family of effects says: a name must hold with all shapes found anew, as its model has them."""
+
+from dataclasses import replace
+
+import pytest
+
+from compensator.lab.diagnosis import families
+from compensator.lab.diagnosis.families import answer_of
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model, widened
+from compensator.lab.model.gain import Gain
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.evidence import screen
+from compensator.lab.screening.own_load import on_own_load
+from tests.lab.diagnosis.test_diagnose import SHAKEN
+from tests.lab.far_side import ARM_KG_M2, twisting
+from tests.lab.synthetic import FACTS, Joint, plans, recordings
+
+
+@pytest.mark.parametrize(("gain", "verdict"), [(Gain(0.3, 0.2, 0.4), "missing"), (Gain(-0.1, -0.2, -0.0), "nothing")])
+def test_near_reversals_the_error_of_the_model_that_would_be_had_must_fall(monkeypatch, gain, verdict):
+    drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2)
+    made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
+    fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
+    gathered = on_own_load(gather(fit, "moving"))
+    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
+    named = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
+    answer = answer_of(fit, gathered, named, None)
+    assert answer.candidates[0].effect.name == "elasticity"
+    assert answer.verdict == verdict
+    assert (answer.explained is not None) == (verdict == "missing")
