@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from bench.challenge.names import accepted
+from bench.challenge.names import RECORDED, accepted
 from bench.errors import ParameterError
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnknownEffectError
@@ -49,6 +49,7 @@ class Score:
         right: hidden mechanisms that were named, alone or in a class; "none-of-these" for one outside the catalogue.
         missed: hidden mechanisms that were not.
         untold: hidden mechanisms that no recording of motion can tell from what every model has; they do not count.
+        recorded: names that hold for every recording, whatever is hidden; they do not count.
         wrong: classes said to be there that are not.
         class_sizes: of the classes that hold a right name.
     """
@@ -56,6 +57,7 @@ class Score:
     right: tuple[str, ...]
     missed: tuple[str, ...]
     untold: tuple[str, ...]
+    recorded: tuple[str, ...]
     wrong: tuple[str, ...]
     class_sizes: tuple[int, ...]
 
@@ -91,10 +93,11 @@ def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> 
             right.append(truth)
         else:
             (untold if truth in absorbed else missed).append(truth)
-    wrong = ["/".join(one) for one in left]
+    recorded = ["/".join(one) for one in left if set(one) <= set(RECORDED)]
+    wrong = ["/".join(one) for one in left if not set(one) <= set(RECORDED)]
     if guess.unknown and not unknown_used:
         wrong.append(UNKNOWN)
-    return Score(tuple(right), tuple(missed), tuple(untold), tuple(wrong), tuple(sizes))
+    return Score(tuple(right), tuple(missed), tuple(untold), tuple(recorded), tuple(wrong), tuple(sizes))
 
 
 def _known(names: tuple[str, ...]) -> tuple[str, ...]:

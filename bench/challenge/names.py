@@ -37,6 +37,9 @@ ACCEPTED: dict[str, tuple[str, ...]] = {
 ABSORBED: dict[str, str] = {"coulomb_asymmetry": "offset"}
 """Mechanism -> effect of every model that does the same while the joint moves: no recording of motion can tell."""
 
+RECORDED: dict[str, str] = {"measurement_delay": "a sample is taken at the end of the cycle whose effort it holds"}
+"""Effect -> why it is in every recording, whatever is hidden: to name it is neither right nor wrong."""
+
 
 def accepted(mechanism: str) -> tuple[str, ...]:
     """Names in the catalogue that are right for a mechanism; none where it is outside the catalogue."""

@@ -118,11 +118,14 @@ def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> No
 
 
 def _print_score(score: "Score") -> None:
+    from bench.challenge.names import RECORDED
+
     sizes = ", ".join(map(str, score.class_sizes))
     lines = [
         ("right", score.right, f" (class of {sizes})" if any(size > 1 for size in score.class_sizes) else ""),
         ("missed", score.missed, ""),
         ("not to be told from what every model has", score.untold, ""),
+        ("in every recording", score.recorded, f" ({'; '.join(RECORDED[one] for one in score.recorded)})"),
         ("false", score.wrong, ""),
     ]
     for word, names, note in lines:

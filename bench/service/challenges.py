@@ -80,6 +80,7 @@ class Revealed(BaseModel):
     right: list[str]
     missed: list[str]
     untold: list[str] = Field(description="hidden, but no recording of motion can tell; they do not count")
+    recorded: list[str] = Field(description="named, and in every recording, whatever is hidden; they do not count")
     wrong: list[str]
     perfect: bool
     sentence: str
@@ -152,6 +153,7 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
         hidden=hidden,
         guessed=guessed,
         **told,
+        recorded=list(found.recorded),
         wrong=list(found.wrong),
         perfect=found.perfect,
         sentence=_sentence(len(hidden), found),

@@ -30,6 +30,9 @@ def test_every_mechanism_has_its_names_and_the_lab_knows_them() -> None:
         (("spring", "centre_of_mass"), "spring/centre_of_mass_angle", ("spring",), ("centre_of_mass",), (), 0.5),
         (("hose",), "none-of-these", ("hose",), (), (), 1.0),
         (("hose",), "spring", (), ("hose",), ("spring",), -1.0),
+        (("spring",), "spring,measurement_delay", ("spring",), (), (), 1.0),  # a delay is in every recording
+        (("latency",), "measurement_delay", ("latency",), (), (), 1.0),
+        ((), "spring/measurement_delay", (), (), ("spring/measurement_delay",), -1.0),
         (("hose", "spring"), "spring,none-of-these", ("hose", "spring"), (), (), 2.0),
     ],
 )

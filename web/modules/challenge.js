@@ -62,7 +62,7 @@ async function guessForm(place, challenge) {
 function verdict(told) {
   const line = (text, names) => names.length > 0 && h("p", {}, `${text}: ${names.join(", ").replaceAll("_", " ")}.`);
   return [h("div", { class: told.perfect ? "good" : "problem", role: "status" }, told.sentence), line("Right", told.right), line("Missed", told.missed),
-    line("Not there", told.wrong), line("Hidden, but no recording of motion can tell it from what every model has", told.untold),
+    line("In every recording, whatever is hidden", told.recorded), line("Not there", told.wrong), line("Hidden, but no recording of motion can tell it from what every model has", told.untold),
     told.hidden.length > 0 && table("What was hidden", [
       { title: "Mechanism", cell: (one) => one.title },
       { title: "In the catalogue", cell: (one) => (one.effects.length ? one.effects.map((name) => h("a", { href: `#learn/${name}` }, `${name.replaceAll("_", " ")} `)) : "none of these") },
