@@ -15,7 +15,7 @@ from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.families import FORMULA_SHARE, Answer, answer_of, what_remains
+from compensator.lab.diagnosis.families import FORMULA_SHARE, Answer, answer_of, beside, what_remains
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import candidates, catalogue, effect_named
@@ -70,6 +70,8 @@ def diagnose(fit: Fit) -> Diagnosis:
     if (problems := unexplained(fit)) and not _explains_most(first):
         return _data_problem(fit, problems[0])
     others = [answer for answer in families if answer is not first]
+    if first is steady or first is chain:
+        first = beside(first, chain if first is steady else steady, fit, gathered)
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     left = _left_in_sliding(fit, gathered, first) if first is memory else []
     notes = [*first.notes, *left, *(answer.sentence for answer in others if answer.verdict == "missing")]

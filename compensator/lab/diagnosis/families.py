@@ -1,6 +1,6 @@
 """What one family of effects has to say: its best effect, confirmed or not, or a curve that none of them follows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,6 +58,7 @@ class Answer:
         strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
         remains: more than noise is left that nothing named here explains.
         explained: the model with the effect that is named, where one of the joint or the chain is.
+        named: evidence for that effect.
         Others as in `Diagnosis`.
     """
 
@@ -70,6 +71,7 @@ class Answer:
     strength: float = 0.0
     remains: bool = False
     explained: Fit | None = None
+    named: Evidence | None = None
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -103,10 +105,9 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
     if explained is not None and (gathered.show_in == "sliding" or is_confirmed(examined[0])):
-        sentence, notes = answer_in_words("missing", own_p, examined, None), what_remains(explained, gathered, name)
-        notes = notes or _imitated(explained, gathered, best)
+        sentence, notes = answer_in_words("missing", own_p, examined, None), _left(explained, gathered, best, name)
         remains, strength = bool(notes), best.noncentrality
-        return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained)
+        return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained, best)
     found = _bends(gathered, examined, best_of_each)
     if p_value <= SIGNIFICANT and found is not None:
         bends, too_far = found
@@ -127,6 +128,24 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
             sentence = unexplained_in_words(left, nearest, p_value, stretches, facts, wanders)
             remains = True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+
+
+def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answer:
+    """The answer with what it leaves once the effect of another family is in the model, too.
+
+    What the one leaves may be the other's: a delay leaves what seems to wander.
+    """
+    if first.named is None or other.named is None or not first.remains:
+        return first
+    names = (first.named.block.name, other.named.block.name)
+    explained = fit_effects(fit.dataset, [*fit.names, *names], fit.training)
+    notes = _left(explained, gathered, first.named, " and ".join(names))
+    return replace(first, notes=notes, remains=bool(notes))
+
+
+def _left(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[str]:
+    """What is left of an effect that is named: beside its formula, or of another that it only imitates."""
+    return what_remains(explained, gathered, called) or _imitated(explained, gathered, best)
 
 
 def _chance_of(named: Screening, best: Candidate) -> float:

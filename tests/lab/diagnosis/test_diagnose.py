@@ -191,6 +191,16 @@ def test_a_delay_beside_a_missing_effect_is_a_note():
     assert any("Measurement delay is missing" in note for note in found.notes)
 
 
+@pytest.mark.parametrize(("delay_s", "first"), [(0.008, "viscous_asymmetry"), (0.015, "measurement_delay")])
+def test_what_another_name_explains_is_not_said_to_be_left(delay_s, first):
+    made = recordings(Joint(extra=PLANTED["viscous_asymmetry"]), Bench(delay_s=delay_s), seed=3)
+    found = diagnosis_of(made)
+    assert found.candidates[0].effect.name == first
+    assert not found.remains
+    assert not [note for note in found.notes if note.startswith("After")]
+    assert len([note for note in found.notes if " is missing: adding it" in note]) == 1
+
+
 @pytest.mark.timeout(400)  # forty diagnoses
 def test_a_complete_model_lacks_nothing():
     """A false alarm in at most 3 % of sets; the bound leaves room for luck only, not for a worse rate."""
