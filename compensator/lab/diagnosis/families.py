@@ -10,6 +10,7 @@ from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
     as_in_the_ladder,
     examine,
+    fits_past_scan,
     is_confirmed,
     is_past_scan,
     is_possible,
@@ -104,7 +105,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     if own_p <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
         examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
-    if explained is not None and (gathered.show_in == "sliding" or is_confirmed(examined[0])):
+    if explained is not None and (gathered.show_in == "sliding" or _holds(explained, examined[0])):
         sentence, notes = answer_in_words("missing", own_p, examined, None), _left(explained, gathered, best, name)
         remains, strength = bool(notes), best.noncentrality
         return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained, best)
@@ -128,6 +129,11 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
             sentence = unexplained_in_words(left, nearest, p_value, stretches, facts, wanders)
             remains = True
     return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+
+
+def _holds(explained: Fit, candidate: Candidate) -> bool:
+    """Whether a name near reversals is one in the model that would be had, too, with all shapes found anew."""
+    return is_confirmed(candidate) and not fits_past_scan(explained, candidate.effect.name)
 
 
 def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answer:

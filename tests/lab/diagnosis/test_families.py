@@ -6,8 +6,8 @@ import pytest
 
 from compensator.lab.diagnosis import families
 from compensator.lab.diagnosis.families import answer_of
-from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import fit_model, widened
+from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -19,13 +19,25 @@ from tests.lab.far_side import ARM_KG_M2, twisting
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
 
-@pytest.mark.parametrize(("gain", "verdict"), [(Gain(0.3, 0.2, 0.4), "missing"), (Gain(-0.1, -0.2, -0.0), "nothing")])
-def test_near_reversals_the_error_of_the_model_that_would_be_had_must_fall(monkeypatch, gain, verdict):
+@pytest.mark.parametrize(
+    ("gain", "past", "verdict"),
+    [
+        (Gain(0.3, 0.2, 0.4), False, "missing"),
+        (Gain(-0.1, -0.2, -0.0), False, "nothing"),
+        (Gain(0.3, 0.2, 0.4), True, "nothing"),  # a spring that does not swing is none
+    ],
+)
+def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, gain, past, verdict):
     drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2)
     made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
     fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
     gathered = on_own_load(gather(fit, "moving"))
     monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
+    if past:
+        damped = max(effect_named("elasticity").shapes(fit.dataset.trials[0].motion))
+        grown = fit_effects(fit.dataset, [*fit.names, "elasticity"], fit.training)
+        terms = [replace(one, shape=damped) if one.effect.name == "elasticity" else one for one in grown.terms]
+        monkeypatch.setattr(families, "fit_effects", lambda *_: replace(grown, terms=terms))
     named = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
     answer = answer_of(fit, gathered, named, None)
     assert answer.candidates[0].effect.name == "elasticity"
