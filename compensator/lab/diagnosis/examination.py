@@ -222,19 +222,10 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    return _is_past_scan(gathered.fit, item.block.name, _shape(item))
-
-
-def fits_past_scan(explained: Fit, name: str) -> bool:
-    """The same of the shape that an effect takes in a model that has it."""
-    return _is_past_scan(explained, name, explained.shapes[name])
-
-
-def _is_past_scan(fit: Fit, name: str, shape: Shape) -> bool:
-    effect = effect_named(name)
+    effect, shape = effect_named(item.block.name), _shape(item)
     if not effect.ends_within_scan or not shape:
         return False
-    ends = np.max(effect.shapes(fit.dataset.trials[0].motion), axis=0)
+    ends = np.max(effect.shapes(gathered.fit.dataset.trials[0].motion), axis=0)
     return bool(np.any(np.array(shape) >= (1.0 - ROUNDING) * ends))
 
 

@@ -10,7 +10,6 @@ from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
     as_in_the_ladder,
     examine,
-    fits_past_scan,
     is_confirmed,
     is_past_scan,
     is_possible,
@@ -133,7 +132,8 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
 
 def _holds(explained: Fit, candidate: Candidate) -> bool:
     """Whether a name near reversals is one in the model that would be had, too, with all shapes found anew."""
-    return is_confirmed(candidate) and not fits_past_scan(explained, candidate.effect.name)
+    effect = candidate.effect
+    return is_confirmed(candidate) and (effect.holds is None or effect.holds(explained.shapes[effect.name]))
 
 
 def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answer:

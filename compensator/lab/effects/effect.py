@@ -240,6 +240,7 @@ class Effect:
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
+        holds: shape that it takes in a model -> whether that is this effect still; None: any is.
         ends_within_scan: what fits best at an upper end of its scan goes on beyond it, and is something else.
     """
 
@@ -271,6 +272,7 @@ class Effect:
     dry_friction: bool = False
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
+    holds: Callable[[Shape], bool] | None = None
     ends_within_scan: bool = False
     shape_over: Callable[[Sequence[Motion]], Shape] | None = None
     provisional: bool = False

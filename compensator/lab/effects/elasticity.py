@@ -10,6 +10,7 @@ from compensator.lab.recordings.recording import FloatArray
 # of critical: material and teeth alone; with the arm's bearings; where friction of the arm soon ends the swing, too. A
 # column that swings more than the joint does would take a share of the load that is far too small
 DAMPINGS = (0.06, 0.25, 0.7)
+MOST_DAMPED = 0.5  # of critical, in a model that has it: it overshoots by 16 %
 SCANNED = 10  # anti-resonances; between them the shape is looked for once it speaks
 
 
@@ -25,6 +26,11 @@ def told(facts: Facts, shape: Shape) -> bool:
     """Whether the joint hardly gives more than the stiffness that is known lets it."""
     hz = known_hz(facts)
     return hz is not None and TOLD * shape[0] ** 2 >= hz**2
+
+
+def swings(shape: Shape) -> bool:
+    """Whether it swings at all: what hardly overshoots is no spring, but what a lossy line makes of reversals."""
+    return shape[1] <= MOST_DAMPED
 
 
 def shapes(motion: Motion) -> list[Shape]:
@@ -67,4 +73,5 @@ EFFECT = Effect(
     rows="moving",
     told=told,
     ends_within_scan=True,
+    holds=swings,
 )

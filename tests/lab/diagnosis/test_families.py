@@ -6,7 +6,7 @@ import pytest
 
 from compensator.lab.diagnosis import families
 from compensator.lab.diagnosis.families import answer_of
-from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
@@ -34,7 +34,7 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
     gathered = on_own_load(gather(fit, "moving"))
     monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
     if past:
-        damped = max(effect_named("elasticity").shapes(fit.dataset.trials[0].motion))
+        damped = (8.0, 0.6)
         grown = fit_effects(fit.dataset, [*fit.names, "elasticity"], fit.training)
         terms = [replace(one, shape=damped) if one.effect.name == "elasticity" else one for one in grown.terms]
         monkeypatch.setattr(families, "fit_effects", lambda *_: replace(grown, terms=terms))
