@@ -63,8 +63,8 @@ def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
 def test_a_line_does_not_hide_itself_in_noise_that_is_learnt_with_it():
     gathered = with_noise(gather(fitted(lambda x: 0.55 * RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))))
     white = white_rows_of(gathered)
-    assert line_of(gathered, white, look_again=0.0) is None
-    found = line_of(gathered, white)
+    assert line_of(gathered, white, 2e-4, look_again=0.0) is None
+    found = line_of(gathered, white, 2e-4)
     assert found is not None
     assert found.order == pytest.approx(ORDER, rel=0.02)
 
