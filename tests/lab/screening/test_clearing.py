@@ -108,3 +108,15 @@ def test_noise_however_slow_does_not_stand_out(memory):
     for _ in range(8):
         values = coloured(random, memory)
         assert not any(judged(values, block)[1] for block in tried)
+
+
+def test_what_hides_itself_is_taken_off_all_the_same():
+    """Else the noise that candidates are held against has it, and none of them can be it."""
+    random, block = np.random.default_rng(2), wave(3.0)
+    values = coloured(random, 0.3) + 2.0 * block.columns[:, 0]
+    base = Base.of(NOTHING, values)
+    found = with_noise(Model([base], [block])).covariance(block.columns)
+    without = learnt(base.extended(block.columns).residual).covariance(block.columns)
+    hidden = learnt(values).covariance(block.columns)
+    assert np.trace(found) == pytest.approx(np.trace(without), rel=0.2)
+    assert np.trace(hidden) > 2.0 * np.trace(found)
