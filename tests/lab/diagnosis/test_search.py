@@ -34,6 +34,20 @@ def test_an_effect_with_memory_is_found_after_a_steady_one():
     assert set(found.added) == {"spring", "pre_sliding"}
 
 
+def test_what_was_added_first_and_helps_no_more_is_dropped():
+    """Named while the truth was missing, it may have been the truth's shadow."""
+    made = recordings(Joint(extra=PLANTED["spring"]), seed=5)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    shadow = replace(diagnose(fit), classes=(("viscous_asymmetry",),))
+    found = search(fit, first=shadow)
+    assert [(step.change, step.effect) for step in found.steps] == [
+        ("add", "viscous_asymmetry"),
+        ("add", "spring"),
+        ("drop", "viscous_asymmetry"),
+    ]
+    assert found.added == ("spring",)
+
+
 @pytest.mark.parametrize("most", [0, 1])
 def test_no_more_than_asked_for_is_added(most):
     found = search_of(PLANTED["spring"], PLANTED["viscous_asymmetry"], most=most)
