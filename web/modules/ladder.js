@@ -3,7 +3,7 @@
 import { h, replace, table } from "./dom.js";
 import { interval, number, percent } from "./format.js";
 import { colour, draw } from "./plot.js";
-import { rungName } from "./study.js";
+import { rungName } from "./rung.js";
 
 export async function ladderPlot(place, ladder, current) {
   const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });

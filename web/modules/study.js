@@ -8,6 +8,7 @@ import { h, panel, replace } from "./dom.js";
 import { withFiles } from "./files.js";
 import { ladderPlot } from "./ladder.js";
 import { attempt } from "./problem.js";
+import { rungName } from "./rung.js";
 import { searchButton } from "./searching.js";
 import { suggestions } from "./suggestions.js";
 import { together } from "./together.js";
@@ -132,11 +133,6 @@ class Study {
     return h("div", { class: "row" }, h("label", { for: "model" }, "Shown model", choice),
       removable && h("button", { type: "button", onclick: take }, "Remove this model"));
   }
-}
-
-export function rungName(rung) {
-  const change = [...[rung.added ?? []].flat().map((name) => `+ ${name}`), ...[rung.removed ?? []].flat().map((name) => `− ${name}`)];
-  return `${rung.model_id}: ${change.join(", ").replaceAll("_", " ") || "base"}`;
 }
 
 function heading(study, path) {
