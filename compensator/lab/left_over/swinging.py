@@ -27,6 +27,7 @@ CHANCE = PLAIN.swing  # of such a line in noise alone, with any carrier
 LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
 BAND = 0.9  # of the cut-off
 AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and a line is narrower
+BESIDE = (1.5, 3.5)  # widths of a line, to each side: what is as large there is no line, but noise that is slow
 STEPS = 4.0  # per width of a line, so that none falls between two frequencies
 FEWEST_ROWS = 20
 FEWEST_TRIALS = 4
@@ -146,10 +147,26 @@ def is_peak(values: FloatArray) -> BoolArray:
 
 
 def _over_noise(at_hz: FloatArray, parts: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
-    """Power of each trial at each frequency over that of the noise: the median around it, of all trials."""
+    """Power of each trial at each frequency over that of the noise, shape (trials, m).
+
+    Noise is the median around it, of all trials, or that of either side close by, where there is more. It may be the
+    denser the slower it is, so that frequencies below those that are asked count on the lower side.
+    """
+    step_hz = float(at_hz[1] - at_hz[0])
+    below = np.arange(at_hz[0] - step_hz, 0.0, -step_hz)[::-1]
+    every = np.concatenate([below, at_hz])
     turns = 2j * np.pi
-    powers = np.array([np.abs(np.exp(-turns * np.outer(at_hz, time_s)) @ own) ** 2 for time_s, own in parts])
-    powers = powers / powers.mean(axis=1, keepdims=True)
-    floor = np.array([np.median(powers[:, np.abs(at_hz - centre) <= AROUND_HZ]) for centre in at_hz])
-    over: FloatArray = log(2.0) * powers / np.maximum(floor, np.finfo(float).tiny)  # the median of Exp(1) is ln 2
-    return over
+    powers = np.array([np.abs(np.exp(-turns * np.outer(every, time_s)) @ own) ** 2 for time_s, own in parts])
+    asked = powers[:, len(below) :]
+    powers = powers / asked.mean(axis=1, keepdims=True)
+    floor = np.array([_noise_at(centre, every, powers, STEPS * step_hz) for centre in at_hz])
+    over: FloatArray = log(2.0) * powers[:, len(below) :] / np.maximum(floor, np.finfo(float).tiny)
+    return over  # the median of Exp(1) is ln 2
+
+
+def _noise_at(centre_hz: float, every_hz: FloatArray, powers: FloatArray, width_hz: float) -> float:
+    """The median power (trials, m) of noise at a frequency where a line, if there is one, is so wide."""
+    apart = every_hz - centre_hz
+    chosen = [(np.abs(apart) <= AROUND_HZ) & (every_hz >= LEAST_HZ)]
+    chosen += [(way * apart >= BESIDE[0] * width_hz) & (way * apart <= BESIDE[1] * width_hz) for way in (-1, 1)]
+    return max(float(np.median(powers[:, some])) for some in chosen if some.any())

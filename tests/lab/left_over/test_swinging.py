@@ -60,6 +60,27 @@ def test_noise_does_not_swing(seed):
     assert swing(fitted(rippling(recorded(seed=seed), 0.0))) is None
 
 
+def slow_noise(times_s: Sequence[np.ndarray], random: np.random.Generator, fastest_hz: float) -> np.ndarray:
+    """Noise of all frequencies up to one, beside white noise, of trials' rows one after the other."""
+    tones_hz, found = np.linspace(0.02, fastest_hz, 25), []
+    for time_s in times_s:
+        phase, size = 2.0 * np.pi * np.outer(time_s, tones_hz), random.standard_normal((2, len(tones_hz)))
+        found.append(0.6 * (np.cos(phase) @ size[0] + np.sin(phase) @ size[1]) + random.standard_normal(len(time_s)))
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("fastest_hz", [0.3, 0.4])
+def test_noise_that_is_the_denser_the_slower_it_is_has_no_line_at_the_slow_end(fastest_hz):
+    fit = fitted(recorded())
+    dataset, rows = fit.dataset, fit.training
+    numbers = dataset.trial_index[rows]
+    time_s = dataset.rows_of([trial.signals.time_s - trial.signals.time_s[0] for trial in dataset.trials])[rows]
+    times_s = [time_s[numbers == one] for one in np.unique(numbers)]
+    random = np.random.default_rng(3)
+    found = [swing_of(dataset, slow_noise(times_s, random, fastest_hz), rows) for _ in range(20)]
+    assert sum(one is not None for one in found) <= 2
+
+
 def test_a_line_in_the_torque_is_told_with_its_frequency():
     fit = fitted(recorded(lambda x: 0.005 * np.sin(2.0 * np.pi * 3.1 * x.time_s)))
     found = swing(fit)
