@@ -16,6 +16,7 @@ from compensator.lab.left_over.swinging import (
     AROUND_HZ,
     FEWEST_ROWS,
     FEWEST_TRIALS,
+    WIDTH,
     Frequencies,
     Swing,
     is_peak,
@@ -30,7 +31,6 @@ from compensator.lab.screening.evidence import Base
 CARRIERS = 2  # the other is none, of `swinging.py`
 CHANCE = PLAIN.ripple  # of such a line in noise alone, with any carrier
 MOST_OF_TRIAL = 5.0  # of what it gains over the noise: noise alone has so much once in 150
-LEAST_TURNS = 2.0  # in the longest trial: of less, noise that is the denser the slower it is cannot be told
 LINE_HZ = 0.3  # from its middle on, in a trial of some seconds: what is further away is not of it
 AT_ONCE = 2**21  # values of columns
 NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
@@ -53,7 +53,7 @@ def ripple_of(gathered: Candidates) -> Swing | None:
         return None
     frequencies = Frequencies.of([time_s[own] for own in trials], dataset.cutoff_hz)
     at_hz = frequencies.at_hz
-    if len(at_hz) < 3:
+    if len(at_hz) <= 2 * WIDTH:
         return None
     base, carrier = gathered.as_measured(WITH_CHAIN), gathered.weights * voltage
     portions = -(-2 * len(at_hz) * len(carrier) // AT_ONCE)
@@ -61,10 +61,10 @@ def ripple_of(gathered: Candidates) -> Swing | None:
     gains, around = _over_noise(at_hz, np.concatenate(parts, axis=1))
     whole = np.minimum(gains, MOST_OF_TRIAL).sum(axis=0)
     lasted_s = [float(np.ptp(time_s[own])) for own in trials]
-    turning = is_peak(whole) & (at_hz[1:-1] * max(lasted_s) >= LEAST_TURNS)
-    if not turning.any():
+    peaks = is_peak(whole)
+    if not peaks.any():
         return None
-    best = 1 + int(np.argmax(np.where(turning, whole[1:-1], 0.0)))
+    best = int(np.argmax(np.where(peaks, whole, 0.0)))
     independent = float(around[best]) * float(at_hz[1] - at_hz[0]) * sum(lasted_s)
     chance = min(1.0, frequencies.independent * chance_over_noise(gains[:, best], independent))
     return Swing(float(at_hz[best]), chance, of_voltage=True) if CARRIERS * chance <= CHANCE else None

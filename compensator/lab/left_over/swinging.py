@@ -28,7 +28,7 @@ LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some second
 BAND = 0.9  # of the cut-off
 AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and a line is narrower
 BESIDE = (1.5, 3.5)  # widths of a line, to each side: what is as large there is no line, but noise that is slow
-STEPS = 4.0  # per width of a line, so that none falls between two frequencies
+WIDTH = 4  # of a line, in frequencies: none falls between two of them
 FEWEST_ROWS = 20
 FEWEST_TRIALS = 4
 ALIKE = 0.9  # correlation of two trials' velocities: of one motion
@@ -83,7 +83,7 @@ class Frequencies:
         """Of trials' rows, each (n,)."""
         longest_s = max(float(time_s[-1] - time_s[0]) for time_s in times_s)
         highest_hz = BAND * min(cutoff_hz, *(0.5 / float(np.median(np.diff(time_s))) for time_s in times_s))
-        at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (STEPS * longest_s))
+        at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (WIDTH * longest_s))
         return cls(at_hz, max((highest_hz - LEAST_HZ) * longest_s, 1.0))
 
 
@@ -112,14 +112,13 @@ def _line(dataset: Dataset, values: FloatArray, rows: BoolArray, of_voltage: boo
         return None
     frequencies = Frequencies.of([time_s for _, time_s, _ in parts], dataset.cutoff_hz)
     at_hz = frequencies.at_hz
-    if len(at_hz) < 3:
+    if len(at_hz) <= 2 * WIDTH:
         return None
     over = _over_noise(at_hz, [(time_s, own) for _, time_s, own in parts])
     motions = motions_of([dataset.trials[number] for number, _, _ in parts])
     told = np.array([over[motions == one].mean(axis=0) for one in np.unique(motions)])
     lower = np.sort(told, axis=0)[(len(told) - 1) // 2]
-    # what falls or rises towards an end of the band is no line: a step has most at the lowest frequency
-    best = 1 + int(np.argmax(np.where(is_peak(lower), lower[1:-1], 0.0)))
+    best = int(np.argmax(np.where(is_peak(lower), lower, 0.0)))
     count = len(told) - (len(told) - 1) // 2  # motions that hold so much, or more
     chance = float(binom.sf(count - 1, len(told), exp(-float(lower[best]))))
     return Swing(float(at_hz[best]), min(1.0, frequencies.independent * chance), of_voltage)
@@ -141,8 +140,13 @@ def motions_of(trials: Sequence[Trial]) -> IntArray:
 
 
 def is_peak(values: FloatArray) -> BoolArray:
-    """Which of the inner values (n - 2,) are as large as both their neighbours."""
-    peaks: BoolArray = (values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:])
+    """Which of the values (n,) are as large as all within the width of a line, to both sides.
+
+    At the ends, where one side is not known, none is: power that only rises towards the slow end is noise.
+    """
+    peaks = np.zeros(len(values), dtype=bool)
+    inner = slice(WIDTH, len(values) - WIDTH)
+    peaks[inner] = values[inner] >= np.lib.stride_tricks.sliding_window_view(values, 2 * WIDTH + 1).max(axis=1)
     return peaks
 
 
@@ -159,7 +163,7 @@ def _over_noise(at_hz: FloatArray, parts: list[tuple[FloatArray, FloatArray]]) -
     powers = np.array([np.abs(np.exp(-turns * np.outer(every, time_s)) @ own) ** 2 for time_s, own in parts])
     asked = powers[:, len(below) :]
     powers = powers / asked.mean(axis=1, keepdims=True)
-    floor = np.array([_noise_at(centre, every, powers, STEPS * step_hz) for centre in at_hz])
+    floor = np.array([_noise_at(centre, every, powers, WIDTH * step_hz) for centre in at_hz])
     over: FloatArray = log(2.0) * powers[:, len(below) :] / np.maximum(floor, np.finfo(float).tiny)
     return over  # the median of Exp(1) is ln 2
 

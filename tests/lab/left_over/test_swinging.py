@@ -172,10 +172,16 @@ def test_what_turns_less_than_twice_in_a_trial_is_no_line(monkeypatch):
     fit = fitted(rippling(slow, 0.02, at_hz=(0.33,)))
     found = rippled(fit)
     assert found is None or found.frequency_hz > 0.4
-    monkeypatch.setattr(ripple, "LEAST_TURNS", 1.0)
+    monkeypatch.setattr(ripple, "is_peak", lambda values: np.ones(len(values), dtype=bool))
     told = rippled(fit)
     assert told is not None
     assert told.frequency_hz < 0.4
+
+
+def test_a_voltage_that_wanders_does_not_ripple():
+    """All that is slower than a frequency, at once: its power rises towards the slow end, and has no peak there."""
+    slow_hz = np.arange(0.03, 0.4, 0.03)
+    assert rippled(fitted(rippling(recorded(seed=1, noise=0.004), 4.0 * SMALL_RIPPLE, at_hz=slow_hz))) is None
 
 
 def test_a_line_in_a_few_trials_is_theirs_alone():
