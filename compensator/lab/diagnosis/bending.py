@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import LEAST_GAIN, SIGNIFICANT, VERY_STRONG, with_effect
+from compensator.lab.diagnosis.examination import LEAST_GAIN, SIGNIFICANT, with_effect
 from compensator.lab.model.fit import Fit, with_columns
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.screening.candidates import Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Evidence, among_all, score_of, screen_against_noise
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, among_all, score_of, screen_against_noise
 
 STRONG = 6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 

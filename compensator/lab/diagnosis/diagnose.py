@@ -15,8 +15,9 @@ from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.families import FORMULA_SHARE, Answer, answer_of, beside, what_remains
+from compensator.lab.diagnosis.families import Answer, answer_of, beside, what_remains
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
+from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import candidates, catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows

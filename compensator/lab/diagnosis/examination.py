@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.physical import is_physical, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.diagnosis.second_look import beside_open
 from compensator.lab.effects.catalogue import effect_named
@@ -13,8 +14,8 @@ from compensator.lab.model.fit import Fit, fit_model
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions, score_of
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, kept_evidence, new_directions
 
 SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
@@ -23,15 +24,12 @@ LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little 
 LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
-UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
-ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
-VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
     before = _held_out(fit, gathered.show_in)
-    afters = [_held_out(with_effect(fit, item.block.name, _shape(item)), gathered.show_in) for item in evidence]
+    afters = [_held_out(with_effect(fit, item.block.name, shape_of(item)), gathered.show_in) for item in evidence]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
     candidates = []
@@ -114,10 +112,6 @@ def with_effect(fit: Fit, name: str, shape: Shape) -> Fit:
     return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: shape})
 
 
-def _shape(item: Evidence) -> Shape:
-    return item.block.key if isinstance(item.block.key, tuple) else ()
-
-
 def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:
     """Evidence that every effect keeps once this one is in the model."""
     return kept_evidence(gathered.with_block(item.block).bases, gathered.named, gathered.noise)
@@ -165,7 +159,7 @@ def _candidate(
     before, after = errors
     return Candidate(
         effect=effect_named(item.block.name),
-        shape=_shape(item),
+        shape=shape_of(item),
         score=item.score,
         p_value=item.p_value,
         detectability=_detectability(item, nearest),
@@ -177,67 +171,3 @@ def _candidate(
         picture=picture_of(gathered, item),
         rows=gathered.show_in,
     )
-
-
-def is_physical(gathered: Candidates, item: Evidence) -> bool:
-    """Whether size and shape are such that it can be the effect."""
-    return is_possible(gathered, item) and not is_past_scan(gathered, item)
-
-
-def is_possible(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
-
-    What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
-    """
-    fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
-    if effect_named(item.block.name).told(gathered.fit.dataset.facts, _shape(item)):
-        return False
-    return fits and not is_made_by_chain(gathered, item)
-
-
-def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:
-    """Whether an effect near reversals has no very strong evidence beside the chain's columns that it stands in for.
-
-    Without these, all that a sign leaves that is smoothed or late would count for the effect. In steady sliding that
-    is not asked: what stands for the chain is there what is missing, as a Stribeck curve of a low speed is.
-    """
-    if gathered.show_in != "moving" or item.block.base == WITH_CHAIN:
-        return False
-    return score_of(gathered.bases, replace(item.block, base=WITH_CHAIN), gathered.noise) < VERY_STRONG
-
-
-def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the freely fitted coefficients lie within the effect's bounds, as far as the rows can tell."""
-    ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
-    found = _coefficients(gathered, item)
-    unsure = UNSURE * _standard_error(item, found)
-    return all(low - unsure <= c <= high + unsure for (low, high), c in zip(ranges, found, strict=True))
-
-
-def is_too_small(gathered: Candidates, item: Evidence) -> bool:
-    """Whether an effect that stands in the place of dry friction is but a part of it."""
-    least = effect_named(item.block.name).least_of_friction * gathered.fit.dry_friction
-    return least > 0.0 and bool(np.all(_coefficients(gathered, item) < least))
-
-
-def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    effect, shape = effect_named(item.block.name), _shape(item)
-    if not effect.ends_within_scan or not shape:
-        return False
-    ends = np.max(effect.shapes(gathered.fit.dataset.trials[0].motion), axis=0)
-    return bool(np.any(np.array(shape) >= (1.0 - ROUNDING) * ends))
-
-
-def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:
-    """Freely fitted, on top of the model, shape (k,)."""
-    base = gathered.bases[item.block.base]
-    columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
-    found: FloatArray = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0].astype(np.float64)
-    return found
-
-
-def _standard_error(item: Evidence, coefficients: FloatArray) -> float:
-    """Of a coefficient that stands alone: its evidence is the square of how many of them it is; 0 beside others."""
-    alone = len(coefficients) == 1 and item.noncentrality > 0.0
-    return float(abs(coefficients[0]) / np.sqrt(item.noncentrality)) if alone else 0.0

@@ -4,20 +4,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.bending import bending, still_bending
+from compensator.lab.diagnosis.bending import still_bending
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
     as_in_the_ladder,
     examine,
     is_confirmed,
-    is_past_scan,
-    is_possible,
     is_sure,
-    is_too_small,
-    is_within_bounds,
 )
+from compensator.lab.diagnosis.physical import is_past_scan, is_possible, is_too_small, is_within_bounds
 from compensator.lab.diagnosis.session_constancy import change_in_session
+from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE, unfollowed
 from compensator.lab.diagnosis.wording import (
     answer_in_words,
     bending_in_words,
@@ -34,19 +32,16 @@ from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
 from compensator.lab.left_over.remainder import LEAST_SHARE
-from compensator.lab.model.fit import Fit, fit_effects, with_columns
-from compensator.lab.model.gain import held_out_gain
-from compensator.lab.model.validation import held_out
+from compensator.lab.model.fit import Fit, fit_effects
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates, gather_curves
-from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen, screen_against_noise
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
-FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 
 
@@ -89,9 +84,9 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     shown = [item for item in best_of_each if item.score > 0.0][:EXAMINED]
     examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else best_of_each[:FEWEST_SHOWN])
     best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
-    unfollowed = None if generic is None else _unfollowed(fit, gathered, generic, examined, best)
-    if unfollowed is not None:
-        curve, p_value = unfollowed
+    found_free = None if generic is None else unfollowed(fit, gathered, generic, examined, best)
+    if found_free is not None:
+        curve, p_value = found_free
         driver, sentence = curve.block.name, answer_in_words("unknown-effect", p_value, examined, curve.block.name)
         return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
     p_value = among_all(named.p_value)
@@ -198,47 +193,6 @@ def _ties(item: Evidence, best: Evidence) -> bool:
     """Whether two effects explain the same, and about as well: then the rows cannot choose between them."""
     alike = abs(float(item.direction @ best.direction)) >= ALIKE
     return alike and item.score >= best.score - TIE
-
-
-def _unfollowed(
-    fit: Fit, gathered: Candidates, generic: Screening, examined: list[Candidate], best: Evidence
-) -> tuple[Evidence, float] | None:
-    """The free curve, or the free hysteresis, that no formula follows, and its chance; None where all are followed."""
-    found = []
-    spline, bent = _curve(fit, gathered, generic), bending(fit, gathered)
-    if spline is not None and not _follows(best, examined[0], spline):
-        found.append((spline, among_all(generic.p_value)))
-    if bent is not None and (not _follows(best, examined[0], bent.evidence) or bent.predicts_best(fit, examined)):
-        found.append((bent.evidence, among_all(bent.evidence.p_value)))
-    return max(found, key=lambda one: one[0].noncentrality, default=None)
-
-
-def _follows(best: Evidence, examined: Candidate, curve: Evidence) -> bool:
-    """Whether a formula that can be it explains about as much as a free curve, which has more freedom."""
-    return examined.physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
-
-
-def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | None:
-    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error.
-
-    Its flips are of few stretches, and their own scatter is known no better: the noise of all rows must say the same.
-    """
-    if among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
-        return None
-    best = generic.evidence[0]
-    if best.score <= 0.0 or best.p_value > SIGNIFICANT or _noise_draws_curves(gathered):
-        return None
-    with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
-    known = fit.determination
-    return best if held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known)).low > 0.0 else None
-
-
-def _noise_draws_curves(gathered: Candidates) -> bool:
-    """Whether noise alone, where it is known, would bring free curves as sure as these."""
-    if gathered.noise is None:
-        return False
-    against = screen_against_noise(gathered.bases, gathered.curves.blocks, gathered.noise)
-    return among_all(against.p_value) > SIGNIFICANT
 
 
 def _bursts(gathered: Candidates) -> Bursts | None:

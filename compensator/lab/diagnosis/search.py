@@ -13,11 +13,12 @@ from typing import Literal
 
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
-from compensator.lab.diagnosis.examination import SIGNIFICANT, VERY_STRONG
+from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import Fit, fit_effects, widened
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
 MOST_TRIED = 3  # in the place of a name that leaves something

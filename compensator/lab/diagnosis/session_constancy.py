@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.diagnosis.examination import VERY_STRONG
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fit import Fit, with_columns
 from compensator.lab.model.validation import held_out
@@ -18,7 +17,7 @@ from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import IntArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Block, score_of
+from compensator.lab.screening.evidence import VERY_STRONG, Block, score_of
 
 NAME = "later in the session"
 LEAST_PART = 0.1  # of what tells of the effect, before the change and after it

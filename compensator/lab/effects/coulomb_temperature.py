@@ -4,6 +4,9 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_
 from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain Coulomb coefficient holds
+MOST_PER_K = (
+    0.05  # of dry friction: mineral oils thin by 5 to 8 % a kelvin (Vogel 1921), surfaces that touch change less
+)
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
@@ -28,4 +31,5 @@ EFFECT = Effect(
     varies_with="temperature_c",
     breakaway=at_rest(columns, PARAMETERS, "temperature"),
     dry_friction=True,
+    most_of_friction=MOST_PER_K,
 )

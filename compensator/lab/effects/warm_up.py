@@ -31,7 +31,7 @@ EFFECT = Effect(
     ),
     equation=r"c\,e^{-t/t_w}\,\mathrm{sgn}(\dot q)",
     columns=columns,
-    parameters=(Parameter("cold excess", "{effort}"),),
+    parameters=(Parameter("cold excess", "{effort}", 0.0),),
     driver="time",
     excited_by="the same slow trial at the start, in the middle and at the end of a session",
     source="Bittencourt et al. 2010",

@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import binom
 
 from compensator.lab.diagnosis import diagnose as diagnose_module
-from compensator.lab.diagnosis import families as families_module
+from compensator.lab.diagnosis import unfollowed as unfollowed_module
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
@@ -241,7 +241,7 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
 
 def test_a_curve_that_the_noise_of_all_rows_would_draw_is_none(monkeypatch):
     made = recordings(Joint(extra=lambda x: 0.02 * np.sign(x.v) * (x.time_s > 6.0)), seed=3)
-    monkeypatch.setattr(families_module, "screen_against_noise", lambda *_: Screening([], 0.5))
+    monkeypatch.setattr(unfollowed_module, "screen_against_noise", lambda *_: Screening([], 0.5))
     assert diagnosis_of(made).verdict != "unknown-effect"
 
 

@@ -8,11 +8,9 @@ import pytest
 
 from compensator.lab.diagnosis import examination
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import is_confirmed, is_past_scan, is_possible, is_within_bounds
+from compensator.lab.diagnosis.examination import is_confirmed
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
-from compensator.lab.recordings.facts import Facts
-from compensator.lab.screening.evidence import Base, Block, Evidence
 
 
 @pytest.mark.parametrize(
@@ -90,60 +88,3 @@ def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     for physical in (True, False):
         candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, physical, None, rows)
         assert is_confirmed(candidate) == physical
-
-
-@pytest.mark.parametrize(
-    ("share", "noncentrality", "possible"),
-    [
-        (0.5, 400.0, True),
-        (0.29, 400.0, True),  # 0.3 is the least, and lies within two standard errors
-        (0.29, 40000.0, False),  # it does not: they are a tenth as large
-        (0.2, 400.0, False),
-        (-0.5, 400.0, False),
-    ],
-)
-def test_a_size_beyond_its_bounds_for_sure_cannot_be(share, noncentrality, possible):
-    column = np.sin(np.arange(200.0))
-    item = Evidence(Block("backlash", column[:, None], 0, 15, (0.02,)), 50.0, noncentrality, 0.001, column)
-    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"))
-    gathered: Any = SimpleNamespace(
-        bases=[Base(np.zeros((200, 1)), share * column)], fit=SimpleNamespace(dataset=dataset)
-    )
-    assert is_within_bounds(gathered, item) == possible
-
-
-@pytest.mark.parametrize(
-    ("name", "shape", "possible"),
-    [
-        ("backlash", (0.009,), False),  # the data sheet says 5 mrad
-        ("backlash", (0.011,), True),
-        ("elasticity", (8.0, 0.06), False),  # and 10 Hz
-        ("elasticity", (6.0, 0.06), True),
-    ],
-)
-def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possible):
-    column = np.sin(np.arange(200.0))
-    item = Evidence(Block(name, column[:, None], 0, 15, shape), 50.0, 400.0, 0.001, column)
-    told = Facts(backlash_rad=0.005, stiffness_n_m_rad=0.02 * (20.0 * np.pi) ** 2, arm_inertia_kg_m2=0.02)
-    for facts, expected in ((told, possible), (Facts(), True)):
-        dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=facts)
-        fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
-        gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), column)], fit=fit, show_in="moving")
-        assert is_possible(gathered, item) == expected
-
-
-@pytest.mark.parametrize(
-    ("shape", "past"),
-    [
-        ((38.0, 0.3), False),
-        ((3.0, 0.06), False),  # at the lower ends
-        ((40.0, 0.3), True),
-        ((40.0 * (1.0 - 1e-15), 0.3), True),  # a logarithm and back may make that of 40
-        ((8.0, 0.7), True),  # nothing swings
-    ],
-)
-def test_a_shape_at_an_upper_end_of_a_scan_goes_on_beyond_it(shape, past):
-    trial = SimpleNamespace(motion=SimpleNamespace(step_s=0.01))
-    gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
-    block = Block("elasticity", np.zeros((1, 1)), 0, 1, shape)
-    assert is_past_scan(gathered, Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))) == past

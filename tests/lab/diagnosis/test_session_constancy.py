@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import session_constancy
-from compensator.lab.diagnosis.examination import VERY_STRONG
 from compensator.lab.diagnosis.session_constancy import InSession, change_in_session
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.effects.effect import SESSION_START
@@ -17,6 +16,7 @@ from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import VERY_STRONG
 from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, record
 
 DEFAULT = default_effects(FACTS)

@@ -1,0 +1,93 @@
+"""Whether what explains something can be the effect: its size, its sign, its shape."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import Shape
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
+
+UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
+ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
+
+
+def shape_of(item: Evidence) -> Shape:
+    """The shape that the evidence is of; empty for an effect without one."""
+    return item.block.key if isinstance(item.block.key, tuple) else ()
+
+
+def is_physical(gathered: Candidates, item: Evidence) -> bool:
+    """Whether size and shape are such that it can be the effect."""
+    return is_possible(gathered, item) and not is_past_scan(gathered, item)
+
+
+def is_possible(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
+
+    What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
+    """
+    sized = not is_too_small(gathered, item) and not is_too_large(gathered, item)
+    fits = is_within_bounds(gathered, item) and sized
+    if effect_named(item.block.name).told(gathered.fit.dataset.facts, shape_of(item)):
+        return False
+    return fits and not is_made_by_chain(gathered, item)
+
+
+def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:
+    """Whether an effect near reversals has no very strong evidence beside the chain's columns that it stands in for.
+
+    Without these, all that a sign leaves that is smoothed or late would count for the effect. In steady sliding that
+    is not asked: what stands for the chain is there what is missing, as a Stribeck curve of a low speed is.
+    """
+    if gathered.show_in != "moving" or item.block.base == WITH_CHAIN:
+        return False
+    return score_of(gathered.bases, replace(item.block, base=WITH_CHAIN), gathered.noise) < VERY_STRONG
+
+
+def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the freely fitted coefficients lie within the effect's bounds, as far as the rows can tell."""
+    ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
+    found = _coefficients(gathered, item)
+    unsure = UNSURE * _standard_error(item, found)
+    return all(low - unsure <= c <= high + unsure for (low, high), c in zip(ranges, found, strict=True))
+
+
+def is_too_small(gathered: Candidates, item: Evidence) -> bool:
+    """Whether an effect that stands in the place of dry friction is but a part of it."""
+    least = effect_named(item.block.name).least_of_friction * gathered.fit.dry_friction
+    return least > 0.0 and bool(np.all(_coefficients(gathered, item) < least))
+
+
+def is_too_large(gathered: Candidates, item: Evidence) -> bool:
+    """Whether an effect that changes dry friction would change it by more than it can, as far as the rows can tell."""
+    most = effect_named(item.block.name).most_of_friction
+    if np.isinf(most):
+        return False
+    found = _coefficients(gathered, item)
+    return bool(np.any(np.abs(found) > most * gathered.fit.usual_friction + UNSURE * _standard_error(item, found)))
+
+
+def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
+    effect, shape = effect_named(item.block.name), shape_of(item)
+    if not effect.ends_within_scan or not shape:
+        return False
+    ends = np.max(effect.shapes(gathered.fit.dataset.trials[0].motion), axis=0)
+    return bool(np.any(np.array(shape) >= (1.0 - ROUNDING) * ends))
+
+
+def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:
+    """Freely fitted, on top of the model, shape (k,)."""
+    base = gathered.bases[item.block.base]
+    columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
+    found: FloatArray = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0].astype(np.float64)
+    return found
+
+
+def _standard_error(item: Evidence, coefficients: FloatArray) -> float:
+    """Of a coefficient that stands alone: its evidence is the square of how many of them it is; 0 beside others."""
+    alone = len(coefficients) == 1 and item.noncentrality > 0.0
+    return float(abs(coefficients[0]) / np.sqrt(item.noncentrality)) if alone else 0.0

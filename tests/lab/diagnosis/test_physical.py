@@ -1,0 +1,116 @@
+"""Which sizes, signs and shapes cannot be those of an effect, whatever they explain."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.physical import is_past_scan, is_possible, is_within_bounds
+from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.model.fit import fit_model
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.evidence import Base, Block, Evidence, screen
+from tests.lab.synthetic import FACTS, Joint, recordings
+
+
+@pytest.mark.parametrize(
+    ("share", "noncentrality", "possible"),
+    [
+        (0.5, 400.0, True),
+        (0.29, 400.0, True),  # 0.3 is the least, and lies within two standard errors
+        (0.29, 40000.0, False),  # it does not: they are a tenth as large
+        (0.2, 400.0, False),
+        (-0.5, 400.0, False),
+    ],
+)
+def test_a_size_beyond_its_bounds_for_sure_cannot_be(share, noncentrality, possible):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block("backlash", column[:, None], 0, 15, (0.02,)), 50.0, noncentrality, 0.001, column)
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"))
+    gathered: Any = SimpleNamespace(
+        bases=[Base(np.zeros((200, 1)), share * column)], fit=SimpleNamespace(dataset=dataset)
+    )
+    assert is_within_bounds(gathered, item) == possible
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "possible"),
+    [
+        ("backlash", (0.009,), False),  # the data sheet says 5 mrad
+        ("backlash", (0.011,), True),
+        ("elasticity", (8.0, 0.06), False),  # and 10 Hz
+        ("elasticity", (6.0, 0.06), True),
+    ],
+)
+def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possible):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block(name, column[:, None], 0, 15, shape), 50.0, 400.0, 0.001, column)
+    told = Facts(backlash_rad=0.005, stiffness_n_m_rad=0.02 * (20.0 * np.pi) ** 2, arm_inertia_kg_m2=0.02)
+    for facts, expected in ((told, possible), (Facts(), True)):
+        dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=facts)
+        fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
+        gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), column)], fit=fit, show_in="moving")
+        assert is_possible(gathered, item) == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "past"),
+    [
+        ((38.0, 0.3), False),
+        ((3.0, 0.06), False),  # at the lower ends
+        ((40.0, 0.3), True),
+        ((40.0 * (1.0 - 1e-15), 0.3), True),  # a logarithm and back may make that of 40
+        ((8.0, 0.7), True),  # nothing swings
+    ],
+)
+def test_a_shape_at_an_upper_end_of_a_scan_goes_on_beyond_it(shape, past):
+    trial = SimpleNamespace(motion=SimpleNamespace(step_s=0.01))
+    gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
+    block = Block("elasticity", np.zeros((1, 1)), 0, 1, shape)
+    assert is_past_scan(gathered, Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))) == past
+
+
+@pytest.mark.parametrize(("excess", "possible"), [(0.02, True), (-0.02, False)])
+def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
+    column = np.exp(-np.arange(200.0) / 50.0)
+    item = Evidence(Block("warm_up", column[:, None], 0, 4, (50.0,)), 50.0, 400.0, 0.001, column)
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
+    fit = SimpleNamespace(dataset=dataset, dry_friction=0.1, usual_friction=0.1)
+    gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), excess * column)], fit=fit, show_in="sliding")
+    assert is_possible(gathered, item) == possible
+
+
+@pytest.mark.parametrize(
+    ("share", "noncentrality", "possible"),
+    [
+        (0.045, 40000.0, True),
+        (-0.045, 40000.0, True),
+        (0.055, 40000.0, False),  # 0.05 is the most, and standard errors are a two hundredth
+        (-0.055, 40000.0, False),
+        (0.055, 100.0, True),  # it lies within two of them
+        (0.07, 100.0, False),
+    ],
+)
+def test_dry_friction_does_not_change_faster_with_temperature_than_oil(share, noncentrality, possible):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block("coulomb_temperature", column[:, None], 0, 1, ()), 50.0, noncentrality, 0.001, column)
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
+    fit = SimpleNamespace(dataset=dataset, dry_friction=0.01, usual_friction=0.2)
+    gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), 0.2 * share * column)], fit=fit, show_in="sliding")
+    assert is_possible(gathered, item) == possible
+
+
+@pytest.mark.parametrize(("per_k", "possible"), [(0.03, True), (0.1, False)])
+def test_a_joint_that_changes_faster_with_temperature_changes_with_something_else(per_k, possible):
+    """Of Coulomb friction of 0.08 N m and what static friction is on the average."""
+    law = Joint(extra=lambda x: -per_k * 0.08 * (x.temperature_c - 30.0) * np.sign(x.v))
+    fit = fit_model(make_dataset(recordings(law, seed=3), FACTS, Processing()), default_effects(FACTS))
+    gathered = gather(fit)
+    blocks = [block for block in gathered.named if block.name == "coulomb_temperature"]
+    (found,) = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows]).evidence
+    assert is_possible(gathered, found) == possible
+    assert effect_named("coulomb_temperature").most_of_friction == 0.05

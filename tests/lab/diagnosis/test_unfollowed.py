@@ -1,0 +1,69 @@
+"""A formula is held against a curve with what it leaves open; what is no such formula is unknown."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis import unfollowed
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.examination import is_confirmed
+from compensator.lab.diagnosis.search import search
+from compensator.lab.diagnosis.unfollowed import _leaves_nothing
+from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.gain import Gain
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.evidence import Block, Evidence
+from tests.lab.diagnosis.test_diagnose import load_n_m
+from tests.lab.synthetic import FACTS, Joint, Law, Truth, recordings
+
+
+def fit_to(law: Law) -> Fit:
+    made = recordings(Joint(extra=law), seed=5)
+    return fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+
+
+def of_load(friction: Callable[[np.ndarray], np.ndarray]) -> Law:
+    return lambda x: friction(load_n_m(x)) * np.sign(x.v)
+
+
+def carried(x: Truth) -> np.ndarray:
+    """A spring, and teeth that lose 30 % of what they carry, of the spring's torque, too."""
+    spring = 0.15 * (x.q - 0.8)
+    return spring + 0.3 * np.abs(load_n_m(x) + spring) * np.sign(x.v)
+
+
+def test_friction_of_a_load_without_the_spring_that_is_missing_too_is_named_and_so_is_the_spring():
+    found = search(fit_to(carried))
+    assert [step.effect for step in found.steps] == ["load_friction", "spring"]
+    assert (found.last.verdict, found.last.remains) == ("nothing", False)
+
+
+def test_a_formula_that_leaves_nothing_open_is_held_against_the_curve_as_it_is(monkeypatch):
+    monkeypatch.setattr(unfollowed, "open_columns", lambda fit: np.empty((len(fit.dataset.effort), 0)))
+    found = diagnose(fit_to(carried))
+    assert (found.verdict, found.driver) == ("unknown-effect", "load against motion")
+
+
+@pytest.mark.parametrize(
+    "friction",
+    [lambda load: 0.3 * np.minimum(np.abs(load), 0.3), lambda load: 0.2 * np.maximum(load, 0.0)],
+    ids=["that comes to an end", "of one flank"],
+)
+def test_friction_of_the_load_of_another_form_is_unknown(friction):
+    found = diagnose(fit_to(of_load(friction)))
+    assert found.verdict == "unknown-effect", found.sentence
+    assert found.driver == "load against motion"
+    assert found.candidates[0].effect.name == "load_friction"
+
+
+def test_what_builds_on_nothing_is_the_worse_for_nothing_that_is_missing():
+    gathered: Any = None
+    item = Evidence(Block("spring", np.zeros((1, 1)), 0, 1), 50.0, 60.0, 0.001, np.zeros(1))
+    sure = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, Gain(0.2, 0.1, 0.3), True, None)
+    assert is_confirmed(sure)
+    assert not _leaves_nothing(gathered, sure, item, item)
