@@ -14,6 +14,7 @@ from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.diagnosis.drawn_shape import answer_beside
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import Answer, answer_of, beside, what_remains
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
@@ -62,6 +63,9 @@ def diagnose(fit: Fit) -> Diagnosis:
     sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
     steady = answer_of(fit, gathered, sliding, generic)
     chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
+    beside_drawn = None if steady.verdict == "missing" else answer_beside(fit, gathered)
+    if beside_drawn is not None:
+        steady, gathered = beside_drawn
     memory, wide, not_judged = _memory(fit)
     rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
     families = [steady, *(answer for answer in (memory, rest) if answer is not None), chain]
@@ -90,6 +94,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         left_out={**gathered.left_out, **not_judged, **not_at_rest},
         too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
         remains=first.remains or bool(left) or (first.verdict == "nothing" and steady.remains),
+        shapes=gathered.fit.shapes if beside_drawn is not None else None,
     )
 
 

@@ -85,6 +85,7 @@ class Diagnosis:
         left_out: effect -> why it could not be judged.
         too_short: there are too few independent stretches for anything to be sure, so that ranks mean nothing.
         remains: something is left that nothing named explains: a curve that no effect follows, or more than noise.
+        shapes: of the model that was judged, where those fitted imitate what is named (`drawn_shape`); else None.
     """
 
     verdict: Verdict
@@ -98,3 +99,4 @@ class Diagnosis:
     left_out: dict[str, str] = field(default_factory=dict)
     too_short: bool = False
     remains: bool = False
+    shapes: dict[str, Shape] | None = None
