@@ -1,7 +1,8 @@
 """What wanders in time, and all that scatters beside it, on rows of a stroke that are taken together.
 
 What scatters in every joint has a covariance of its own: noise forgets at once or within half a second, friction along
-the path within some percent of the travel, and static friction is another one after each stop.
+the path within some percent of the travel, and static friction is another one after each stop. Near reversals, where
+teeth fly and pre-sliding comes up, rows scatter more, and in each stroke in a way of its own.
 """
 
 from collections.abc import Sequence
@@ -41,23 +42,26 @@ class CellsOfTrial:
 
 
 def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:
-    """Sliding rows of every trial, taken together in cells within a stroke, as a weighted column (n,) has them."""
+    """Rows of every trial, taken together in cells within a stroke, as a weighted column (n,) has them.
+
+    Those near reversals have cells of their own.
+    """
     dataset, base, static = constants.dataset, constants.base, constants.weights * constants.static
-    sliding, numbers = constants.sliding, dataset.trial_index[constants.rows]
+    near, numbers = ~constants.sliding, dataset.trial_index[constants.rows]
     strokes = np.concatenate([trial.motion.strokes.index[trial.picked] for trial in dataset.trials])[constants.rows]
     position = constants.of([trial.motion.position for trial in dataset.trials])
     times_s = np.concatenate([dataset.time_of(trial) for trial in dataset.trials])[constants.rows]
     lengths = [share * max(float(np.ptp(position)), np.finfo(float).tiny) for share in PATHS]
-    there = np.unique(numbers[sliding])
+    there = np.unique(numbers)
     found = []
     for index in there[:: -(-len(there) // MOST_TRIALS)]:
-        own = np.flatnonzero(sliding & (numbers == index) & (column != 0.0))
+        own = np.flatnonzero((numbers == index) & (column != 0.0))
         _, of, count = np.unique(strokes[own], return_inverse=True, return_counts=True)
         own = own[count[of] >= FEWEST_ROWS]
         if len(own) < FEWEST_ROWS:
             continue
         width_s = max(CELL_S, float(np.ptp(times_s[own])) / MOST_CELLS)
-        number = np.stack([strokes[own], np.floor(times_s[own] / width_s).astype(np.int64)])
+        number = np.stack([strokes[own], np.floor(times_s[own] / width_s).astype(np.int64), near[own]])
         cells, cell = np.unique(number, axis=1, return_inverse=True)
         mean = _Mean(column[own], np.asarray(cell).reshape(-1))
         path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(position[own])))])
@@ -65,6 +69,8 @@ def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:
         own_static = mean.of(static[own][:, None])[:, 0]
         turned = np.sign(mean.plain(column[own]))
         kernels = _kernels(mean.size, turned, time_s, gone, cells[0], own_static, lengths)
+        if near.any():
+            kernels = np.insert(kernels, 1, _near_reversals(mean.size, cells[0], cells[2]), axis=0)
         part = Part(mean.of(base.basis[own]), mean.of(base.residual[own][:, None])[:, 0], kernels)
         found.append(CellsOfTrial(int(index), time_s, mean.size, part))
     return found
@@ -118,6 +124,12 @@ def _kernels(
             both * np.exp(-apart_s / LASTS_S),
         ]
     )
+
+
+def _near_reversals(size: FloatArray, stroke: IntArray, near: IntArray) -> FloatArray:
+    """Covariances that cells (c,) have beside those if they are near a reversal: 0 or 1; shape (2, c, c)."""
+    own = near * size
+    return np.array([np.diag(near.astype(float)), np.outer(own, own) * np.equal.outer(stroke, stroke)])
 
 
 def most_changed(trials: Sequence[CellsOfTrial], courses: Sequence[FloatArray]) -> tuple[tuple[int, float], ...]:

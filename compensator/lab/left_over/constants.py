@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 
+from compensator.lab.model.fit import Fit, widened
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
 from compensator.lab.screening.evidence import Base
 
 DRY_FRICTION, OFFSET = "dry friction", "a constant force or the zero of the angle"
@@ -29,6 +31,18 @@ class Constants:
     weights: FloatArray
     friction: float
     static: FloatArray
+
+    @classmethod
+    def tested(cls, gathered: Candidates) -> "Constants":
+        """Of the tested rows."""
+        fit, rows = gathered.fit, gathered.rows
+        base = gathered.as_measured(WITH_CHAIN)
+        return cls(fit.dataset, rows, base, gathered.weights, fit.dry_friction, fit.static_friction[rows])
+
+    @classmethod
+    def in_motion(cls, fit: Fit) -> "Constants":
+        """Of all rows in motion, those near reversals too, and the model fitted to them."""
+        return cls.tested(gather_curves(widened(fit, "moving"), "moving"))
 
     @property
     def sliding(self) -> BoolArray:

@@ -58,7 +58,6 @@ def left_over(gathered: Candidates) -> LeftOver:
     constant there; nor is it asked not to swing: teeth and shafts do, each reversal anew, at a frequency of their own.
     """
     dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
-    friction = gathered.fit.dry_friction
     steady = gathered.show_in == "sliding"
     determined = RowWeights.learnt(dataset, gathered.fit.residual, rows).determined(dataset, rows)
     remainder = remainder_of(dataset, determined * base.residual / gathered.weights, rows)
@@ -68,15 +67,22 @@ def left_over(gathered: Candidates) -> LeftOver:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
     if not steady:
         return LeftOver(remainder, None, swing)
-    constants = Constants(dataset, rows, base, gathered.weights, friction, gathered.fit.static_friction[rows])
+    constants = Constants.tested(gathered)
     change = change_of(constants)
     plain = _is_plain(gathered.fit)
-    wandering = wandering_of(constants, (PLAIN if plain else NAMED).wandering) if change is None else None
+    wandering = _wandering(gathered.fit, constants, plain=plain) if change is None else None
     white = WhiteRows.of(gathered) if plain else None
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
     swing = swing or ripple_of(gathered)
     return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))
+
+
+def _wandering(fit: Fit, sliding: Constants, *, plain: bool) -> Wandering | None:
+    """What wanders: of a plain model in all rows in motion; beside a name in sliding, where its formula was found."""
+    if not plain:
+        return wandering_of(sliding, NAMED.wandering)
+    return wandering_of(Constants.in_motion(fit), PLAIN.wandering)
 
 
 def _is_plain(fit: Fit) -> bool:

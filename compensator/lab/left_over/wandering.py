@@ -27,6 +27,7 @@ from compensator.lab.model.validation import rms
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
 LEAST_OF_EFFORT = 0.001  # the same of a constant force
 FEWEST_CELLS = 40
+NO_HINT = 0.25  # chance of a variance in noise alone: what jumps has one, and where it has none, jumps need no search
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +85,7 @@ def _wandering(what: str, size: float, trials: list[CellsOfTrial], most: float) 
     courses = [one.part.kernels[-1] @ own / one.size for one, own in zip(trials, having.weighed, strict=True)]
     chance = chance_of(2.0 * (having.value - without.value))
     found = [Wandering(what, chance, share * size, share, most_changed(trials, courses))]
-    if what == DRY_FRICTION and not found[0].is_there(most):
+    if what == DRY_FRICTION and chance <= NO_HINT and not found[0].is_there(most):
         jumps = jumps_of(trials, alone)
         chance, changes = chance_of(jumps.gained), most_changed(trials, jumps.courses)
         found.append(Wandering(what, chance, jumps.height * size, jumps.height, changes, jumps=True))
