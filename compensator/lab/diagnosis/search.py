@@ -6,13 +6,17 @@ on held-out rows is dropped (Efroymson 1960, with held-out error in place of F).
 
 Of two names that come close, the one with more evidence may leave what the other would not, once what its formula
 leaves open stands beside it: where the last model leaves more than noise, it gives way to one that leaves nothing.
+
+Two effects that are missing at once may look like something that no formula follows: a free curve imitates both, and
+each formula but one. So what is of no name is searched further from the likeliest formulas, and has names after all
+where two or more of them leave nothing.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import Fit, fit_effects, widened
@@ -21,7 +25,7 @@ from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
-MOST_TRIED = 3  # in the place of a name that leaves something
+MOST_TRIED = 3  # in the place of a name that leaves something, or of none
 
 Change = Literal["add", "swap", "drop"]
 
@@ -79,8 +83,18 @@ def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -
     Raises:
         UnusableDataError: as `diagnose`.
     """
-    start, steps = fit, []
     diagnosis = first or diagnose(fit)
+    found = _forward(fit, most, diagnosis)
+    if found.last.verdict != "unknown-effect":
+        return found
+    room = most - len(found.added)
+    further = _past_curve(found.fit, room, found.last) if room > 1 else None
+    return found if further is None else Search(fit, (*found.steps, *further.steps), further.last)
+
+
+def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
+    """As long as a diagnosis names an effect. Arguments as `search`."""
+    start, steps = fit, []
     while diagnosis.verdict == "missing" and len(fit.names) < len(start.names) + most:
         name = diagnosis.classes[0][0]
         steps.append(_step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training)))
@@ -97,6 +111,36 @@ def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -
     return Search(start, tuple(steps), diagnosis)
 
 
+def _past_curve(fit: Fit, most: int, unknown: Diagnosis) -> Search | None:
+    """From a model that seems to lack what has no name: the first way by formulas that leaves nothing; None without.
+
+    A single formula is none: it was held against the curve already.
+
+    Args:
+        fit: the model.
+        most: effects that are added at most.
+        unknown: its diagnosis.
+    """
+    sure = [one for one in _likely(unknown) if one.rows == "sliding" and one.gain.low > 0.0]
+    for one in sure[:MOST_TRIED]:
+        named = replace(unknown, verdict="missing", classes=[(one.effect.name,)])
+        found = _forward(fit, most, named)
+        if len(found.added) > 1 and _leaves_nothing(found.last):
+            return found
+    return None
+
+
+def _likely(diagnosis: Diagnosis) -> list[Candidate]:
+    """Effects that can be it, by very strong evidence, the likeliest first."""
+    likely = [one for one in diagnosis.candidates if one.physical and one.score >= VERY_STRONG]
+    return sorted(likely, key=lambda one: -one.score)
+
+
+def _leaves_nothing(diagnosis: Diagnosis) -> bool:
+    """Whether all that its model leaves is noise."""
+    return diagnosis.verdict == "nothing" and not diagnosis.remains and diagnosis.p_value > SIGNIFICANT
+
+
 def _step(change: Change, effect: str, instead_of: str | None, fit: Fit) -> Step:
     return Step(change, effect, instead_of, fit, held_out(fit))
 
@@ -108,13 +152,12 @@ def _cleared(last: Step, before: Diagnosis) -> tuple[Step, Diagnosis] | None:
         last: the step that added it, to a model that leaves more than noise.
         before: the diagnosis that named it.
     """
-    rivals = [one for one in before.candidates if one.physical and one.score >= VERY_STRONG]
-    names = [one.effect.name for one in sorted(rivals, key=lambda one: -one.score) if one.effect.name != last.effect]
+    names = [one.effect.name for one in _likely(before) if one.effect.name != last.effect]
     for name in names[:MOST_TRIED]:
         effects = [name if other == last.effect else other for other in last.fit.names]
         fit = fit_effects(last.fit.dataset, effects, last.fit.training)
         found = diagnose(fit)
-        if found.verdict == "nothing" and not found.remains and found.p_value > SIGNIFICANT:
+        if _leaves_nothing(found):
             return _step("swap", name, last.effect, fit), found
     return None
 

@@ -69,3 +69,23 @@ def test_a_name_that_leaves_something_gives_way_to_one_that_leaves_nothing(monke
     found = search(fit, first=replace(named, candidates=[best, weak, close]))
     assert found.added == (added,)
     assert found.last.remains == rival_leaves
+
+
+@pytest.mark.parametrize("hidden", [("spring", "viscous_asymmetry"), ("spring",)])
+def test_two_formulas_that_leave_nothing_are_no_unknown_effect(hidden):
+    """A free curve imitates both at once, and either formula but one; one formula alone was held against the curve."""
+    laws = [PLANTED[name] for name in hidden]
+    made = recordings(Joint(extra=lambda x: sum(law(x) for law in laws)), seed=5)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    unknown = replace(diagnose(fit), verdict="unknown-effect", remains=True)
+    found = search(fit, first=unknown)
+    assert set(found.added) == (set(hidden) if len(hidden) > 1 else set())
+    assert (found.last is unknown) == (len(hidden) == 1)
+
+
+def test_formulas_that_leave_something_do_not_stand_for_what_has_no_name(monkeypatch):
+    made = recordings(Joint(extra=lambda x: PLANTED["spring"](x) + PLANTED["viscous_asymmetry"](x)), seed=5)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    unknown = replace(diagnose(fit), verdict="unknown-effect", remains=True)
+    monkeypatch.setattr(search_module, "diagnose", lambda fit: replace(diagnose(fit), remains=True))
+    assert search(fit, first=unknown).added == ()
