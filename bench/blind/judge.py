@@ -15,7 +15,8 @@ from bench.challenge.owner import rig_of
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
-from compensator.lab.model.fit import Fit, fit_effects, widened
+from compensator.lab.model.fit import fit_effects, widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates, gather
 

@@ -9,7 +9,8 @@ from bench.study.material import facts_of
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import search
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_effects, fit_model
+from compensator.lab.model.fit import fit_effects, fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset

@@ -15,7 +15,7 @@ from compensator.lab.at_rest.breakaway_fit import fit_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.diagnosis.breakaway_family import breakaway_blocks
 from compensator.lab.effects.catalogue import candidates, effect_named
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates

@@ -13,7 +13,7 @@ from bench.study.next_trial.options import Choice, choices
 from bench.study.next_trial.predict import choose
 from bench.study.next_trial.rounds import in_rounds
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.next_trial.suggestion import Suggestion, d_prime_of, shows_from_rest
 from compensator.lab.recordings.recording import Recording
 

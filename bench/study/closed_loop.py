@@ -16,7 +16,8 @@ from bench.study.next_trial.dynamics import drive_of
 from compensator.lab.closed_loop.control_law import ControlLaw
 from compensator.lab.closed_loop.loop_comparison import LoopComparison, LoopError, TrialInLoop, compare_in_loop
 from compensator.lab.closed_loop.refinement import Refinement, refine
-from compensator.lab.model.fit import Fit, with_coefficients
+from compensator.lab.model.fit import with_coefficients
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import relative_error
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Trial

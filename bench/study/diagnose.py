@@ -9,7 +9,7 @@ from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
 from compensator.lab.diagnosis.provisional import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS
 

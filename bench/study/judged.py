@@ -7,7 +7,7 @@ from bench.study.errors import lab_errors
 from bench.study.material import Material
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 
 MOST = 16  # kept: some kB each, beside their datasets' own few
 

@@ -12,7 +12,8 @@ from bench.store import Store
 from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, Facts
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.assembly import make_dataset

@@ -6,7 +6,7 @@ from bench.store import Store
 from bench.study.material import Material
 from compensator.lab.at_rest.breakaway_comparison import compare_breakaway
 from compensator.lab.comparison.comparison import repeatability_floor
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import error_interval
 from compensator.lab.model.validation import HeldOut, held_out, relative_error
 

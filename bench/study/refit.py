@@ -10,7 +10,7 @@ from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import facts_of, load_model
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.streaming import PIECE_ROWS, fit_streamed, later_by, piece_starts
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording

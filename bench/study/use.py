@@ -11,7 +11,7 @@ from bench.rig import Rig
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import Material, facts_of, load_model
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.online import left_out, works_online
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from compensator.lab.at_rest.breakaway_rows import at_rest_motion
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.effects.effect import SESSION_START, Effect, Onset, Parameter
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
 from compensator.lab.recordings.recording import FloatArray, Recording

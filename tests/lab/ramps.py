@@ -6,7 +6,8 @@ from itertools import product
 
 import numpy as np
 
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import effort_per_torque
 from compensator.lab.recordings.recording import FloatArray
 

@@ -8,7 +8,7 @@ from math import copysign, exp, sin
 
 from bench.rig import Rig
 from bench.study.errors import StudyError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2
 
 LEAST_INERTIA = 0.3  # of what the rig says; less was lost to effects that motion does not tell apart from it

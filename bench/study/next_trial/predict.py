@@ -15,7 +15,7 @@ from bench.study.next_trial.options import Choice
 from bench.study.next_trial.twin import Twin
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.next_trial.suggestion import Option, Suggestion, suggest
 from compensator.lab.recordings.recording import Condition, Recording
 from compensator.lab.rows.dataset import Dataset

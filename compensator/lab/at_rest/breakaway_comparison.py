@@ -9,7 +9,7 @@ from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit, fit_breakaw
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import CONFIDENCE, ParameterEstimate
 from compensator.lab.model.linear import solve
 from compensator.lab.model.validation import HeldOut, relative_error, rms

@@ -7,7 +7,8 @@ import numpy as np
 
 from compensator.lab.at_rest.breakaways import Start, resolution_of, starts_of
 from compensator.lab.effects.effect import BreakawayShare, Effect, Motion, Onset, Shape
-from compensator.lab.model.fit import Fit, trained_trials
+from compensator.lab.model.fit import trained_trials
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset, IntArray, Trial

@@ -14,7 +14,7 @@ from compensator.lab.at_rest.breakaway_fit import BreakawayFit, fit_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.rests import Windows, limits_of, windows_of
 from compensator.lab.chance import chance_in_words
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import relative_error, rms
 from compensator.lab.recordings.recording import FloatArray
 

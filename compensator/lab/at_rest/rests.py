@@ -18,7 +18,7 @@ from compensator.lab.at_rest.breakaway_rows import at_rest_motion, measured_posi
 from compensator.lab.at_rest.breakaways import resolution_of, rests_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import BreakawayShare, Motion, Onset
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import without_each
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset, IntArray

@@ -13,7 +13,7 @@ from compensator.lab.closed_loop.control_law import ControlLaw, law_of, target_o
 from compensator.lab.closed_loop.resistance import resistances
 from compensator.lab.closed_loop.stepping import Drive, moved
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR
 from compensator.lab.recordings.recording import FloatArray, Recording

@@ -9,7 +9,7 @@ import numpy as np
 from compensator.lab.at_rest.breakaway_comparison import BreakawayComparison, compare_breakaway
 from compensator.lab.at_rest.rest_comparison import RestComparison, compare_at_rest
 from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import HeldOut, held_out, relative_error, rms
 from compensator.lab.recordings.recording import Condition
 from compensator.lab.recordings.regimes import BoolArray, Regime

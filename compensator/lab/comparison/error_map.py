@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.errors import NotApplicableError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import LEAST_GAIN, SIGNIFICANT, with_effect
-from compensator.lab.model.fit import Fit, with_columns
+from compensator.lab.model.fit import with_columns
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.screening.candidates import Candidates, gather_curves

@@ -16,7 +16,7 @@ from compensator.lab.diagnosis.families import EXAMINED, Answer
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.errors import NotApplicableError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut
 from compensator.lab.screening.evidence import (

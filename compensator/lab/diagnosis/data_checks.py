@@ -4,7 +4,7 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from compensator.lab.diagnosis.wording import some_of
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.model.validation import relative_error, rms
 from compensator.lab.recordings.processing import SATURATED_DUTY

@@ -23,7 +23,8 @@ from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import candidates, catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit, fit_effects, widened
+from compensator.lab.model.fit import fit_effects, widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates, gather

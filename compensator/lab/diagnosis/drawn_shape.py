@@ -16,7 +16,8 @@ from compensator.lab.diagnosis.families import Answer, answer_of
 from compensator.lab.diagnosis.wording import answer_in_words
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit, fit_effects, fit_model
+from compensator.lab.model.fit import fit_effects, fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates, gather

@@ -10,7 +10,8 @@ from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.diagnosis.second_look import beside_open
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import EffectRows, MotionRows, Shape
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.recordings.recording import FloatArray

@@ -32,7 +32,8 @@ from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
 from compensator.lab.left_over.remainder import LEAST_SHARE
-from compensator.lab.model.fit import Fit, fit_effects
+from compensator.lab.model.fit import fit_effects
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates, gather_curves

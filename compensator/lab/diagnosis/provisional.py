@@ -9,7 +9,8 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect
 from compensator.lab.effects.free_curve import AGAINST_MOTION, name_of
 from compensator.lab.errors import NotApplicableError, UnusableDataError
-from compensator.lab.model.fit import Fit, fit_effects, widened
+from compensator.lab.model.fit import fit_effects, widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.drivers import DRIVERS

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import HeldOut, relative_error
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.evidence import inflation_of

@@ -19,7 +19,8 @@ from compensator.lab.diagnosis.diagnose import best_named, diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import Fit, fit_effects, widened
+from compensator.lab.model.fit import fit_effects, widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.screening.evidence import VERY_STRONG

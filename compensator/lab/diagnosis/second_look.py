@@ -9,7 +9,8 @@ models with their own best shapes, beside the same columns (Frisch, Waugh 1933; 
 from collections.abc import Callable
 
 from compensator.lab.diagnosis.diagnosis import BesideOpen
-from compensator.lab.model.fit import Fit, fit_effects, with_columns
+from compensator.lab.model.fit import fit_effects, with_columns
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import HeldOut
 from compensator.lab.screening.discrepancy import open_columns

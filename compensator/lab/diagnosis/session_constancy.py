@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.model.fit import Fit, with_columns
+from compensator.lab.model.fit import with_columns
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray

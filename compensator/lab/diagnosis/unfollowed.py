@@ -9,7 +9,8 @@ would leave open counts for it: where it leaves the curve nothing, it is followe
 from compensator.lab.diagnosis.bending import bending
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import SIGNIFICANT, is_confirmed
-from compensator.lab.model.fit import Fit, fit_effects, with_columns
+from compensator.lab.model.fit import fit_effects, with_columns
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.model.fit import Fit, widened
+from compensator.lab.model.fit import widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.validation import independent_units
 from compensator.lab.recordings.recording import FloatArray

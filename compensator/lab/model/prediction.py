@@ -7,21 +7,18 @@ measurement, a load-dependent term would explain the effort with itself.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
+from compensator.lab.model.fitted import Fit, Term
 from compensator.lab.model.reading import at_true_position
 from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
-
-if TYPE_CHECKING:
-    from compensator.lab.model.fit import Fit, Term
-    from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import Dataset
 
 
-def with_own_prediction(fit: "Fit") -> "Dataset":
+def with_own_prediction(fit: Fit) -> Dataset:
     """The fit's rows, with its own predicted load and effort in every motion."""
     fit = replace(fit, dataset=at_true_position(fit.dataset, fit.terms))
     per_torque = effort_per_torque(fit)
@@ -51,7 +48,7 @@ def with_own_prediction(fit: "Fit") -> "Dataset":
     return dataset.with_bend([_bend(steep, one) for one in motions], [_doubt(steep, one) for one in motions])
 
 
-def beyond_tangent(fit: "Fit", index: int, coefficients: FloatArray) -> FloatArray:
+def beyond_tangent(fit: Fit, index: int, coefficients: FloatArray) -> FloatArray:
     """What a model that bends predicts with other coefficients (K,), less what its columns make of them.
 
     Returns:
@@ -72,7 +69,7 @@ def beyond_tangent(fit: "Fit", index: int, coefficients: FloatArray) -> FloatArr
     return replace(fit.dataset, trials=(trial,), cache={}).stack([found[None]])[:, 0]
 
 
-def _bend(steep: Sequence["Term"], motion: Motion) -> FloatArray:
+def _bend(steep: Sequence[Term], motion: Motion) -> FloatArray:
     """What steep terms add for each unit of effort that is predicted more, shape (n,)."""
     bend = np.zeros(len(motion.time_s))
     for term in steep:
@@ -81,7 +78,7 @@ def _bend(steep: Sequence["Term"], motion: Motion) -> FloatArray:
     return bend
 
 
-def _doubt(steep: Sequence["Term"], motion: Motion) -> FloatArray:
+def _doubt(steep: Sequence[Term], motion: Motion) -> FloatArray:
     """By how much steep terms may be wrong for what teeth do in the free play that is known, shape (n,).
 
     Where the far side flies, or is caught, the effort is another one than a rigid gear's, and so may its sign be. In
@@ -101,7 +98,7 @@ def _doubt(steep: Sequence["Term"], motion: Motion) -> FloatArray:
     return doubt
 
 
-def effort_per_torque(fit: "Fit") -> float | None:
+def effort_per_torque(fit: Fit) -> float | None:
     """Effort per N m of load: 1 where the effort is a torque, else by the load's known weight, if any."""
     if fit.dataset.effort_definition.unit in ("N m", "N"):
         return 1.0
@@ -115,7 +112,7 @@ def effort_per_torque(fit: "Fit") -> float | None:
     return float(arm / max(moments)) if max(moments) > 0.0 and arm > 0.0 else None
 
 
-def _inertia_beyond(fit: "Fit", motion: Motion, per_torque: float | None) -> float:
+def _inertia_beyond(fit: Fit, motion: Motion, per_torque: float | None) -> float:
     """Effort per acceleration of what hangs beyond the gear, as far as that is known; of a linear joint, all of it."""
     beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
     if beyond_kg_m2 > 0.0 and per_torque is not None:
@@ -123,7 +120,7 @@ def _inertia_beyond(fit: "Fit", motion: Motion, per_torque: float | None) -> flo
     return 0.0 if motion.facts.joint == "rotary" else _whole_inertia(fit, motion)
 
 
-def _whole_inertia(fit: "Fit", motion: Motion) -> float:
+def _whole_inertia(fit: Fit, motion: Motion) -> float:
     """Effort per acceleration of everything, rotor and all: the best guess where no drawing tells."""
     inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)
     return 0.0 if inertia is None else float(inertia.coefficients @ (1.0, motion.load_inertia_kg_m2))

@@ -8,17 +8,14 @@ correction anew with every fit, until it stays (Gauss-Newton).
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
+from compensator.lab.model.fitted import Term
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import FloatArray
-
-if TYPE_CHECKING:
-    from compensator.lab.model.fit import Term
-    from compensator.lab.rows.dataset import Dataset, Trial
+from compensator.lab.rows.dataset import Dataset, Trial
 
 MOST_PASSES = 30  # each shrinks the change by the slope of what is misread, a few hundredths
 STEEP = 0.5
@@ -26,7 +23,7 @@ SLOPE_STEP = 1e-5  # of the span of position
 SAME_SHARE = 1e-3  # of the fastest speed: corrections whose rates differ by less are the same
 
 
-def at_true_position(dataset: "Dataset", terms: Sequence["Term"]) -> "Dataset":
+def at_true_position(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     """The same rows where the terms of a fitted model say that the joint is; the same object where that is known."""
     reading = [term for term in terms if term.effect.misreads is not None and np.any(term.coefficients)]
     if not reading:
@@ -56,7 +53,7 @@ def at_position(motion: Motion, position: FloatArray) -> Motion:
     )
 
 
-def _true_position(reading: Sequence["Term"], trial: "Trial") -> FloatArray:
+def _true_position(reading: Sequence[Term], trial: Trial) -> FloatArray:
     """Where the trial's joint is: it is misread at where it is, not at where it seems to be; shape (n,)."""
     read, position = trial.signals.position, trial.motion.position
     for _ in range(MOST_PASSES):
@@ -67,7 +64,7 @@ def _true_position(reading: Sequence["Term"], trial: "Trial") -> FloatArray:
     return position
 
 
-def _misread(reading: Sequence["Term"], motion: Motion) -> FloatArray:
+def _misread(reading: Sequence[Term], motion: Motion) -> FloatArray:
     """What is to be added to the position that is read where a motion is, (n,)."""
     total = np.zeros(len(motion.time_s))
     for term in reading:
@@ -77,7 +74,7 @@ def _misread(reading: Sequence["Term"], motion: Motion) -> FloatArray:
     return total
 
 
-def _is_steep(reading: Sequence["Term"], motion: Motion) -> bool:
+def _is_steep(reading: Sequence[Term], motion: Motion) -> bool:
     """Whether what is misread changes so much with the position that the sensor would nearly stand, or turn back."""
     step = SLOPE_STEP * motion.position_span
     ahead, behind = (_misread(reading, replace(motion, position=motion.position + way * step)) for way in (0.5, -0.5))

@@ -13,7 +13,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.low_pass import FILTER_ORDER

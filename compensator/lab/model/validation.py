@@ -9,7 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from compensator.lab.model.fit import Fit, trained_trials
+from compensator.lab.model.fit import trained_trials
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import beyond_tangent
 from compensator.lab.recordings.recording import FloatArray

@@ -15,7 +15,7 @@ from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import BreakawayShare, Effect, Shape
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.next_trial.separation import Equations, Rival, Rivalry
 from compensator.lab.recordings.recording import FloatArray

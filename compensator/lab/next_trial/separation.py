@@ -20,7 +20,7 @@ import numpy as np
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect, Shape
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.recording import FloatArray

@@ -10,7 +10,8 @@ from scipy.special import ndtr
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit, fit_model, widened
+from compensator.lab.model.fit import fit_model, widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import rms
 from compensator.lab.next_trial.breakaway_separation import BreakawaySeparation
 from compensator.lab.next_trial.separation import Equations, Rivalry, Separation

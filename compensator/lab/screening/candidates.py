@@ -9,7 +9,7 @@ import numpy as np
 from compensator.lab.effects import catalogue
 from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.errors import NotApplicableError
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import FloatArray

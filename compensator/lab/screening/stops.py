@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import IntArray

@@ -9,7 +9,8 @@ import pytest
 from compensator.lab.at_rest.rest_comparison import RestComparison, Side, at_rest_in_words, compare_at_rest
 from compensator.lab.comparison.comparison import compare
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset

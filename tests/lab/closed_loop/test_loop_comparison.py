@@ -8,7 +8,8 @@ import pytest
 from compensator.lab.closed_loop.loop_comparison import compare_in_loop
 from compensator.lab.closed_loop.refinement import refine
 from compensator.lab.closed_loop.simulation import simulate
-from compensator.lab.model.fit import Fit, fit_model, with_coefficients
+from compensator.lab.model.fit import fit_model, with_coefficients
+from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.closed_loop.servoed import FACTS, Joint, recordings

@@ -8,7 +8,8 @@ import pytest
 from compensator.lab.closed_loop.control_law import ControlLaw
 from compensator.lab.closed_loop.simulation import simulate
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import Fit, fit_model, with_coefficients
+from compensator.lab.model.fit import fit_model, with_coefficients
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

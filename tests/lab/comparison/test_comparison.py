@@ -7,7 +7,8 @@ import pytest
 
 from compensator.lab.comparison.comparison import compare, repeatability_floor
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

@@ -10,7 +10,8 @@ from compensator.lab.diagnosis.bending import Bending, bending, still_bending
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.provisional import provisional
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_effects, fit_model, with_columns
+from compensator.lab.model.fit import fit_effects, fit_model, with_columns
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset

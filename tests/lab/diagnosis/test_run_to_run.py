@@ -8,7 +8,8 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.run_to_run import CONSTANT, DRY_FRICTION, ByRun, by_run_in_words, differences_by_run
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

@@ -13,7 +13,8 @@ from compensator.lab.diagnosis.examination import is_confirmed
 from compensator.lab.diagnosis.search import search
 from compensator.lab.diagnosis.unfollowed import _leaves_nothing
 from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

@@ -3,7 +3,8 @@
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.white_rows import WhiteRows
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import Candidates, gather

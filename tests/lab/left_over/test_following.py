@@ -10,7 +10,8 @@ from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.white_rows import WhiteRows
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of

@@ -9,7 +9,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.orders import Line, line_of
-from compensator.lab.model.fit import Fit
+from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of

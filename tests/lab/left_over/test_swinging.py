@@ -13,7 +13,8 @@ from compensator.lab.left_over import ripple
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.ripple import MOST_OF_TRIAL, chance_of_sum, chance_over_noise, ripple_of
 from compensator.lab.left_over.swinging import Swing, motions_of, swing_of
-from compensator.lab.model.fit import Fit, fit_model, widened
+from compensator.lab.model.fit import fit_model, widened
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

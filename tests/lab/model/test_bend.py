@@ -7,7 +7,8 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import best_named
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model, with_coefficients
+from compensator.lab.model.fit import fit_model, with_coefficients
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import beyond_tangent
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording

@@ -5,7 +5,8 @@ import pytest
 
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import UnknownEffectError, UnusableDataError
-from compensator.lab.model.fit import Fit, fit_linear, fit_model
+from compensator.lab.model.fit import fit_linear, fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import estimates
 from compensator.lab.model.prediction import effort_per_torque, with_own_prediction
 from compensator.lab.rows.assembly import make_dataset

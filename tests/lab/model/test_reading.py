@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_effects, fit_model, with_coefficients
+from compensator.lab.model.fit import fit_effects, fit_model, with_coefficients
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.reading import at_true_position
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording

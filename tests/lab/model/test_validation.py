@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import (
     HeldOut,
     held_out,

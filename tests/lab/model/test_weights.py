@@ -9,7 +9,8 @@ from compensator.lab.diagnosis.examination import examine
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.remainder import remainder_of
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import BENDS, RowWeights, row_weights
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset

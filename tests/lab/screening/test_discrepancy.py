@@ -9,7 +9,8 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
 from compensator.lab.effects.effect import SESSION_START, Motion
-from compensator.lab.model.fit import Fit, Term, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit, Term
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing

@@ -7,7 +7,8 @@ import pytest
 
 from compensator.lab.effects import elasticity
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.model.fit import Fit, fit_model
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.regimes import Regime

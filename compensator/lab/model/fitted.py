@@ -1,0 +1,149 @@
+"""A fitted model: its terms, what it predicts, what it leaves, and how well it knows that."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.model.linear import Bounds
+from compensator.lab.model.weights import RowWeights
+from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.rows.dataset import Dataset
+
+STATIC = "stribeck"
+DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
+
+
+@dataclass(frozen=True)
+class Term:
+    """One fitted effect.
+
+    Attributes:
+        effect: which.
+        shape: its nonlinear shape values.
+        coefficients: one per parameter of the effect, shape (k,).
+        kept: which of them the data determine.
+        at_bound: which of them a physical bound holds.
+    """
+
+    effect: Effect
+    shape: Shape
+    coefficients: FloatArray
+    kept: BoolArray
+    at_bound: BoolArray
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model fitted to counted training rows.
+
+    Attributes:
+        dataset: with the model's own prediction in its motions.
+        training: rows used, shape (N,).
+        terms: the fitted effects, in the model's order.
+        columns: of all terms, shape (N, K).
+        weight: of each row in the fit, shape (N,).
+        target: what the columns were fitted to, shape (N,): the effort, or that of the model's tangent where it bends.
+    """
+
+    dataset: Dataset
+    training: BoolArray
+    terms: tuple[Term, ...]
+    columns: FloatArray
+    weight: FloatArray
+    target: FloatArray
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of all terms, shape (K,)."""
+        return np.concatenate([term.coefficients for term in self.terms])
+
+    @property
+    def bounds(self) -> Bounds:
+        """Physical bounds of all coefficients."""
+        return bounds_of(self.effects, self.dataset)
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects themselves."""
+        return tuple(term.effect for term in self.terms)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(term.effect.name for term in self.terms)
+
+    @property
+    def shapes(self) -> dict[str, Shape]:
+        """Shape of each effect by name."""
+        return {term.effect.name: term.shape for term in self.terms}
+
+    @property
+    def dry_friction(self) -> float:
+        """What the model takes off the effort, or adds to it, at the slowest, by the direction of motion alone."""
+        return sum(float(term.coefficients[0]) for term in self.terms if term.effect.name in DRY)
+
+    @property
+    def usual_friction(self) -> float:
+        """All that goes by the direction of motion, root mean square over the training rows."""
+        own = np.concatenate(
+            [np.full(len(t.coefficients), t.effect.name in DRY or t.effect.dry_friction) for t in self.terms]
+        )
+        found = self.columns[self.training][:, own] @ self.coefficients[own]
+        return float(np.sqrt(np.mean(found**2))) if len(found) else 0.0
+
+    @property
+    def static_friction(self) -> FloatArray:
+        """What static friction adds to the effort beyond that of sliding, until it has fallen off; shape (N,)."""
+        found = np.zeros(len(self.dataset.effort))
+        for term in self.terms:
+            if term.effect.name == STATIC:
+                found += self.dataset.columns(term.effect, term.shape) @ term.coefficients
+        return found
+
+    @property
+    def training_equations(self) -> tuple[FloatArray, FloatArray]:
+        """Weighted columns (n, K) and target (n,) of the training rows."""
+        weight = self.weight[self.training]
+        return weight[:, None] * self.columns[self.training], weight * self.target[self.training]
+
+    @cached_property
+    def determination(self) -> FloatArray:
+        """How well the model determines the effort of every row, at most 1, shape (N,): less where it bends.
+
+        Models are held against each other by what they know: beside a dead time, rows without current say nothing.
+        """
+        dataset = self.dataset
+        if not dataset.is_bent:
+            return np.ones(len(dataset.effort))
+        every = np.ones(len(dataset.effort), dtype=bool)
+        return RowWeights.learnt(dataset, self.residual, self.training).determined(dataset, every)
+
+    @property
+    def predicted(self) -> FloatArray:
+        """Predicted effort of every row, shape (N,)."""
+        return self.dataset.effort - self.residual
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus predicted effort of every row, shape (N,)."""
+        return self.target - self.columns @ self.coefficients
+
+
+def with_terms(fit: Fit, coefficients: FloatArray) -> Fit:
+    """The fit whose terms have other coefficients (K,), and nothing else: what its motions predict is still the old."""
+    ends = np.cumsum([len(term.coefficients) for term in fit.terms])[:-1]
+    parts = np.split(coefficients, ends)
+    terms = tuple(replace(term, coefficients=part) for term, part in zip(fit.terms, parts, strict=True))
+    return replace(fit, terms=terms)
+
+
+def bounds_of(effects: Sequence[Effect], dataset: Dataset) -> Bounds:
+    """Physical bounds of all parameters of the effects, in order, in the effort of a dataset."""
+    quantity = dataset.effort_definition.quantity
+    ranges = [range_ for effect in effects for range_ in effect.ranges_in(quantity)]
+    low, high = np.array(ranges).reshape(-1, 2).T
+    return Bounds(low, high)
