@@ -99,8 +99,9 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
     while diagnosis.verdict == "missing" and len(fit.names) < len(start.names) + most:
         name = diagnosis.classes[0][0]
         steps.append(_step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training)))
-        steps += _swaps(start, steps[-1].fit)
-        steps += _drops(start, steps[-1].fit)
+        swapped = _swaps(start, steps[-1].fit)
+        steps += swapped
+        steps += _drops(start, steps[-1].fit, last_too=bool(swapped))
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
             break  # the same model again: the trials do not decide
         fit, before = steps[-1].fit, diagnosis
@@ -181,10 +182,17 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
     return steps
 
 
-def _drops(start: Fit, fit: Fit) -> list[Step]:
-    """Drop added effects that no longer lower the held-out error for sure."""
+def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
+    """Drop added effects that no longer lower the held-out error for sure.
+
+    Args:
+        start: the model that was searched from.
+        fit: with what was added, the last one last.
+        last_too: the last one was named beside another model: it may have made up for a name that has given way.
+    """
     steps: list[Step] = []
-    for name in [name for name in fit.names if name not in start.names][:-1]:
+    added = [name for name in fit.names if name not in start.names]
+    for name in added if last_too else added[:-1]:
         without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows

@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import Search, search
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.diagnosis.test_diagnose import PLANTED, WITH_MEMORY
@@ -46,6 +47,36 @@ def test_what_was_added_first_and_helps_no_more_is_dropped():
         ("drop", "viscous_asymmetry"),
     ]
     assert found.added == ("spring",)
+
+
+@pytest.mark.parametrize("there", [False, True])
+def test_what_made_up_for_a_name_that_has_given_way_is_dropped(monkeypatch, there):
+    laws = [PLANTED["load_friction"], PLANTED["position_periodic_friction"]][: 1 + there]
+    made = recordings(Joint(extra=lambda x: sum(law(x) for law in laws)), seed=5)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    named = replace(diagnose(fit), verdict="missing")
+    then = [
+        replace(named, classes=(("position_periodic_friction",),)),
+        replace(named, verdict="nothing", remains=False),
+    ]
+    monkeypatch.setattr(search_module, "diagnose", lambda _: then.pop(0))
+    found = search(fit, first=replace(named, classes=(("load_friction_quadratic",),)))
+    assert [(step.change, step.effect) for step in found.steps[:3]] == [
+        ("add", "load_friction_quadratic"),
+        ("add", "position_periodic_friction"),
+        ("swap", "load_friction"),
+    ]
+    assert found.added == ("load_friction", "position_periodic_friction")[: 1 + there]
+
+
+def test_what_was_named_last_stands_by_its_evidence_where_nothing_gave_way(monkeypatch):
+    """Few trials may hold all of it, as those at the highest speed do of drag."""
+    made = recordings(Joint(extra=PLANTED["spring"]), seed=5)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    named = diagnose(fit)
+    monkeypatch.setattr(search_module, "held_out_gain", lambda *_: Gain(0.1, -0.01, 0.2))
+    monkeypatch.setattr(search_module, "diagnose", lambda _: replace(named, verdict="nothing", remains=False))
+    assert search(fit, first=named).added == ("spring",)
 
 
 @pytest.mark.parametrize("most", [0, 1])
