@@ -4,9 +4,7 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_
 from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain Coulomb coefficient holds
-MOST_PER_K = (
-    0.05  # of dry friction: mineral oils thin by 5 to 8 % a kelvin (Vogel 1921), surfaces that touch change less
-)
+MOST_PER_K = 0.05  # of dry friction: oils of ISO VG 100 .. 220 thin by so much or more at room temperature (ASTM D341)
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
