@@ -29,6 +29,7 @@ from compensator.lab.diagnosis.wording import (
     wandering_in_words,
 )
 from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.effects.effect import MotionRows
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
 from compensator.lab.left_over.remainder import LEAST_SHARE
@@ -44,6 +45,7 @@ FEWEST_SHOWN = 2
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
+LARGE_GAIN = 0.25  # near reversals: five times what is asked for there, since every chain leaves a little
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
     enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
     name = best.block.name
-    own_p = _chance_of(named, examined[0]) if p_value <= SIGNIFICANT else p_value
+    own_p = _own_chance(named, examined[0], gathered.show_in)
     explained = None
     if own_p <= SIGNIFICANT and enough and is_confirmed(examined[0]):
         explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
@@ -148,6 +150,18 @@ def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answ
 def _left(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[str]:
     """What is left of an effect that is named: beside its formula, or of another that it only imitates."""
     return what_remains(explained, gathered, called) or _imitated(explained, gathered, best)
+
+
+def _own_chance(named: Screening, best: Candidate, show_in: MotionRows) -> float:
+    """The chance of the effect that is to be named, if any of its family is no luck.
+
+    Near reversals few stretches may hold most of the evidence, of which flips of signs can be no surer than of so many
+    signs. What takes much of the held-out error in whole trials drawn again, for sure, is no luck of a few stretches.
+    """
+    p_value = among_all(named.p_value)
+    own = _chance_of(named, best) if p_value <= SIGNIFICANT else p_value
+    large = show_in == "moving" and best.gain.low >= LARGE_GAIN
+    return min(own, among_all(best.gain.chance)) if large else own
 
 
 def _chance_of(named: Screening, best: Candidate) -> float:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from compensator.lab.diagnosis import families
+from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_effects, fit_model, widened
@@ -12,9 +13,9 @@ from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
-from compensator.lab.screening.evidence import screen
+from compensator.lab.screening.evidence import among_all, screen
 from compensator.lab.screening.own_load import on_own_load
-from tests.lab.diagnosis.test_diagnose import SHAKEN
+from tests.lab.diagnosis.test_diagnose import SHAKEN, bristles
 from tests.lab.far_side import ARM_KG_M2, twisting
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
@@ -43,3 +44,28 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
     assert answer.candidates[0].effect.name == "elasticity"
     assert answer.verdict == verdict
     assert (answer.explained is not None) == (verdict == "missing")
+
+
+@pytest.mark.parametrize(
+    ("asked", "chance", "verdict"), [(None, None, "missing"), (0.9, None, "nothing"), (None, 0.01, "nothing")]
+)
+def test_near_reversals_what_takes_much_of_the_error_for_sure_is_no_luck_of_few_stretches(
+    monkeypatch, asked, chance, verdict
+):
+    made = recordings(Joint(extra=bristles), seed=4)
+    fit = widened(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), "moving")
+    gathered = on_own_load(gather(fit, "moving"))
+    unsure = replace(screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows]), p_value=0.004)
+    assert among_all(unsure.p_value) > SIGNIFICANT
+    if asked is not None:
+        monkeypatch.setattr(families, "LARGE_GAIN", asked)
+    if chance is not None:
+        examined = families.examine
+        monkeypatch.setattr(
+            families,
+            "examine",
+            lambda *of: [replace(one, gain=replace(one.gain, chance=chance)) for one in examined(*of)],
+        )
+    answer = answer_of(fit, gathered, unsure, None)
+    assert answer.verdict == verdict
+    assert (answer.p_value <= SIGNIFICANT) == (verdict == "missing")
