@@ -47,10 +47,16 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
 
 
 @pytest.mark.parametrize(
-    ("asked", "chance", "verdict"), [(None, None, "missing"), (0.9, None, "nothing"), (None, 0.01, "nothing")]
+    ("show_in", "asked", "chance", "verdict"),
+    [
+        ("moving", None, None, "missing"),
+        ("moving", 0.9, None, "nothing"),
+        ("moving", None, 0.01, "nothing"),
+        ("sliding", None, None, "nothing"),
+    ],
 )
 def test_near_reversals_what_takes_much_of_the_error_for_sure_is_no_luck_of_few_stretches(
-    monkeypatch, asked, chance, verdict
+    monkeypatch, show_in, asked, chance, verdict
 ):
     made = recordings(Joint(extra=bristles), seed=4)
     fit = widened(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), "moving")
@@ -66,6 +72,6 @@ def test_near_reversals_what_takes_much_of_the_error_for_sure_is_no_luck_of_few_
             "examine",
             lambda *of: [replace(one, gain=replace(one.gain, chance=chance)) for one in examined(*of)],
         )
-    answer = answer_of(fit, gathered, unsure, None)
+    answer = answer_of(fit, replace(gathered, show_in=show_in), unsure, None)
     assert answer.verdict == verdict
     assert (answer.p_value <= SIGNIFICANT) == (verdict == "missing")
