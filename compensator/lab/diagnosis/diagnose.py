@@ -7,32 +7,23 @@ shapes), does it help (held-out error, resampled by whole trials).
 
 from math import nan
 
-import numpy as np
-
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at_rest
-from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.diagnosis.drawn_shape import answer_beside
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.families import Answer, answer_of, beside, what_remains
+from compensator.lab.diagnosis.families import Answer
+from compensator.lab.diagnosis.four_families import judged
+from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
-from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE
 from compensator.lab.diagnosis.wording import problem_in_words
-from compensator.lab.effects.catalogue import candidates, catalogue, effect_named
+from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
-from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates, gather
-from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Screening, kept_evidence, least_p_value, screen, screen_against_noise
-from compensator.lab.screening.own_load import on_own_load
+from compensator.lab.screening.evidence import least_p_value, screen
 
-FEWEST_REVERSAL_ROWS = 40
 EXPLAINED = 0.75  # of the error: what an effect may leave of an effort that seemed alien to the motion
 
 
@@ -41,48 +32,26 @@ def diagnose(fit: Fit) -> Diagnosis:
 
     Four families are judged one after the other: effects of the joint that show in steady sliding; effects with
     memory, which live near reversals and starts; effects that show in the effort of breaking away from rest; effects of
-    the measuring chain. The first that has something missing
-    is the answer, the others are notes: while something large is missing, the smaller may be its shadow. For the same
-    reason a larger effect with memory goes before one of steady sliding. Where the data themselves are wrong, that is
-    the answer, and nothing is ranked.
+    the measuring chain. The first that has something missing is the answer, the others are notes: while something large
+    is missing, the smaller may be its shadow. For the same reason a larger effect with memory goes before one of steady
+    sliding. Where the data themselves are wrong, that is the answer, and nothing is ranked.
 
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
     if problems := fatal_problems(fit):
         return _data_problem(fit, problems[0])
-    gathered = with_noise(gather(fit))
-    stretch = fit.dataset.block_index[gathered.rows]
-    physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
-    if not physical:
-        raise UnusableDataError(
-            "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
-        )
-    assert gathered.noise is not None
-    generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
-    sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
-    steady = answer_of(fit, gathered, sliding, generic)
-    chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
-    beside_drawn = None if steady.verdict == "missing" else answer_beside(fit, gathered)
-    if beside_drawn is not None:
-        steady, gathered = beside_drawn
-    memory, wide, not_judged = _memory(fit)
-    rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
-    families = [steady, *(answer for answer in (memory, rest) if answer is not None), chain]
-    first = _first_of(families)
-    if memory is not None and wide is not None and first is steady and _casts(wide, memory, steady):
-        first = memory
+    families = judged(fit)
+    first = families.first()
     if (problems := unexplained(fit)) and not _explains_most(first):
         return _data_problem(fit, problems[0])
-    others = [answer for answer in families if answer is not first]
-    if first is steady or first is chain:
-        first = beside(first, chain if first is steady else steady, fit, gathered)
+    others = [answer for answer in families.in_order if answer is not first]
+    left = _left_in_sliding(fit, families.gathered, first) if first is families.memory else []
+    first = families.beside_the_other(first, fit)
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
-    left = _left_in_sliding(fit, gathered, first) if first is memory else []
     notes = [*first.notes, *left, *(answer.sentence for answer in others if answer.verdict == "missing")]
-    if rest is not None and rest is not first:
-        notes += rest.notes
+    notes += [note for answer in others if answer is families.rest for note in answer.notes]
+    nothing = first.verdict == "nothing"
     return Diagnosis(
         verdict=first.verdict,
         sentence=first.sentence,
@@ -92,10 +61,10 @@ def diagnose(fit: Fit) -> Diagnosis:
         driver=first.driver,
         data_problems=data_problems(fit),
         notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
-        left_out={**gathered.left_out, **not_judged, **not_at_rest},
-        too_short=first.verdict == "nothing" and least_p_value(len(np.unique(stretch))) > SIGNIFICANT,
-        remains=first.remains or bool(left) or (first.verdict == "nothing" and steady.remains),
-        shapes=gathered.fit.shapes if beside_drawn is not None else None,
+        left_out=families.left_out,
+        too_short=nothing and least_p_value(families.stretches) > SIGNIFICANT,
+        remains=first.remains or bool(left) or (nothing and families.steady.remains),
+        shapes=families.gathered.fit.shapes if families.drawn else None,
     )
 
 
@@ -134,63 +103,12 @@ def _by_run(fit: Fit) -> list[str]:
     return [by_run_in_words(one, unit) for one in differences_by_run(fit, held_out(fit))]
 
 
-def _memory(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:
-    """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
-    dataset = fit.dataset
-    trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
-    near_reversals = int((trained & (dataset.regime == Regime.TRANSIENT)).sum())
-    wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
-    if near_reversals < FEWEST_REVERSAL_ROWS:
-        why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
-        return None, None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
-    wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
-    gathered = on_own_load(gather(wide, "moving"))
-    screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
-    return answer_of(wide, gathered, screening, None), gathered, gathered.left_out
-
-
 def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[str]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
     if memory.verdict != "missing" or memory.remains:
         return []
     name = memory.candidates[0].effect.name
     return what_remains(fit_effects(fit.dataset, [*fit.names, name], fit.training), gathered, name)
-
-
-def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
-    """Whether what steady sliding speaks for is the shadow of a larger effect with memory, which stands without it."""
-    if memory.verdict == "nothing" or steady.verdict != "missing" or memory.strength <= steady.strength:
-        return False
-    shadow = steady.candidates[0]
-    given = wide.with_columns(wide.fit.dataset.columns(shadow.effect, shadow.shape))
-    name = memory.candidates[0].effect.name
-    return kept_evidence(given.bases, [block for block in given.named if block.name == name])[name] > steady.strength
-
-
-def _first_of(families: list[Answer]) -> Answer:
-    """The first family with an answer; a curve that no effect follows, unless another family explains it."""
-    steady = families[0]
-    if steady.verdict == "nothing":
-        return next((answer for answer in families if answer.verdict != "nothing"), steady)
-    if steady.verdict == "missing":
-        chain = families[-1]
-        return chain if chain.verdict == "missing" and _explains_more(chain, steady) else steady
-    enough = FORMULA_SHARE * steady.strength
-    return next((a for a in families[1:] if a.verdict != "nothing" and a.strength >= enough), steady)
-
-
-def _least_p(screening: Screening) -> dict[str, float]:
-    """The least p-value of each effect's shapes, times how many there are."""
-    found: dict[str, float] = {}
-    for item in screening.evidence:
-        p_value = min(1.0, item.block.scanned * item.p_value)
-        found[item.block.name] = min(found.get(item.block.name, 1.0), p_value)
-    return found
-
-
-def _explains_more(one: Answer, other: Answer) -> bool:
-    """Whether one family's best effect has more evidence, and leaves less, than another's on the same rows."""
-    return one.strength > other.strength and one.candidates[0].gain.value > other.candidates[0].gain.value
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.bending import still_bending
+from compensator.lab.diagnosis.best_shapes import best_shapes
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
@@ -13,37 +13,18 @@ from compensator.lab.diagnosis.examination import (
     is_confirmed,
     is_sure,
 )
-from compensator.lab.diagnosis.physical import is_past_scan, is_possible, is_too_small, is_within_bounds
-from compensator.lab.diagnosis.session_constancy import change_in_session
+from compensator.lab.diagnosis.physical import is_past_scan, is_too_small, is_within_bounds
+from compensator.lab.diagnosis.remaining import beside_a_name, without_a_name
 from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE, unfollowed
-from compensator.lab.diagnosis.wording import (
-    answer_in_words,
-    bending_in_words,
-    bursts_in_words,
-    changed_in_session_in_words,
-    changing_in_words,
-    still_bending_in_words,
-    still_left_in_words,
-    swinging_in_words,
-    unexplained_in_words,
-    wandering_in_words,
-)
-from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
 from compensator.lab.effects.effect import MotionRows
-from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
-from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
-from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.weights import row_weights
-from compensator.lab.rows.drivers import DRIVERS
-from compensator.lab.screening.candidates import Candidates, gather_curves
-from compensator.lab.screening.evidence import Evidence, Screening, among_all, screen
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import Evidence, Screening, among_all
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
-TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
-ALIKE = 0.95  # correlation of what two effects explain
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 LARGE_GAIN = 0.25  # near reversals: five times what is asked for there, since every chain leaves a little
 
@@ -81,51 +62,119 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         named: evidence for the family's effects.
         generic: evidence for free curves; None where a formula need not be held against one.
     """
-    best_of_each = _best_shapes(gathered, named)
-    if not best_of_each:
+    shapes = best_shapes(gathered, named)
+    if not shapes:
         return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
-    shown = [item for item in best_of_each if item.score > 0.0][:EXAMINED]
-    examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else best_of_each[:FEWEST_SHOWN])
-    best = next(item for item in best_of_each if item.block.name == examined[0].effect.name)
-    found_free = None if generic is None else unfollowed(fit, gathered, generic, examined, best)
-    if found_free is not None:
-        curve, p_value = found_free
-        driver, sentence = curve.block.name, answer_in_words("unknown-effect", p_value, examined, curve.block.name)
-        return Answer("unknown-effect", sentence, p_value, examined, driver, [], curve.noncentrality, remains=True)
-    p_value = among_all(named.p_value)
-    # what explains much less than an effect that cannot be it is the shadow of something else
-    share = FORMULA_SHARE if gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
-    enough = best.noncentrality >= share * max(item.noncentrality for item in best_of_each)
-    name = best.block.name
-    own_p = _own_chance(named, examined[0], gathered.show_in)
-    explained = None
-    if own_p <= SIGNIFICANT and enough and is_confirmed(examined[0]):
-        explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
-        examined = [as_in_the_ladder(examined[0], fit, explained, gathered.show_in), *examined[1:]]
-    if explained is not None and (gathered.show_in == "sliding" or _holds(explained, examined[0])):
-        sentence, notes = answer_in_words("missing", own_p, examined, None), _left(explained, gathered, best, name)
-        remains, strength = bool(notes), best.noncentrality
+    shown = [item for item in shapes if item.score > 0.0][:EXAMINED]
+    examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else shapes[:FEWEST_SHOWN])
+    family = _Family(fit, gathered, named, shapes, examined)
+    if (curve := family.curve(generic)) is not None:
+        return curve
+    family = family.with_the_first_in_the_model()
+    return family.name() or family.bend() or family.nothing(generic)
+
+
+@dataclass(frozen=True)
+class _Family:
+    """Effects of one family, ranked, and what can be said of them.
+
+    Attributes:
+        fit, gathered, named: as in `answer_of`.
+        shapes: the best one of every effect, best effect first.
+        examined: the first effects with their held-out errors; confirmed ones first.
+        explained: the model with the first of them; None where it is not to be named.
+        own_chance: that luck alone brings the first of them so far.
+    """
+
+    fit: Fit
+    gathered: Candidates
+    named: Screening
+    shapes: list[Evidence]
+    examined: list[Candidate]
+    explained: Fit | None = None
+    own_chance: float = 1.0
+
+    @property
+    def best(self) -> Evidence:
+        """Of the effect that would be named."""
+        return next(item for item in self.shapes if item.block.name == self.examined[0].effect.name)
+
+    @property
+    def most(self) -> Evidence:
+        """What explains most, whether it can be or not."""
+        return max(self.shapes, key=lambda item: item.noncentrality)
+
+    @property
+    def p_value(self) -> float:
+        """The chance that luck alone brings any of the family's effects so far."""
+        return among_all(self.named.p_value)
+
+    def curve(self, generic: Screening | None) -> Answer | None:
+        """A free curve that no formula follows; None where there is none, or none is asked for."""
+        if generic is None:
+            return None
+        found = unfollowed(self.fit, self.gathered, generic, self.examined, self.best)
+        if found is None:
+            return None
+        curve, p_value = found
+        driver = curve.block.name
+        sentence = answer_in_words("unknown-effect", p_value, self.examined, driver)
+        return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], curve.noncentrality, remains=True)
+
+    def with_the_first_in_the_model(self) -> "_Family":
+        """The same, where the first is to be named: its errors are those of the model that would be had with it."""
+        fit, first = self.fit, self.examined[0]
+        own_chance = _own_chance(self.named, first, self.gathered.show_in)
+        if own_chance > SIGNIFICANT or self._is_shadow(self.best) or not is_confirmed(first):
+            return self
+        explained = fit_effects(fit.dataset, [*fit.names, first.effect.name], fit.training)
+        first = as_in_the_ladder(first, fit, explained, self.gathered.show_in)
+        return replace(self, examined=[first, *self.examined[1:]], explained=explained, own_chance=own_chance)
+
+    def name(self) -> Answer | None:
+        """The effect that is missing; None where none is confirmed."""
+        explained, best, examined = self.explained, self.best, self.examined
+        if explained is None or not (self.gathered.show_in == "sliding" or _holds(explained, examined[0])):
+            return None
+        own_p = self.own_chance
+        sentence = answer_in_words("missing", own_p, examined, None)
+        notes = beside_a_name(explained, self.gathered, best, best.block.name)
+        strength, remains = best.noncentrality, bool(notes)
         return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained, best)
-    found = _bends(gathered, examined, best_of_each)
-    if p_value <= SIGNIFICANT and found is not None:
+
+    def _is_shadow(self, best: Evidence) -> bool:
+        """Whether it explains much less than another effect, which cannot be it."""
+        share = FORMULA_SHARE if self.gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
+        return best.noncentrality < share * self.most.noncentrality
+
+    def bend(self) -> Answer | None:
+        """What bends along with the joint, where that is not the friction it was taken for; None without any."""
+        found = self._bends() if self.p_value <= SIGNIFICANT else None
+        if found is None:
+            return None
         bends, too_far = found
-        others = [one for one in examined if one is not bends]
-        sentence = bending_in_words(bends, too_far, fit.dataset.facts, p_value)
-        driver, strength = bends.effect.driver, max(item.noncentrality for item in best_of_each)
-        return Answer("unknown-effect", sentence, p_value, [bends, *others], driver, [], strength, remains=True)
-    stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
-    sentence, remains = answer_in_words("nothing", p_value, examined, None, stretches), False
-    if generic is not None:
-        left, bursts = left_over(gathered), _bursts(gathered)
-        if bursts is not None and bursts.of_effort > LEAST_SHARE:
-            names = [_trial_names(fit)[index] for index in bursts.trials]
-            sentence, remains = bursts_in_words(bursts, names, p_value), True
-        elif left.is_more_than_noise:
-            wanders = _wanders(fit, left)
-            nearest, facts = _nearest_driver(generic), fit.dataset.facts
-            sentence = unexplained_in_words(left, nearest, p_value, stretches, facts, wanders)
-            remains = True
-    return Answer("nothing", sentence, p_value, examined, None, [], best.noncentrality, remains)
+        ranked = [bends, *(one for one in self.examined if one is not bends)]
+        sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, self.p_value)
+        driver, strength = bends.effect.driver, self.most.noncentrality
+        return Answer("unknown-effect", sentence, self.p_value, ranked, driver, [], strength, remains=True)
+
+    def _bends(self) -> tuple[Candidate, bool] | None:
+        """What explains most, for sure, but cannot be the friction in whose place it stands: a part, or too far."""
+        most, gathered = self.most, self.gathered
+        candidate = next((one for one in self.examined if one.effect.name == most.block.name), None)
+        if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
+            return None
+        too_far = candidate.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
+        return (candidate, too_far) if too_far or is_too_small(gathered, most) else None
+
+    def nothing(self, generic: Screening | None) -> Answer:
+        """That no effect is confirmed, and what is left all the same, where free curves are asked for."""
+        fit, gathered, p_value = self.fit, self.gathered, self.p_value
+        left = None if generic is None else without_a_name(fit, gathered, generic, p_value)
+        stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
+        sentence = left or answer_in_words("nothing", p_value, self.examined, None, stretches)
+        strength = self.best.noncentrality
+        return Answer("nothing", sentence, p_value, self.examined, None, [], strength, remains=left is not None)
 
 
 def _holds(explained: Fit, candidate: Candidate) -> bool:
@@ -143,13 +192,8 @@ def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answ
         return first
     names = (first.named.block.name, other.named.block.name)
     explained = fit_effects(fit.dataset, [*fit.names, *names], fit.training)
-    notes = _left(explained, gathered, first.named, " and ".join(names))
+    notes = beside_a_name(explained, gathered, first.named, " and ".join(names))
     return replace(first, notes=notes, remains=bool(notes))
-
-
-def _left(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[str]:
-    """What is left of an effect that is named: beside its formula, or of another that it only imitates."""
-    return what_remains(explained, gathered, called) or _imitated(explained, gathered, best)
 
 
 def _own_chance(named: Screening, best: Candidate, show_in: MotionRows) -> float:
@@ -170,101 +214,3 @@ def _chance_of(named: Screening, best: Candidate) -> float:
     Bonferroni: of two looks at its gain, either would have done.
     """
     return min(1.0, (1.0 if best.beside_open is None else 2.0) * among_all(named.chance_of(best.effect.name)))
-
-
-def _bends(
-    gathered: Candidates, examined: list[Candidate], best_of_each: list[Evidence]
-) -> tuple[Candidate, bool] | None:
-    """What explains most, for sure, but cannot be the friction it stands in the place of: a part of it, or too far."""
-    most = max(best_of_each, key=lambda item: item.noncentrality)
-    candidate = next((one for one in examined if one.effect.name == most.block.name), None)
-    if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
-        return None
-    too_far = candidate.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
-    return (candidate, too_far) if too_far or is_too_small(gathered, most) else None
-
-
-def _best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
-    """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
-    of_each: dict[str, list[Evidence]] = {}
-    for evidence in screening.evidence:
-        of_each.setdefault(evidence.block.name, []).append(evidence)
-    found = [_best_shape(gathered, shapes) for shapes in of_each.values()]
-    ranked = sorted(found, key=lambda item: -item.score)
-    order = list(catalogue())
-    tied = [item for item in ranked if _ties(item, ranked[0])]
-    plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
-    return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
-
-
-def _best_shape(gathered: Candidates, shapes: list[Evidence]) -> Evidence:
-    """The best one; near reversals, of those whose size can be: what swings too little, or too much, makes up by it."""
-    if gathered.show_in != "moving":
-        return shapes[0]
-    return next((item for item in shapes if item.score > 0.0 and is_possible(gathered, item)), shapes[0])
-
-
-def _ties(item: Evidence, best: Evidence) -> bool:
-    """Whether two effects explain the same, and about as well: then the rows cannot choose between them."""
-    alike = abs(float(item.direction @ best.direction)) >= ALIKE
-    return alike and item.score >= best.score - TIE
-
-
-def _bursts(gathered: Candidates) -> Bursts | None:
-    """Stretches that leave far more than others of like motion; None without any, or where teeth bounce there."""
-    dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
-    weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
-    found = bursts_of(dataset, residual[rows], weights, rows)
-    return found if found.are_there and not is_rattle(found, dataset, residual[rows], rows) else None
-
-
-def _wanders(fit: Fit, left: LeftOver) -> str:
-    """What is another one for seconds, in words; empty where nothing is."""
-    if left.wandering is None:
-        return ""
-    return wandering_in_words(left.wandering, _trial_names(fit), fit.dataset.effort_definition.unit)
-
-
-def _trial_names(fit: Fit) -> list[str]:
-    return [trial.signals.recording.name for trial in fit.dataset.trials]
-
-
-def _nearest_driver(generic: Screening) -> str | None:
-    """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
-    best = generic.evidence[0] if generic.evidence else None
-    return best.block.name if best is not None and best.score > 0.0 else None
-
-
-def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]:
-    """What an effect that is named only imitates, as far as it is more than what its formula leaves open."""
-    name = best.block.name
-    if still_bending(explained, gathered, best):
-        return [still_bending_in_words(name)]
-    change = change_in_session(explained, gathered, best.block)
-    if change is not None:
-        return [changed_in_session_in_words(name, change)]
-    left = left_beside(explained, gathered, best)
-    return [] if left is None else [still_left_in_words(name, left, explained.dataset.facts)]
-
-
-def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
-    """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it."""
-    grown = gather_curves(fit, gathered.show_in)
-    left = left_over(grown)
-    if not left.is_more_than_noise:
-        return []
-    rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
-    if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
-        driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
-        how = " against the motion" if rest.evidence[0].block.name.endswith("against motion") else ""
-        return [f"After {name}, structure over {driver.title}{how} remains; add it and diagnose again."]
-    if left.change is not None:
-        return [f"After {name}, {changing_in_words(left.change)}; repeat a trial to see whether it comes again."]
-    if left.swing is not None:
-        return [f"After {name}, what is left {swinging_in_words(left.swing)}."]
-    if wanders := _wanders(fit, left):
-        return [f"After {name}, {wanders}; repeat a trial to see whether it comes again."]
-    return [
-        f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "
-        "has structure over no variable that is measured; add it and diagnose again."
-    ]

@@ -8,6 +8,7 @@ import pytest
 from scipy.stats import binom
 
 from compensator.lab.diagnosis import diagnose as diagnose_module
+from compensator.lab.diagnosis import four_families
 from compensator.lab.diagnosis import unfollowed as unfollowed_module
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
@@ -248,9 +249,9 @@ def test_a_curve_that_the_noise_of_all_rows_would_draw_is_none(monkeypatch):
 def with_luck(monkeypatch, p_value):
     """A diagnosis of weight-dependent friction whose every screening says so small a p."""
     for name in ("screen", "screen_against_noise"):
-        whole = getattr(diagnose_module, name)
+        whole = getattr(four_families, name)
         monkeypatch.setattr(
-            diagnose_module,
+            four_families,
             name,
             lambda *given, whole=whole, **named: replace(whole(*given, **named), p_value=p_value),
         )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import families
+from compensator.lab.diagnosis import remaining
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import left_over
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
@@ -52,7 +52,7 @@ def test_what_is_little_beside_the_named_effect_is_not_told(monkeypatch):
 
 def test_a_force_that_goes_round_is_as_large_at_any_speed(monkeypatch):
     """What grows with the square of the speed is an acceleration, and that may be one that never was."""
-    monkeypatch.setattr(families, "what_remains", lambda *_: [])  # so much of it is told as such, too
+    monkeypatch.setattr(remaining, "what_remains", lambda *_: [])  # so much of it is told as such, too
     found = diagnose(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * (1.0 + 0.5 * x.v**2)))
     assert found.classes[0][0] == "cogging"
     (told,) = [note for note in found.notes if "in part" in note]

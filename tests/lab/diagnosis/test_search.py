@@ -120,3 +120,14 @@ def test_formulas_that_leave_something_do_not_stand_for_what_has_no_name(monkeyp
     unknown = replace(diagnose(fit), verdict="unknown-effect", remains=True)
     monkeypatch.setattr(search_module, "diagnose", lambda fit: replace(diagnose(fit), remains=True))
     assert search(fit, first=unknown).added == ()
+
+
+@pytest.mark.parametrize(("low", "most"), [(-0.01, 4), (0.1, 1)])
+def test_past_a_curve_only_what_helps_for_sure_is_tried_and_only_where_two_may_be_added(monkeypatch, low, most):
+    made = recordings(Joint(extra=lambda x: PLANTED["spring"](x) + PLANTED["viscous_asymmetry"](x)), seed=5)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    found = diagnose(fit)
+    candidates = [replace(one, gain=Gain(0.2, low, 0.3)) for one in found.candidates]
+    unknown = replace(found, verdict="unknown-effect", remains=True, candidates=candidates)
+    monkeypatch.setattr(search_module, "diagnose", lambda _: pytest.fail("a formula was tried"))
+    assert search(fit, most, first=unknown).added == ()

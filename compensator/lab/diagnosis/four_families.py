@@ -1,0 +1,149 @@
+"""What all four families say of a model, and which of them has the answer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.diagnosis.breakaway_family import breakaway_answer
+from compensator.lab.diagnosis.drawn_shape import answer_beside
+from compensator.lab.diagnosis.families import Answer, answer_of, beside
+from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE
+from compensator.lab.effects.catalogue import candidates, effect_named
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.model.fit import widened
+from compensator.lab.model.fitted import Fit
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.screening.candidates import Candidates, gather
+from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import Screening, kept_evidence, screen, screen_against_noise
+from compensator.lab.screening.own_load import on_own_load
+
+FEWEST_REVERSAL_ROWS = 40
+
+
+@dataclass(frozen=True)
+class FourFamilies:
+    """What each family says of a model.
+
+    Attributes:
+        steady: effects of the joint in steady sliding.
+        memory: effects with memory, near reversals; None where there are none.
+        rest: effects at starts from rest; None where there are too few.
+        chain: effects of the measuring chain.
+        gathered: what the model may be missing in steady sliding.
+        wide: the same near reversals; None where there are none.
+        left_out: effect name -> why it cannot be judged on these trials.
+        drawn: steady sliding was judged at the shapes that the model would have beside an effect.
+    """
+
+    steady: Answer
+    memory: Answer | None
+    rest: Answer | None
+    chain: Answer
+    gathered: Candidates
+    wide: Candidates | None
+    left_out: dict[str, str]
+    drawn: bool
+
+    @property
+    def in_order(self) -> list[Answer]:
+        """Those that could be judged, as one comes before the other."""
+        return [one for one in (self.steady, self.memory, self.rest, self.chain) if one is not None]
+
+    @property
+    def stretches(self) -> int:
+        """In how many stretches the joint slides."""
+        return len(np.unique(self.gathered.fit.dataset.block_index[self.gathered.rows]))
+
+    def first(self) -> Answer:
+        """The answer: that of the first family with one, unless it is the shadow of a larger effect with memory."""
+        first = _first_of(self.in_order)
+        if self.memory is not None and self.wide is not None and first is self.steady:
+            return self.memory if _casts(self.wide, self.memory, self.steady) else first
+        return first
+
+    def beside_the_other(self, first: Answer, fit: Fit) -> Answer:
+        """Of joint and chain, one with what it leaves beside the other, too; any other answer as it is."""
+        if first is not self.steady and first is not self.chain:
+            return first
+        return beside(first, self.chain if first is self.steady else self.steady, fit, self.gathered)
+
+
+def judged(fit: Fit) -> FourFamilies:
+    """All families of a model, on its training rows.
+
+    Raises:
+        UnusableDataError: no candidate can be judged on these trials.
+    """
+    gathered = with_noise(gather(fit))
+    physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
+    if not physical:
+        raise UnusableDataError(
+            "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
+        )
+    assert gathered.noise is not None
+    stretch = fit.dataset.block_index[gathered.rows]
+    generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
+    sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
+    steady = answer_of(fit, gathered, sliding, generic)
+    chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
+    beside_drawn = None if steady.verdict == "missing" else answer_beside(fit, gathered)
+    if beside_drawn is not None:
+        steady, gathered = beside_drawn
+    memory, wide, not_judged = _memory_of(fit)
+    rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
+    left_out = {**gathered.left_out, **not_judged, **not_at_rest}
+    return FourFamilies(steady, memory, rest, chain, gathered, wide, left_out, beside_drawn is not None)
+
+
+def _memory_of(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:
+    """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
+    dataset = fit.dataset
+    trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
+    near_reversals = int((trained & (dataset.regime == Regime.TRANSIENT)).sum())
+    wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
+    if near_reversals < FEWEST_REVERSAL_ROWS:
+        why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
+        return None, None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
+    wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
+    gathered = on_own_load(gather(wide, "moving"))
+    screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
+    return answer_of(wide, gathered, screening, None), gathered, gathered.left_out
+
+
+def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
+    """Whether what steady sliding speaks for is the shadow of a larger effect with memory, which stands without it."""
+    if memory.verdict == "nothing" or steady.verdict != "missing" or memory.strength <= steady.strength:
+        return False
+    shadow = steady.candidates[0]
+    given = wide.with_columns(wide.fit.dataset.columns(shadow.effect, shadow.shape))
+    name = memory.candidates[0].effect.name
+    return kept_evidence(given.bases, [block for block in given.named if block.name == name])[name] > steady.strength
+
+
+def _first_of(families: list[Answer]) -> Answer:
+    """The first family with an answer; a curve that no effect follows, unless another family explains it."""
+    steady = families[0]
+    if steady.verdict == "nothing":
+        return next((answer for answer in families if answer.verdict != "nothing"), steady)
+    if steady.verdict == "missing":
+        chain = families[-1]
+        return chain if chain.verdict == "missing" and _explains_more(chain, steady) else steady
+    enough = FORMULA_SHARE * steady.strength
+    return next((a for a in families[1:] if a.verdict != "nothing" and a.strength >= enough), steady)
+
+
+def _least_p(screening: Screening) -> dict[str, float]:
+    """The least p-value of each effect's shapes, times how many there are."""
+    found: dict[str, float] = {}
+    for item in screening.evidence:
+        p_value = min(1.0, item.block.scanned * item.p_value)
+        found[item.block.name] = min(found.get(item.block.name, 1.0), p_value)
+    return found
+
+
+def _explains_more(one: Answer, other: Answer) -> bool:
+    """Whether one family's best effect has more evidence, and leaves less, than another's on the same rows."""
+    return one.strength > other.strength and one.candidates[0].gain.value > other.candidates[0].gain.value

@@ -1,0 +1,109 @@
+"""What no name explains: beside a plain model, or beside a name that is right only in part."""
+
+import numpy as np
+
+from compensator.lab.diagnosis.bending import still_bending
+from compensator.lab.diagnosis.examination import SIGNIFICANT
+from compensator.lab.diagnosis.session_constancy import change_in_session
+from compensator.lab.diagnosis.wording import (
+    bursts_in_words,
+    changed_in_session_in_words,
+    changing_in_words,
+    still_bending_in_words,
+    still_left_in_words,
+    swinging_in_words,
+    unexplained_in_words,
+    wandering_in_words,
+)
+from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
+from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
+from compensator.lab.left_over.remainder import LEAST_SHARE
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.weights import row_weights
+from compensator.lab.rows.drivers import DRIVERS
+from compensator.lab.screening.candidates import Candidates, gather_curves
+from compensator.lab.screening.evidence import Evidence, Screening, screen
+
+
+def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: float) -> str | None:
+    """What a model leaves in which no effect is confirmed, in words; None where it is no more than noise.
+
+    Args:
+        fit: the model.
+        gathered: what it may be missing, on the rows that are judged.
+        generic: evidence for free curves.
+        p_value: of the effects.
+    """
+    left, bursts = left_over(gathered), _bursts(gathered)
+    if bursts is not None and bursts.of_effort > LEAST_SHARE:
+        return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials], p_value)
+    if not left.is_more_than_noise:
+        return None
+    stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
+    wanders = _wanders(fit, left)
+    return unexplained_in_words(left, _nearest_driver(generic), p_value, stretches, fit.dataset.facts, wanders)
+
+
+def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[str]:
+    """What is left of an effect that is named: beside its formula, or of another that it only imitates."""
+    return what_remains(explained, gathered, called) or _imitated(explained, gathered, best)
+
+
+def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
+    """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it."""
+    grown = gather_curves(fit, gathered.show_in)
+    left = left_over(grown)
+    if not left.is_more_than_noise:
+        return []
+    rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
+    if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
+        driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
+        how = " against the motion" if rest.evidence[0].block.name.endswith("against motion") else ""
+        return [f"After {name}, structure over {driver.title}{how} remains; add it and diagnose again."]
+    if left.change is not None:
+        return [f"After {name}, {changing_in_words(left.change)}; repeat a trial to see whether it comes again."]
+    if left.swing is not None:
+        return [f"After {name}, what is left {swinging_in_words(left.swing)}."]
+    if wanders := _wanders(fit, left):
+        return [f"After {name}, {wanders}; repeat a trial to see whether it comes again."]
+    return [
+        f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "
+        "has structure over no variable that is measured; add it and diagnose again."
+    ]
+
+
+def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]:
+    """What an effect that is named only imitates, as far as it is more than what its formula leaves open."""
+    name = best.block.name
+    if still_bending(explained, gathered, best):
+        return [still_bending_in_words(name)]
+    change = change_in_session(explained, gathered, best.block)
+    if change is not None:
+        return [changed_in_session_in_words(name, change)]
+    left = left_beside(explained, gathered, best)
+    return [] if left is None else [still_left_in_words(name, left, explained.dataset.facts)]
+
+
+def _bursts(gathered: Candidates) -> Bursts | None:
+    """Stretches that leave far more than others of like motion; None without any, or where teeth bounce there."""
+    dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
+    weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
+    found = bursts_of(dataset, residual[rows], weights, rows)
+    return found if found.are_there and not is_rattle(found, dataset, residual[rows], rows) else None
+
+
+def _wanders(fit: Fit, left: LeftOver) -> str:
+    """What is another one for seconds, in words; empty where nothing is."""
+    if left.wandering is None:
+        return ""
+    return wandering_in_words(left.wandering, _trial_names(fit), fit.dataset.effort_definition.unit)
+
+
+def _trial_names(fit: Fit) -> list[str]:
+    return [trial.signals.recording.name for trial in fit.dataset.trials]
+
+
+def _nearest_driver(generic: Screening) -> str | None:
+    """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
+    best = generic.evidence[0] if generic.evidence else None
+    return best.block.name if best is not None and best.score > 0.0 else None
