@@ -24,6 +24,8 @@ LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however
 LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
 LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
+FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
+SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
 
 
@@ -38,7 +40,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         alike = _alike(item, spans)
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
         candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
-    candidates = _looked_at_again(gathered, candidates)
+    candidates = _looked_at_again(gathered, candidates, evidence)
     return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
 
 
@@ -58,16 +60,28 @@ def _held_out_sliding(fit: Fit) -> HeldOut:
     return _held_out(fit, "sliding")
 
 
-def _looked_at_again(gathered: Candidates, candidates: list[Candidate]) -> list[Candidate]:
+def _looked_at_again(gathered: Candidates, candidates: list[Candidate], evidence: list[Evidence]) -> list[Candidate]:
     """The candidates; very strong ones whose gain other formulas may hide, with that beside what these leave open.
 
-    Where one is confirmed as it is, no other is looked at again.
+    Where one is confirmed as it is, and no mere shadow of another, no other is looked at again.
     """
-    if gathered.show_in != "sliding" or any(is_confirmed(one) for one in candidates):
+    if gathered.show_in != "sliding" or _names_one(candidates, evidence, gathered.show_in):
         return candidates
     hidden = [one.effect.name for one in candidates if _may_be_hidden(one)]
     found = beside_open(gathered.fit, hidden, _held_out_sliding)
     return [replace(one, beside_open=found.get(one.effect.name)) for one in candidates]
+
+
+def share_of(show_in: MotionRows) -> float:
+    """Of the evidence of the likeliest effect: what explains less is the shadow of something else."""
+    return FORMULA_SHARE if show_in == "sliding" else SHARE_NEAR_REVERSALS
+
+
+def _names_one(candidates: list[Candidate], evidence: list[Evidence], show_in: MotionRows) -> bool:
+    """Whether a candidate is confirmed that is no shadow of another one."""
+    enough = share_of(show_in) * max((item.noncentrality for item in evidence), default=0.0)
+    pairs = zip(candidates, evidence, strict=True)
+    return any(is_confirmed(one) and item.noncentrality >= enough for one, item in pairs)
 
 
 def _may_be_hidden(candidate: Candidate) -> bool:

@@ -12,10 +12,11 @@ from compensator.lab.diagnosis.examination import (
     examine,
     is_confirmed,
     is_sure,
+    share_of,
 )
 from compensator.lab.diagnosis.physical import is_past_scan, is_too_small, is_within_bounds
 from compensator.lab.diagnosis.remaining import beside_a_name, without_a_name
-from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE, unfollowed
+from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fit import fit_effects
@@ -25,7 +26,6 @@ from compensator.lab.screening.evidence import Evidence, Screening, among_all
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
-SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 LARGE_GAIN = 0.25  # near reversals: five times what is asked for there, since every chain leaves a little
 
 
@@ -144,8 +144,7 @@ class _Family:
 
     def _is_shadow(self, best: Evidence) -> bool:
         """Whether it explains much less than another effect, which cannot be it."""
-        share = FORMULA_SHARE if self.gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
-        return best.noncentrality < share * self.most.noncentrality
+        return best.noncentrality < share_of(self.gathered.show_in) * self.most.noncentrality
 
     def bend(self) -> Answer | None:
         """What bends along with the joint, where that is not the friction it was taken for; None without any."""

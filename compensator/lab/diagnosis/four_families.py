@@ -7,8 +7,8 @@ import numpy as np
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.drawn_shape import answer_beside
+from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import Answer, answer_of, beside
-from compensator.lab.diagnosis.unfollowed import FORMULA_SHARE
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import widened

@@ -8,7 +8,7 @@ would leave open counts for it: where it leaves the curve nothing, it is followe
 
 from compensator.lab.diagnosis.bending import bending
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import SIGNIFICANT, is_confirmed
+from compensator.lab.diagnosis.examination import FORMULA_SHARE, SIGNIFICANT, is_confirmed
 from compensator.lab.model.fit import fit_effects, with_columns
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
@@ -16,8 +16,6 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.discrepancy import open_columns
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, score_of, screen_against_noise
-
-FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 
 
 def unfollowed(

@@ -1,16 +1,20 @@
 """A small effect beside a formula that is nearly right: its gain is judged as evidence is, beside what that leaves."""
 
+from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.diagnosis import BesideOpen, Candidate
 from compensator.lab.diagnosis.families import _chance_of
 from compensator.lab.diagnosis.second_look import beside_open
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_effects
-from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import gather_curves
 from tests.lab.screening.test_discrepancy import fitted
@@ -52,16 +56,33 @@ def test_a_model_whose_formulas_leave_nothing_open_is_looked_at_once():
     assert beside_open(gather_curves(fit).fit, [ASYMMETRY], held_out) == {}
 
 
-def test_where_one_is_confirmed_no_other_is_looked_at_again(monkeypatch):
-    monkeypatch.setattr(examination, "is_confirmed", lambda one: one == "confirmed")
-    monkeypatch.setattr(examination, "beside_open", lambda *_: pytest.fail("looked at again"))
-    candidates = ["confirmed", "hidden"]
-    assert examination._looked_at_again(SimpleNamespace(show_in="sliding"), candidates) is candidates
+def candidate(name: str, gain: Gain, physical: bool = True) -> Candidate:
+    """With evidence that is very strong, and no luck."""
+    effect = effect_named(name)
+    return Candidate(effect, (), 50.0, 1e-6, 9.0, (), 0.1, 0.08, gain, physical, None, effect.rows)
+
+
+def evidence(noncentrality: float) -> Any:
+    return SimpleNamespace(noncentrality=noncentrality)
+
+
+@pytest.mark.parametrize(
+    ("noncentrality", "again"),
+    [(200.0, False), (121.0, False), (119.0, True)],  # the last one is what is left of it when the other's shadow
+)
+def test_where_one_is_confirmed_that_is_no_shadow_no_other_is_looked_at_again(monkeypatch, noncentrality, again):
+    better = BesideOpen(0.1, 0.05, Gain(0.5, 0.4, 0.6))
+    monkeypatch.setattr(examination, "beside_open", lambda _fit, names, _held_out: dict.fromkeys(names, better))
+    confirmed, hidden = candidate("cogging", Gain(0.3, 0.2, 0.4)), candidate(ASYMMETRY, Gain(-0.1, -0.2, 0.1))
+    gathered: Any = SimpleNamespace(show_in="sliding", fit=None)
+    found = examination._looked_at_again(gathered, [confirmed, hidden], [evidence(noncentrality), evidence(200.0)])
+    assert [one.beside_open for one in found] == [None, better if again else None]
 
 
 def test_two_looks_at_a_gain_are_paid_for():
-    screening = SimpleNamespace(chance_of=lambda _name: 1e-4)
-    effect = SimpleNamespace(name=ASYMMETRY)
-    once, twice = (_chance_of(screening, SimpleNamespace(effect=effect, beside_open=look)) for look in (None, object()))
+    screening: Any = SimpleNamespace(chance_of=lambda _name: 1e-4)
+    first = candidate(ASYMMETRY, Gain(0.3, 0.2, 0.4))
+    beside = BesideOpen(0.1, 0.05, Gain(0.3, 0.2, 0.4))
+    once, twice = (_chance_of(screening, one) for one in (first, replace(first, beside_open=beside)))
     assert twice == pytest.approx(2.0 * once)
     assert once >= 1e-4
