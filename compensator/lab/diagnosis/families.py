@@ -134,7 +134,7 @@ class _Family:
     def name(self) -> Answer | None:
         """The effect that is missing; None where none is confirmed."""
         explained, best, examined = self.explained, self.best, self.examined
-        if explained is None or not (self.gathered.show_in == "sliding" or _holds(explained, examined[0])):
+        if explained is None or not _holds(explained, examined[0]):
             return None
         own_p = self.own_chance
         sentence = answer_in_words("missing", own_p, examined, None)
@@ -177,9 +177,19 @@ class _Family:
 
 
 def _holds(explained: Fit, candidate: Candidate) -> bool:
-    """Whether a name near reversals is one in the model that would be had, too, with all shapes found anew."""
-    effect = candidate.effect
-    return is_confirmed(candidate) and (effect.holds is None or effect.holds(explained.shapes[effect.name]))
+    """Whether a name is one in the model that would be had, too, with all shapes found anew.
+
+    A shape near reversals may be one there that the owner told of: that of the evidence was only the next that could be
+    missing. In steady sliding it may be one far from that of the evidence, which predicts no better. A coefficient that
+    its lower bound holds would be less than the effect can be.
+    """
+    term = next(term for term in explained.terms if term.effect.name == candidate.effect.name)
+    least = [low for low, _ in term.effect.ranges_in(explained.dataset.effort_definition.quantity)]
+    if not is_confirmed(candidate) or bool(np.any(term.at_bound & (term.coefficients <= least))):
+        return False
+    if term.effect.told(explained.dataset.facts, term.shape):
+        return False
+    return term.effect.holds is None or term.effect.holds(term.shape)
 
 
 def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answer:

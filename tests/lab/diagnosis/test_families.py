@@ -2,18 +2,20 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import families
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import answer_of
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
-from compensator.lab.screening.evidence import among_all, screen
+from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.evidence import among_all, screen, screen_against_noise
 from compensator.lab.screening.own_load import on_own_load
 from tests.lab.diagnosis.test_diagnose import SHAKEN, bristles
 from tests.lab.far_side import ARM_KG_M2, twisting
@@ -21,28 +23,47 @@ from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
 
 @pytest.mark.parametrize(
-    ("gain", "past", "verdict"),
+    ("gain", "found", "verdict"),
     [
-        (Gain(0.3, 0.2, 0.4), False, "missing"),
-        (Gain(-0.1, -0.2, -0.0), False, "nothing"),
-        (Gain(0.3, 0.2, 0.4), True, "nothing"),  # a spring that does not swing is none
+        (Gain(0.3, 0.2, 0.4), {}, "missing"),
+        (Gain(-0.1, -0.2, -0.0), {}, "nothing"),
+        (Gain(0.3, 0.2, 0.4), {"shape": (8.0, 0.6)}, "nothing"),  # a spring that does not swing is none
+        (Gain(0.3, 0.2, 0.4), {"shape": (50.0, 0.1)}, "nothing"),  # nor is one missing that is as stiff as told
+        (
+            Gain(0.3, 0.2, 0.4),
+            {"coefficients": np.array([0.3]), "at_bound": np.array([True])},
+            "nothing",
+        ),  # a part of it
     ],
 )
-def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, gain, past, verdict):
-    drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2)
+def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, gain, found, verdict):
+    stiffness = ARM_KG_M2 * (2.0 * np.pi * 60.0) ** 2
+    drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, stiffness_n_m_rad=stiffness)
     made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
     fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
     gathered = on_own_load(gather(fit, "moving"))
     monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
-    if past:
-        damped = (8.0, 0.6)
+    if found:
         grown = fit_effects(fit.dataset, [*fit.names, "elasticity"], fit.training)
-        terms = [replace(one, shape=damped) if one.effect.name == "elasticity" else one for one in grown.terms]
+        terms = [replace(one, **found) if one.effect.name == "elasticity" else one for one in grown.terms]
         monkeypatch.setattr(families, "fit_effects", lambda *_: replace(grown, terms=terms))
     named = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
     answer = answer_of(fit, gathered, named, None)
     assert answer.candidates[0].effect.name == "elasticity"
     assert answer.verdict == verdict
+    assert (answer.explained is not None) == (verdict == "missing")
+
+
+@pytest.mark.parametrize(("gain", "verdict"), [(Gain(0.3, 0.2, 0.4), "missing"), (Gain(-0.1, -0.2, 0.1), "nothing")])
+def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, gain, verdict):
+    made = recordings(Joint(extra=lambda x: 0.02 * np.sin(3.0 * x.q)), seed=4)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    gathered = with_noise(gather(fit))
+    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
+    assert gathered.noise is not None
+    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
+    assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, "cogging")
     assert (answer.explained is not None) == (verdict == "missing")
 
 
