@@ -52,6 +52,7 @@ class Candidate:
         picture: why.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
         beside_open: errors and gain beside what the model's formulas leave open, where these decide (`second_look`).
+        anew: errors and gain are those of a model with all shapes found anew, which is a second look, too.
     """
 
     effect: Effect
@@ -67,6 +68,12 @@ class Candidate:
     picture: Picture | None
     rows: EffectRows = "sliding"
     beside_open: BesideOpen | None = None
+    anew: bool = False
+
+    @property
+    def looks(self) -> int:
+        """How often its gain was looked at."""
+        return 1 if self.beside_open is None and not self.anew else 2
 
 
 @dataclass(frozen=True)

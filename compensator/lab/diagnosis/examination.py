@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import is_physical, shape_of
+from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.diagnosis.second_look import beside_open
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import EffectRows, MotionRows, Shape
-from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
@@ -61,15 +61,43 @@ def _held_out_sliding(fit: Fit) -> HeldOut:
 
 
 def _looked_at_again(gathered: Candidates, candidates: list[Candidate], evidence: list[Evidence]) -> list[Candidate]:
-    """The candidates; very strong ones whose gain other formulas may hide, with that beside what these leave open.
+    """The candidates; very strong ones whose gain does not show, with what else it may be.
 
-    Where one is confirmed as it is, and no mere shadow of another, no other is looked at again.
+    In steady sliding other formulas may hide it: there, beside what these leave open. Near reversals the shape that has
+    most evidence may be far from the one that predicts best, where blows of teeth outweigh all else: there, in the
+    model that would be had, with all shapes found anew. Where one is confirmed as it is, and no mere shadow of another,
+    no other is looked at again.
     """
-    if gathered.show_in != "sliding" or _names_one(candidates, evidence, gathered.show_in):
+    if _names_one(candidates, evidence, gathered.show_in):
         return candidates
-    hidden = [one.effect.name for one in candidates if _may_be_hidden(one)]
-    found = beside_open(gathered.fit, hidden, _held_out_sliding)
-    return [replace(one, beside_open=found.get(one.effect.name)) for one in candidates]
+    if gathered.show_in == "sliding":
+        hidden = [one.effect.name for one in candidates if one.physical and _may_be_hidden(one)]
+        found = beside_open(gathered.fit, hidden, _held_out_sliding)
+        return [replace(one, beside_open=found.get(one.effect.name)) for one in candidates]
+    pairs = zip(candidates, evidence, strict=True)
+    return [_anew(gathered, one) if _may_be_anew(gathered, one, item) else one for one, item in pairs]
+
+
+def _may_be_anew(gathered: Candidates, candidate: Candidate, item: Evidence) -> bool:
+    """Whether a candidate may be confirmed near reversals by the model that would be had.
+
+    Where an effect says itself which shapes hold in a model, these decide, and not where its scan ends.
+    """
+    if candidate.physical:
+        return _may_be_hidden(candidate)
+    beyond = candidate.effect.holds is not None and is_possible(gathered, item)
+    return beyond and _is_very_strong(candidate)
+
+
+def _anew(gathered: Candidates, candidate: Candidate) -> Candidate:
+    """The candidate by the model that would be had; as it is where that does not confirm it."""
+    fit, name = gathered.fit, candidate.effect.name
+    explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+    term = next(term for term in explained.terms if term.effect.name == name)
+    holds = candidate.effect.holds
+    physical = candidate.physical or (holds is not None and holds(term.shape) and not term.at_bound.any())
+    found = replace(as_in_the_ladder(candidate, fit, explained, gathered.show_in), physical=physical, anew=True)
+    return found if is_confirmed(found) else candidate
 
 
 def share_of(show_in: MotionRows) -> float:
@@ -85,9 +113,13 @@ def _names_one(candidates: list[Candidate], evidence: list[Evidence], show_in: M
 
 
 def _may_be_hidden(candidate: Candidate) -> bool:
-    """Whether all but the held-out gain speaks for a candidate, and that very strongly."""
-    very_strong = candidate.score >= VERY_STRONG and candidate.p_value <= SIGNIFICANT
-    return very_strong and candidate.physical and not is_sure(candidate)
+    """Whether all but the held-out gain speaks very strongly for a candidate that can be it."""
+    return _is_very_strong(candidate) and not is_sure(candidate)
+
+
+def _is_very_strong(candidate: Candidate) -> bool:
+    """Whether its evidence is very strong, and no luck."""
+    return candidate.score >= VERY_STRONG and candidate.p_value <= SIGNIFICANT
 
 
 def is_confirmed(candidate: Candidate) -> bool:

@@ -214,7 +214,7 @@ def _own_chance(named: Screening, best: Candidate, show_in: MotionRows) -> float
     p_value = among_all(named.p_value)
     own = _chance_of(named, best) if p_value <= SIGNIFICANT else p_value
     large = show_in == "moving" and best.gain.low >= LARGE_GAIN
-    return min(own, among_all(best.gain.chance)) if large else own
+    return min(own, best.looks * among_all(best.gain.chance)) if large else own
 
 
 def _chance_of(named: Screening, best: Candidate) -> float:
@@ -222,4 +222,4 @@ def _chance_of(named: Screening, best: Candidate) -> float:
 
     Bonferroni: of two looks at its gain, either would have done.
     """
-    return min(1.0, (1.0 if best.beside_open is None else 2.0) * among_all(named.chance_of(best.effect.name)))
+    return min(1.0, best.looks * among_all(named.chance_of(best.effect.name)))

@@ -79,10 +79,44 @@ def test_where_one_is_confirmed_that_is_no_shadow_no_other_is_looked_at_again(mo
     assert [one.beside_open for one in found] == [None, better if again else None]
 
 
+DRAWN = (0.3, -0.1, 0.5)  # a gain that trials drawn again are not sure of
+SURE = (0.3, 0.2, 0.4)
+
+
+@pytest.mark.parametrize(
+    ("name", "physical", "possible", "anew", "shape", "at_bound", "confirmed"),
+    [
+        ("backlash", True, True, SURE, (0.01,), False, True),
+        ("backlash", True, True, DRAWN, (0.01,), False, False),  # no better in the model that would be had
+        ("backlash", False, True, SURE, (0.01,), False, False),  # it cannot be it
+        ("elasticity", False, True, SURE, (8.0, 0.3), False, True),  # past the scan, but it swings once it is fitted
+        ("elasticity", False, True, SURE, (8.0, 0.6), False, False),  # it does not swing
+        ("elasticity", False, True, SURE, (8.0, 0.3), True, False),  # of a share of the load that cannot be
+        ("elasticity", False, False, SURE, (8.0, 0.3), False, False),
+    ],
+)
+def test_near_reversals_the_second_look_is_at_the_model_that_would_be_had(
+    monkeypatch, name, physical, possible, anew, shape, at_bound, confirmed
+):
+    term = SimpleNamespace(effect=effect_named(name), shape=shape, at_bound=np.array([at_bound]))
+    monkeypatch.setattr(examination, "fit_effects", lambda *_: SimpleNamespace(terms=[term]))
+    monkeypatch.setattr(examination, "as_in_the_ladder", lambda one, *_: replace(one, gain=Gain(*anew)))
+    monkeypatch.setattr(examination, "is_possible", lambda *_: possible)
+    fit = SimpleNamespace(dataset=None, names=("coulomb",), training=None)
+    gathered: Any = SimpleNamespace(show_in="moving", fit=fit)
+    first = candidate(name, Gain(*DRAWN), physical)
+    [found] = examination._looked_at_again(gathered, [first], [evidence(200.0)])
+    assert (examination.is_confirmed(found), found.anew, found.looks) == (confirmed, confirmed, 1 + confirmed)
+    if not confirmed:
+        assert found is first
+
+
 def test_two_looks_at_a_gain_are_paid_for():
     screening: Any = SimpleNamespace(chance_of=lambda _name: 1e-4)
-    first = candidate(ASYMMETRY, Gain(0.3, 0.2, 0.4))
-    beside = BesideOpen(0.1, 0.05, Gain(0.3, 0.2, 0.4))
-    once, twice = (_chance_of(screening, one) for one in (first, replace(first, beside_open=beside)))
-    assert twice == pytest.approx(2.0 * once)
+    first = candidate(ASYMMETRY, Gain(*SURE))
+    beside = BesideOpen(0.1, 0.05, Gain(*SURE))
+    once, *twice = (
+        _chance_of(screening, one) for one in (first, replace(first, beside_open=beside), replace(first, anew=True))
+    )
+    assert twice == pytest.approx([2.0 * once] * 2)
     assert once >= 1e-4
