@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import diagnose as diagnosing
-from compensator.lab.diagnosis import drawn_shape
+from compensator.lab.diagnosis import drawn_shape, four_families
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.drawn_shape import answer_beside
 from compensator.lab.effects.catalogue import default_effects
@@ -45,7 +44,7 @@ def diagnosis(fit):
 def test_a_drag_that_the_stribeck_curve_imitates_is_named(fit, diagnosis, monkeypatch):
     assert fit.shapes["stribeck"][0] > 5.0 * TRUE[0]
     assert (diagnosis.verdict, diagnosis.classes[0]) == ("missing", ("viscous_quadratic",))
-    monkeypatch.setattr(diagnosing, "answer_beside", lambda *_: None)
+    monkeypatch.setattr(four_families, "answer_beside", lambda *_: None)
     assert diagnose(fit).verdict != "missing"
 
 
