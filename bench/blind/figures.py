@@ -55,6 +55,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     exact = [one for one in pairs if _is_exact(one)]
     memory = [one for one in answered if one.family == "memory"]
     settled = [one for one in answered if one.settled is not None and one.settled.predicted >= MUST_NAME]
+    promised = [one for one in settled if one.settled is not None and one.settled.promised >= MUST_NAME]
     return [
         *_false_alarms(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
@@ -74,6 +75,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _share("memory effects named first", 0.9, memory, _is_right),
         _share("the same, where d' >= 6", 0.9, [one for one in memory if _must_be_named(one)], _is_right),
         _share("named alone after at most six suggested trials, predicted d' >= 6", 0.9, settled, _is_settled),
+        _share("the same, where the lab promises d' >= 6", 0.9, promised, _is_settled),
         _gain_over_chance(answered),
     ]
 

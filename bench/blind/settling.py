@@ -33,6 +33,7 @@ class Settled:
         named: the class that is named at the end.
         stated: of each round, the truth's smallest d' as it was predicted, and as it came; 0 where it is no rival, or
             no candidate.
+        promised: as `predicted`, of the d' that nine in ten of the sizes reach that the trials measured allow.
     """
 
     rivals: tuple[str, ...]
@@ -43,6 +44,7 @@ class Settled:
     by_chance: float = 0.0  # not known of older results, as all below
     failed: int = 0
     stated: tuple[tuple[float, float], ...] = ()
+    promised: float = 0.0
 
     @classmethod
     def from_json(cls, values: dict[str, Any]) -> "Settled":
@@ -67,7 +69,7 @@ def settle(configuration: BenchConfiguration, recordings: Sequence[Recording], f
     planned, _ = rounds.planned(TRIALS)
     if not planned.picks:
         return None
-    before, predicted, by_chance = _of_truth(planned, name)
+    before, predicted, by_chance, promised = _of_truth(planned, name)
     tried = in_rounds(rounds.ask, rounds.run, rounds.learn, TRIALS)
     return Settled(
         rivals=tuple(dict.fromkeys(end for pair in planned.pairs for end in (pair.true, pair.rival) if end)),
@@ -76,17 +78,21 @@ def settle(configuration: BenchConfiguration, recordings: Sequence[Recording], f
         trials=sum(not one.reason for one in tried),
         named=rounds.named,
         by_chance=by_chance,
+        promised=promised,
         failed=sum(bool(one.reason) for one in tried),
         stated=tuple(rounds.stated),
     )
 
 
-def _of_truth(suggestion: Suggestion, name: str) -> tuple[float, float, float]:
-    """Smallest d' of the truth: as measured, with the trials suggested, and with as many by chance; 0 for no rival."""
+def _of_truth(suggestion: Suggestion, name: str) -> tuple[float, float, float, float]:
+    """Smallest d' of the truth: measured, with what is suggested, with as much by chance, promised; 0 for no rival."""
     own = [pair for pair in (*suggestion.pairs, *suggestion.hopeless) if pair.true == name]
     if not own:
-        return 0.0, 0.0, 0.0
-    return min(one.before for one in own), min(one.after for one in own), min(one.by_chance for one in own)
+        return 0.0, 0.0, 0.0, 0.0
+    before, after, by_chance, promised = zip(
+        *((one.before, one.after, one.by_chance, one.promised) for one in own), strict=True
+    )
+    return min(before), min(after), min(by_chance), min(promised)
 
 
 class _Rounds:

@@ -137,9 +137,18 @@ def _sentence(found: Suggestion, diagnosis: Diagnosis) -> str:
     minutes = sum(pick.minutes for pick in found.picks)
     return (
         f"{len(found.picks)} trial{'s' * (len(found.picks) != 1)}, {minutes:.2g} min: the smallest predicted d' rises "
-        f"from {before:.1f} to {after:.1f}; from about 6 on a name is sure. {_condition(found, diagnosis)}"
+        f"from {before:.1f} to {after:.1f}, {_promise(found)}; from about 6 on a name is sure. "
+        + _condition(found, diagnosis)
         + _hopeless(found)
     ).strip()
+
+
+def _promise(found: Suggestion) -> str:
+    """What of the prediction holds for nine in ten of the sizes that the rivals may have."""
+    least = min(pair.promised for pair in found.pairs)
+    if least > 0.0:
+        return f"to at least {least:.1f} for nine in ten of the sizes that these trials leave the rivals"
+    return "that is no promise, since what speaks for the rivals may be chance"
 
 
 def _condition(found: Suggestion, diagnosis: Diagnosis) -> str:

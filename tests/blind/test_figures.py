@@ -1,5 +1,5 @@
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from math import isnan
 
 import pytest
@@ -219,6 +219,16 @@ def test_suggested_trials_are_held_against_random_ones() -> None:
     assert gain.reached
     old = {"rivals": [], "before": 1.0, "predicted": 2.0, "trials": 6, "named": []}
     assert Settled.from_json(old).by_chance == 0.0
+
+
+def test_a_promise_is_asked_to_be_kept() -> None:
+    one = _result("settle", "spring", ("spring",), 1.0, 9.0)
+    kept = Settled(("spring",), 1.0, 9.0, 6, ("spring",), promised=6.5)
+    broken = replace(kept, named=(), promised=5.5)
+    results = [replace(one, settled=settled) for settled in (kept, broken, broken)]
+    assert _figure(results, "predicted d' >= 6").measured == pytest.approx(1 / 3)
+    assert (_figure(results, "the lab promises").items, _figure(results, "the lab promises").measured) == (1, 1.0)
+    assert Settled.from_json(asdict(kept)) == kept
 
 
 def test_what_was_predicted_of_suggested_trials_is_held_against_what_came() -> None:

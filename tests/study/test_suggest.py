@@ -139,9 +139,16 @@ def test_a_simulated_joint_which_repeats_its_samples_is_not_asked_for_the_same_t
     assert first["name"] not in [one["name"] for one in again["trials"]]
 
 
+@pytest.mark.parametrize(("promised", "told"), [(5.5, "to at least 4.0 for nine in ten"), (0.0, "that is no promise")])
+def test_a_suggestion_says_what_of_its_prediction_is_promised(promised, told):
+    pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0, promised), Pair("spring", "cogging", 1.5, 8.0, 9.0, 4.0, 4.0))
+    pick = Pick("one", 0.5, 1.0, 7.0, ("spring", None), 0.01)
+    assert told in SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict="missing"))
+
+
 @pytest.mark.parametrize(("verdict", "supposes"), [("nothing", True), ("missing", False)])
 def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, supposes):
-    pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0), Pair("cogging", "spring", 1.5, 8.0, 9.0, 4.0))
+    pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0, 6.0), Pair("cogging", "spring", 1.5, 8.0, 9.0, 4.0, 0.0))
     pick = Pick("one", 0.5, 1.0, 7.0, ("spring", None), 0.01)
     told = SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict=verdict))
     assert "rises from 1.0 to 7.0" in told

@@ -50,6 +50,10 @@ class BreakawaySeparation(Rivalry):
         self.noise_power = float(np.mean(left**2))
         self._inflation = [1.0] * len(self.rivals)  # units are two starts: what they share is in their scatter
         self.measured = self._equations(rows, inside, weight)
+        self._stretches = int(inside.sum())
+        shares = [_share(one.effect) for one in self.rivals]
+        bounds = [[(known.low, known.high) for known in share.parameters] for share in shares]
+        self.rivals = self._sized(candidates, bounds)
 
     @property
     def dataset(self) -> Dataset:

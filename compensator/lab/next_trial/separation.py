@@ -12,7 +12,7 @@ All of it follows from the normal equations, which add up over trials: what a tr
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,7 @@ from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import RowWeights
+from compensator.lab.next_trial.sizes import chance_of, possible_sizes, promised
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset, IntArray
@@ -42,12 +43,15 @@ class Rival:
         effect: which.
         shape: its best shape; coefficients: as fitted freely at that shape, shape (k,).
         shapes: those that it may take to imitate another.
+        sizes: coefficients that the rows allow a suspect, shape (draws, k); chance: that it is there at all.
     """
 
     effect: Effect
     shape: Shape
     coefficients: FloatArray
     shapes: tuple[Shape, ...]
+    sizes: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    chance: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,7 @@ class Rivalry(ABC):
     _inflation: list[float]  # rows per independent row, for each rival
     _nuisance: tuple[str, ...]
     _model: int  # columns
+    _stretches: int  # that the noise is known from
 
     @property
     @abstractmethod
@@ -112,15 +117,36 @@ class Rivalry(ABC):
             standing_in = self._standing_in(true, rival)
             if standing_in not in known:
                 known[standing_in] = _Projected(equations.gram, self._base(standing_in), self._first_effect)
-            found[number] = self._squared(known[standing_in], equations.rows, true, rival)
+            sized = self.rivals[true].coefficients
+            found[number] = self._squared(known[standing_in], equations.rows, true, rival, sized)
         return np.sqrt(found)
 
-    def _squared(self, projected: "_Projected", rows: int, true: int, rival: int | None) -> float:
-        power = projected.power(self._own[true], self.rivals[true].coefficients)
+    def promised(self, equations: Equations, true: int, rival: int | None) -> float:
+        """The d' that is reached in nine of ten of the cases that the measured rows allow."""
+        projected = _Projected(equations.gram, self._base(self._standing_in(true, rival)), self._first_effect)
+        one = self.rivals[true]
+        squared = [self._squared(projected, equations.rows, true, rival, sized) for sized in one.sizes]
+        return float(np.sqrt(promised(np.array(squared), one.chance, self._stretches)))
+
+    def _sized(self, candidates: Sequence[Candidate], ranges: Sequence[Sequence[tuple[float, float]]]) -> list[Rival]:
+        """The rivals, each suspect with the sizes that the measured rows allow it within its bounds."""
+        found = list(self.rivals)
+        for true, (candidate, bounds) in enumerate(zip(candidates, ranges, strict=True)):
+            one, own = found[true], self._own[true]
+            base = self._base(self._standing_in(true, None))
+            covariance = _Projected(self.measured.gram, base, self._first_effect).inverse(own)
+            error = self._inflation[true] * self.noise_power * covariance
+            sizes = possible_sizes(one.coefficients, error, bounds)
+            chance = chance_of(candidate.score)
+            found[true] = replace(one, sizes=sizes, chance=chance)
+        return found
+
+    def _squared(self, projected: "_Projected", rows: int, true: int, rival: int | None, sized: FloatArray) -> float:
+        power = projected.power(self._own[true], sized)
         if power == 0.0:
             return 0.0
         gain = rows / self._inflation[true] * np.log1p(power / (rows * self.noise_power))
-        return float(gain * self._left(projected, true, rival) / power)
+        return float(gain * self._left(projected, true, rival, sized) / power)
 
     def difference(self, known: Equations, brings: Equations, true: int, rival: int | None) -> float:
         """What a trial adds to what remains when the rival is fitted to the effort that the truth predicts.
@@ -142,14 +168,15 @@ class Rivalry(ABC):
     def remaining(self, equations: Equations, true: int, rival: int | None) -> float:
         """The least power that the model and the rival, at any of its shapes, leave of the truth's part."""
         base = self._base(self._standing_in(true, rival))
-        return self._left(_Projected(equations.gram, base, self._first_effect), true, rival)
+        projected = _Projected(equations.gram, base, self._first_effect)
+        return self._left(projected, true, rival, self.rivals[true].coefficients)
 
-    def _left(self, projected: "_Projected", true: int, rival: int | None) -> float:
-        own, amplitudes = self._own[true], self.rivals[true].coefficients
-        power = projected.power(own, amplitudes)
+    def _left(self, projected: "_Projected", true: int, rival: int | None, sized: FloatArray) -> float:
+        own = self._own[true]
+        power = projected.power(own, sized)
         if rival is None:
             return power
-        return max(power - projected.most_absorbed(self._shaped[rival], own, amplitudes), 0.0)
+        return max(power - projected.most_absorbed(self._shaped[rival], own, sized), 0.0)
 
     def _standing_in(self, true: int, rival: int | None) -> frozenset[str]:
         """Columns of the measuring chain that stand in for the one or the other."""
@@ -200,12 +227,15 @@ class Separation(Rivalry):
         left = _left_by_best(gathered, candidates[0])
         self.noise_power = float(np.mean(left**2))
         stretch = gathered.fit.dataset.block_index[gathered.rows]
+        self._stretches = len(np.unique(stretch))
         inflation = inflation_of(left)
         self._inflation = [max(inflation, _between_stretches(gathered, one, left, stretch)) for one in candidates]
         self._nuisance = tuple(nuisance_columns(gathered.fit.dataset, gathered.show_in))
         self._model = model_columns(gathered.fit).shape[1]
         stacked = self._columns(gathered.fit, gathered.weights, gathered.rows)
         self.measured = Equations(len(stacked), stacked.T @ stacked)
+        quantity = gathered.fit.dataset.effort_definition.quantity
+        self.rivals = self._sized(candidates, [one.effect.ranges_in(quantity) for one in candidates])
 
     @property
     def dataset(self) -> Dataset:
@@ -257,6 +287,11 @@ class _Projected:
     def power(self, own: IntArray, amplitudes: FloatArray) -> float:
         """Of `own @ amplitudes`, what is left of it."""
         return max(float(amplitudes @ self._gram[np.ix_(own, own)] @ amplitudes), 0.0)
+
+    def inverse(self, own: IntArray) -> FloatArray:
+        """Inverse of what is left of the columns' normal equations; directions that they do not know are left out."""
+        left = self._gram[np.ix_(own, own)]
+        return np.linalg.pinv(left, rcond=NEGLIGIBLE, hermitian=True).astype(np.float64)
 
     def most_absorbed(self, shapes: IntArray, own: IntArray, amplitudes: FloatArray) -> float:
         """Power of the same that another effect explains at the best of its shapes, whose columns have shape (s, k)."""

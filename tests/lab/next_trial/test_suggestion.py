@@ -144,6 +144,15 @@ def test_nothing_is_suggested_once_a_name_is_sure():
     assert found.picks == ()
 
 
+def test_what_is_promised_is_less_than_predicted_and_nothing_where_the_evidence_may_be_chance(fit, diagnosis):
+    sure = suggest(fit, diagnosis, options(HEAVY), most=2).pairs
+    assert all(0.5 * pair.after < pair.promised < pair.after for pair in sure)
+    complete = fitted(Joint(), plans(LIGHT))
+    unsure = suggest(complete, diagnose(complete), options(HEAVY), most=2).pairs
+    assert unsure
+    assert all(pair.promised == 0.0 < pair.after for pair in unsure)
+
+
 def test_rivals_that_no_trial_separates_are_named(fit, diagnosis):
     tiny = [replace(one, recordings=()) for one in options((0.0,))]
     found = suggest(fit, diagnosis, [one for one in tiny if one.recordings] or [], most=3)
