@@ -15,9 +15,10 @@ from compensator.lab.diagnosis.families import Answer
 from compensator.lab.diagnosis.four_families import judged
 from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
-from compensator.lab.diagnosis.wording import problem_in_words
+from compensator.lab.diagnosis.wording import problem_in_words, still_left_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
+from compensator.lab.left_over.left_over import growing_beside
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
@@ -105,10 +106,14 @@ def _by_run(fit: Fit) -> list[str]:
 
 def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[str]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
-    if memory.verdict != "missing" or memory.remains:
+    if memory.verdict != "missing" or memory.remains or memory.named is None:
         return []
     name = memory.candidates[0].effect.name
-    return what_remains(fit_effects(fit.dataset, [*fit.names, name], fit.training), gathered, name)
+    explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+    if notes := what_remains(explained, gathered, name):
+        return notes
+    growing = growing_beside(explained, memory.named)
+    return [] if growing is None else [still_left_in_words(name, growing, fit.dataset.facts)]
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.wording import (
     bursts_in_words,
     changed_in_session_in_words,
     changing_in_words,
+    instead_in_words,
     still_bending_in_words,
     still_left_in_words,
     swinging_in_words,
@@ -16,7 +17,7 @@ from compensator.lab.diagnosis.wording import (
     wandering_in_words,
 )
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
-from compensator.lab.left_over.left_over import LeftOver, left_beside, left_over
+from compensator.lab.left_over.left_over import LeftOver, in_its_place, left_beside, left_over
 from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
@@ -80,8 +81,11 @@ def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]
     change = change_in_session(explained, gathered, best.block)
     if change is not None:
         return [changed_in_session_in_words(name, change)]
+    facts = explained.dataset.facts
+    if (instead := in_its_place(gathered, best)) is not None:
+        return [instead_in_words(name, instead, facts)]
     left = left_beside(explained, gathered, best)
-    return [] if left is None else [still_left_in_words(name, left, explained.dataset.facts)]
+    return [] if left is None else [still_left_in_words(name, left, facts)]
 
 
 def _bursts(gathered: Candidates) -> Bursts | None:

@@ -188,6 +188,16 @@ def still_left_in_words(name: str, left: Line | Following, facts: Facts) -> str:
     )
 
 
+def instead_in_words(name: str, line: Line, facts: Facts) -> str:
+    """What an effect that is named explains some of, and that goes round with the position in another way."""
+    how = "turns with the motion, as friction does" if line.against_motion else "stays the same in either direction"
+    how = "grows with the speed, as what is misread does" if line.growing else how
+    return (
+        f"{name} describes it in part: what is left without it {recurring_in_words(line, facts)}. That {how}, as "
+        f"{name} does not; another cause, which the catalogue does not have, may explain more."
+    )
+
+
 def changed_in_session_in_words(name: str, change: InSession) -> str:
     """What an effect that is named imitates, where it is another one from some trial on."""
     return (

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.left_over.constancy import Change, change_of
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
-from compensator.lab.left_over.orders import Line, growing_of, line_of
+from compensator.lab.left_over.orders import Line, contrary_of, growing_line_of, growing_of, line_of
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.left_over.ripple import ripple_of
 from compensator.lab.left_over.swinging import Swing, swing_of
@@ -112,6 +112,38 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     found = (line_of(grown, white, NAMED.line, 0.0), follows, _growing(grown, white, named.block.name))
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None
+
+
+def in_its_place(gathered: Candidates, named: Evidence) -> Line | None:
+    """The line that is likelier than an effect that is named and goes round with the position, and no such effect.
+
+    Friction that goes round turns with the motion, and a force does not: which of the two it is, every line tells. Of a
+    model that is plain alone: what an earlier name leaves of its own line may be the larger one.
+
+    Args:
+        gathered: what the model without the effect may be missing.
+        named: the evidence for the effect.
+    """
+    effect = effect_named(named.block.name)
+    if effect.shape_names != PERIODIC or gathered.show_in != "sliding" or not _is_plain(gathered.fit):
+        return None
+    white = WhiteRows.of(gathered)
+    return None if white is None else contrary_of(gathered, white, effect.dry_friction, NAMED.line)
+
+
+def growing_beside(explained: Fit, named: Evidence) -> Line | None:
+    """The line in steady sliding that an effect leaves which shows near reversals, and that grows with the speed.
+
+    Where an angle is misread, reversals are, too: what shows there then imitates an effect with memory.
+
+    Args:
+        explained: the model with the effect.
+        named: the evidence for it.
+    """
+    grown = with_noise(gather_curves(explained, "sliding"))
+    white = WhiteRows.of(grown)
+    line = None if white is None else growing_line_of(grown, white, NAMED.line)
+    return line if line is not None and line.foretold >= PART_OF_NAMED * named.noncentrality else None
 
 
 def _growing(grown: Candidates, white: WhiteRows, name: str) -> Line | None:

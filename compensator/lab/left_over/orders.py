@@ -24,13 +24,16 @@ from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.evidence import VERY_STRONG
 
 STEPS = 3.0  # per width of a line, so that none falls between two orders
 MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
 SLOW = 0.1  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
+MOST_TURNED = np.pi / 4.0  # rad of phase: there force and friction share a ripple's power
 TINY = float(np.finfo(float).tiny)
 LEAST_OF_EFFORT = 0.0005  # root mean square: no sensor is more linear
 
@@ -113,9 +116,7 @@ def line_of(
         look_again: the same in noise that is learnt with it, up to which one without it is asked.
     """
     path = _Path.of(gathered)
-    orders = _orders(path)
-    portions = np.array_split(orders, -(-4 * len(orders) * len(path.position) // AT_ONCE))
-    sizes = np.concatenate([_sizes(path, white, some) for some in portions], axis=1)
+    orders, sizes = _scanned(path, white)
     against, best = divmod(int(np.argmax(sizes)), len(orders))
     tries = sizes.size / STEPS
     chance = min(1.0, tries * white.noise.chance(float(sizes[against, best]), 2))
@@ -127,6 +128,63 @@ def line_of(
         chance = min(1.0, tries * _chance(white, columns))
     line = _line(gathered, white, columns, float(orders[best]), chance)
     line = replace(line, against_motion=bool(against))
+    return line if line.is_there(most) else None
+
+
+def contrary_of(gathered: Candidates, white: WhiteRows, against_motion: bool, most: float) -> Line | None:
+    """The line that turns with the motion where a name says that it does not, or the other way round, or grows.
+
+    A force that goes round with the position explains some of friction that does, at an order near by, and of an angle
+    that is misread; their own line is the likelier one, by evidence that is very strong.
+
+    What is recorded a cycle late comes later in phase the faster it goes by, and so a force at a high order turns with
+    the motion, too: there nothing is told.
+
+    Args:
+        gathered: the model without the effect that is named.
+        white: its rows.
+        against_motion: whether that effect changes its sign with the direction of motion.
+        most: chance in noise alone up to which a line is none.
+    """
+    growing = growing_line_of(gathered, white, most)
+    if growing is not None:
+        return growing if _keeps_phase(gathered, growing) else None
+    line = line_of(gathered, white, most, 0.0)
+    if line is None or line.against_motion == against_motion or not _keeps_phase(gathered, line):
+        return None
+    likeliest = _scanned(_Path.of(gathered), white)[1].max(axis=1)
+    return line if abs(float(likeliest[1] - likeliest[0])) >= VERY_STRONG else None
+
+
+def _keeps_phase(gathered: Candidates, line: Line) -> bool:
+    """Whether a cycle's delay turns a line, at the usual speed, by less than brings half of a force against motion."""
+    dataset = gathered.fit.dataset
+    speed = float(np.median(_Path.of(gathered).speed))
+    period_s = max(1.0 / trial.signals.rate_hz for trial in dataset.trials)
+    return line.order * _cycle(dataset) * speed * period_s < MOST_TURNED
+
+
+def growing_line_of(gathered: Candidates, white: WhiteRows, most: float) -> Line | None:
+    """The line of any order that grows with the square of the speed, and is likelier so; None where none is there.
+
+    An angle that is misread round and round seems to be accelerated so; a force of any kind is as large when slow.
+
+    Args:
+        gathered: the model.
+        white: its rows.
+        most: chance in noise alone, over all orders, up to which it is none.
+    """
+    path = _Path.of(gathered)
+    orders, steady = _scanned(path, white)
+    growing = np.concatenate(
+        [_sizes_of(white, path.columns(some) * path.speed[:, None] ** 2) for some in _portions(path, orders)]
+    )
+    best = int(np.argmax(growing))
+    chance = min(1.0, len(orders) / STEPS * white.noise.chance(float(growing[best]), 2))
+    if chance > most or growing[best] < steady.max() + VERY_STRONG:
+        return None
+    columns = path.columns(orders[best : best + 1]) * path.speed[:, None] ** 2
+    line = replace(_line(gathered, white, columns, float(orders[best]), chance), growing=True)
     return line if line.is_there(most) else None
 
 
@@ -153,8 +211,12 @@ def _line(gathered: Candidates, white: WhiteRows, columns: FloatArray, order: fl
     coefficients, foretold = white.foretold(white.beside(columns))
     own, basis = columns @ coefficients, gathered.as_measured(WITH_CHAIN).basis
     share = rms((own - basis @ (basis.T @ own)) / gathered.weights) / rms(gathered.fit.dataset.effort[gathered.rows])
-    cycles = 2.0 * np.pi if gathered.fit.dataset.facts.joint == "linear" else 1.0
-    return Line(order / cycles, False, chance, share, foretold)
+    return Line(order / _cycle(gathered.fit.dataset), False, chance, share, foretold)
+
+
+def _cycle(dataset: Dataset) -> float:
+    """What an order is of, in rad per unit of position: a turn of a joint has 2 pi rad, a length has none."""
+    return 2.0 * np.pi if dataset.facts.joint == "linear" else 1.0
 
 
 def _orders(path: _Path) -> FloatArray:
@@ -164,6 +226,17 @@ def _orders(path: _Path) -> FloatArray:
     count = int(np.clip((highest / once - 1.0) * STEPS, 1.0, MOST_ORDERS))
     orders: FloatArray = once * (1.0 + np.arange(count) / STEPS)
     return orders
+
+
+def _scanned(path: _Path, white: WhiteRows) -> tuple[FloatArray, FloatArray]:
+    """Every order (m,), and how far it is beyond noise as a force and against the motion, shape (2, m)."""
+    orders = _orders(path)
+    return orders, np.concatenate([_sizes(path, white, some) for some in _portions(path, orders)], axis=1)
+
+
+def _portions(path: _Path, orders: FloatArray) -> list[FloatArray]:
+    """So few orders at a time that their columns need little memory."""
+    return np.array_split(orders, -(-4 * len(orders) * len(path.position) // AT_ONCE))
 
 
 def _sizes(path: _Path, white: WhiteRows, orders: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.left_over.orders import Line, line_of
+from compensator.lab.left_over.orders import Line, growing_line_of, line_of
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
@@ -108,3 +108,24 @@ def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
     found = line_in(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
     assert found is not None
     assert found.order == pytest.approx(ORDER / (2.0 * np.pi), rel=0.02)
+
+
+SLOW_ORDER = 9.3  # that the filter passes in fast motion, too
+
+
+def growing_line(law):
+    """What of a ripple of some law grows with the square of the speed, at any order."""
+    gathered = with_noise(gather(fitted(lambda x: law(x) * np.cos(SLOW_ORDER * x.q + 0.4))))
+    return growing_line_of(gathered, white_rows_of(gathered), PLAIN.line)
+
+
+def test_an_acceleration_that_goes_round_grows_with_the_speed():
+    found = growing_line(lambda x: 2.0 * RIPPLE_N_M * x.v**2)
+    assert found is not None
+    assert found.growing
+    assert found.order == pytest.approx(SLOW_ORDER, rel=0.1)
+
+
+@pytest.mark.parametrize("law", [lambda x: 4.0 * RIPPLE_N_M, lambda x: 4.0 * RIPPLE_N_M * np.sign(x.v), lambda x: 0.0])
+def test_neither_a_force_nor_friction_nor_noise_grows_with_the_speed(law):
+    assert growing_line(law) is None
