@@ -165,8 +165,11 @@ def suggestion(found: Found) -> None:
         table("Trials to record next", ["kind", "parameters", "minutes#", "predicted d'#", "why"], rows)
     for one in found["kept_out"]:
         say(f"kept out: {one['kind']}, experiment {one['experiment_id']}, {one['outcome']}: {one['reason']}")
-    pairs = [(one["true"], one["rival"] or "nothing", one["before"], one["after"]) for one in found["pairs"]]
-    table("If the truth is one, predicted d' against the other", ["truth", "rival", "now#", "then#"], pairs)
+    pairs = [
+        (one["true"], one["rival"] or "nothing", one["before"], one["after"], one["promised"]) for one in found["pairs"]
+    ]
+    columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
+    table("If the truth is one, predicted d' against the other", columns, pairs)
 
 
 def _values(parameters: Found) -> str:

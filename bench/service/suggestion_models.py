@@ -12,6 +12,9 @@ class PairOfRivals(BaseModel):
     rival: str | None = Field(description="null: that nothing is missing")
     before: float | None = Field(description="predicted d' on the trials measured")
     after: float | None = Field(description="with all that are suggested")
+    promised: float | None = Field(
+        description="reached by nine in ten of the sizes that the trials measured leave it; 0: it may be chance"
+    )
 
 
 class SuggestedTrial(BaseModel):

@@ -101,7 +101,13 @@ def _fitted_ones(material: Material, possible: Sequence[Choice]) -> list[Choice]
 
 
 def _pair(pair: Pair) -> dict[str, Any]:
-    return {"true": pair.true, "rival": pair.rival, "before": pair.before, "after": pair.after}
+    return {
+        "true": pair.true,
+        "rival": pair.rival,
+        "before": pair.before,
+        "after": pair.after,
+        "promised": pair.promised,
+    }
 
 
 def _kept_out(one: Experiment) -> dict[str, Any]:
