@@ -19,6 +19,7 @@ from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
+MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
 SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
 
 
@@ -100,9 +101,13 @@ def _fit(
     if len(plain) == len(effects):
         return fit
     fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept}, weight)
-    own = with_own_prediction(fit)
-    shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, fit.shapes)
-    return _settle(fit, effects, shapes, weight)
+    for _ in range(MOST_SEARCHES):
+        before, own = fit.shapes, with_own_prediction(fit)
+        shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before)
+        fit = _settle(fit, effects, shapes, weight)
+        if not any(effect.misreads is not None and shapes[effect.name] != before[effect.name] for effect in effects):
+            break  # else all other shapes were found where the joint is not
+    return fit
 
 
 def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], weight: FloatArray) -> Fit:

@@ -81,3 +81,11 @@ def test_other_trials_are_corrected_by_the_same(fitted):
     there = at_true_position(more.dataset, fitted.terms).trials[0].motion
     assert there.position == pytest.approx(fitted.dataset.trials[2].motion.position, abs=1e-5)
     assert there.velocity == pytest.approx(fitted.dataset.trials[2].motion.velocity, abs=2e-3)
+
+
+def test_what_goes_round_more_often_is_found_where_the_joint_is():
+    """Guessed to be twice a turn, an angle that is misread once leaves most of itself, which goes round as well."""
+    made = recordings(Joint(extra=lambda x: 0.01 * np.cos(6.0 * TURNS * x.q)), Bench(noise=NOISE, quantum=0.0), seed=5)
+    fit = fit_model(rows([misread(one) for one in made]), [*DEFAULT, "encoder_eccentricity", "cogging"])
+    assert fit.shapes["encoder_eccentricity"] == (TURNS,)
+    assert fit.shapes["cogging"] == (6.0 * TURNS,)
