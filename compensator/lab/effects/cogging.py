@@ -18,9 +18,9 @@ def shapes(motion: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """Cosine and sine of the k-th order of the joint."""
+    """Cosine and sine of the k-th order of the joint, averaged over a sample."""
     phase = shape[0] * motion.position
-    return np.array([np.cos(phase), np.sin(phase)])
+    return np.array([np.cos(phase), np.sin(phase)]) * motion.averaged(shape[0])
 
 
 EFFECT = Effect(

@@ -93,6 +93,14 @@ class Motion:
         """Time from sample to sample [s]."""
         return float(self.time_s[1] - self.time_s[0])
 
+    def averaged(self, order: float) -> FloatArray:
+        """What an average over one sample leaves of a ripple of an order [rad per unit of position], shape (n,).
+
+        A drive holds its duty, and averages its current, for about as long; a ripple that passes faster would come back
+        from beyond the Nyquist rate as large as it is, in no phase that the next trial has again.
+        """
+        return np.sinc(order * self.velocity * self.step_s / (2.0 * np.pi)).astype(np.float64)
+
     @property
     def session_s(self) -> FloatArray:
         """Time since the start of the session [s], shape (n,); since the start of the trial where nothing tells."""

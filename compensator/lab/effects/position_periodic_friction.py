@@ -14,9 +14,9 @@ def shapes(motion: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """Cosine and sine of the k-th order against the motion."""
+    """Cosine and sine of the k-th order against the motion, averaged over a sample."""
     phase = shape[0] * motion.position
-    return np.array([np.cos(phase), np.sin(phase)]) * motion.direction
+    return np.array([np.cos(phase), np.sin(phase)]) * motion.averaged(shape[0]) * motion.direction
 
 
 EFFECT = Effect(

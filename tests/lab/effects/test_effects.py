@@ -55,6 +55,12 @@ def back_driven(m: Motion, load: np.ndarray) -> np.ndarray:
     return np.where(load * m.velocity < 0.0, np.abs(load) * np.sign(m.velocity), 0.0)
 
 
+def over_a_sample(m: Motion, order: float) -> list[np.ndarray]:
+    """Cosine and sine of an order, averaged over the 0.05 s around each sample: midpoints of 2000 parts."""
+    around = m.position[:, None] + m.velocity[:, None] * 0.05 * ((np.arange(2000) + 0.5) / 2000 - 0.5)
+    return [np.cos(order * around).mean(axis=1), np.sin(order * around).mean(axis=1)]
+
+
 def slope(values: np.ndarray) -> np.ndarray:
     return rate_of_change(values, 20.0)
 
@@ -112,15 +118,12 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "weight_friction": ((), lambda m: [LOAD_KG * np.sign(m.velocity)]),
     "coulomb_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * np.sign(m.velocity)]),
     "viscous_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * m.velocity]),
-    "position_periodic_friction": (
-        (7.0,),
-        lambda m: [np.cos(7 * m.position) * np.sign(m.velocity), np.sin(7 * m.position) * np.sign(m.velocity)],
-    ),
+    "position_periodic_friction": ((7.0,), lambda m: [part * np.sign(m.velocity) for part in over_a_sample(m, 7.0)]),
     "spring": ((), lambda m: [m.position]),
     "centre_of_mass_angle": ((), lambda m: [np.cos(m.position), WEIGHT_N_M * np.cos(m.position)]),
     "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
     "back_driving_friction": ((), lambda m: [back_driven(m, 1.3 * np.sin(m.position) - 0.2)]),
-    "cogging": ((9.0,), lambda m: [np.cos(9 * m.position), np.sin(9 * m.position)]),
+    "cogging": ((9.0,), lambda m: over_a_sample(m, 9.0)),
     "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
     "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
     "dead_time": ((0.02,), lambda m: [np.tanh(predicted(m) / (0.02 * 1.5))]),

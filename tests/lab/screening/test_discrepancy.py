@@ -11,6 +11,7 @@ from compensator.lab.effects.catalogue import catalogue, default_effects, effect
 from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit, Term
+from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -164,7 +165,10 @@ def test_an_angle_that_is_misread_a_little_otherwise_is_left_open_in_any_phase()
     found = _misread([cogging, term("encoder_eccentricity", [0.6 * size, 0.8 * size, 0.0, 0.0], TURNS)], m)
     for column, part in zip(found, (np.cos, np.sin), strict=True):
         angle = size * part(TURNS * m.position)
-        assert column == pytest.approx(-8.0 * 0.4 * np.sin(8.0 * m.position) * angle, abs=5e-7)
+        speed = m.velocity + rate_of_change(angle, 1.0 / m.step_s)
+        there = np.cos(8.0 * (m.position + angle)) * np.sinc(8.0 * speed * m.step_s / (2.0 * np.pi))
+        here = np.cos(8.0 * m.position) * np.sinc(8.0 * m.velocity * m.step_s / (2.0 * np.pi))
+        assert column == pytest.approx(0.4 * (there - here), abs=5e-7)
 
 
 def test_teeth_lose_a_part_of_what_a_spring_pulls_at_angle_0():
