@@ -102,6 +102,8 @@ def _by_run(
         left[index == label] -= difference * column[index == label]
     most = int(np.argmax(np.abs(differences)))
     before, after = judged.relative, relative_error(left, judged.effort)
+    if after >= before:
+        return None  # of two that few rows can hardly tell apart, this one alone is no part of the error
     return ByRun(
         what=what,
         scatter=scatter,
@@ -109,7 +111,7 @@ def _by_run(
         trial=fit.dataset.trials[labels[most]].signals.recording.name,
         difference=float(differences[most]),
         trials=len(own),
-        floor=float(np.sqrt(max(before**2 - after**2, 0.0))),
+        floor=float(np.sqrt(before**2 - after**2)),
     )
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from compensator.lab.diagnosis import run_to_run
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.run_to_run import CONSTANT, DRY_FRICTION, ByRun, by_run_in_words, differences_by_run
 from compensator.lab.effects.catalogue import default_effects
@@ -81,6 +82,11 @@ def test_runs_that_scatter_with_each_left_out_in_turn():
 @pytest.mark.parametrize("held", [(), (4,)], ids=["each in turn", "one held out"])
 def test_one_friction_for_all_runs_is_not_told(held):
     assert by_run(fitted({}, held)) is None
+
+
+def test_what_leaves_more_where_it_is_taken_off_is_no_part_of_the_error(monkeypatch):
+    monkeypatch.setattr(run_to_run, "_differences", lambda *_: ((0.05, 0.001), (-0.05, 0.001)))
+    assert by_run(fitted({}, held=(4,))) is None
 
 
 def test_a_model_without_dry_friction_has_none_to_differ():
