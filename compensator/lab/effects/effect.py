@@ -90,8 +90,8 @@ class Motion:
 
     @property
     def step_s(self) -> float:
-        """Time from sample to sample [s]."""
-        return float(self.time_s[1] - self.time_s[0])
+        """Time from sample to sample [s]; 0 of a single moment."""
+        return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else 0.0
 
     def averaged(self, order: float) -> FloatArray:
         """What an average over one sample leaves of a ripple of an order [rad per unit of position], shape (n,).

@@ -1,6 +1,7 @@
 """Every effect file: its columns against the equation that it states, and what it says about itself."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -174,6 +175,16 @@ def test_what_an_effect_says_of_itself(name):
         assert "{" not in parameter.unit_in("N m", "rad")
     for shape in effect.shapes(motion()):
         assert len(shape) == len(effect.shape_names)
+
+
+@pytest.mark.parametrize("name", ["cogging", "position_periodic_friction"])
+def test_of_a_single_moment_nothing_is_averaged(name):
+    """One start from rest, and one reading on the bench."""
+    whole = motion()
+    arrays = {name: value for name, value in vars(whole).items() if isinstance(value, np.ndarray)}
+    moment = replace(whole, **{name: value[3:4] for name, value in arrays.items()})
+    phase, way = 9.0 * np.sin(0.45), 1.0 if name == "cogging" else np.tanh(3 * np.cos(0.45) / 0.01)
+    assert EFFECTS[name].columns(moment, (9.0,))[:, 0] == pytest.approx([way * np.cos(phase), way * np.sin(phase)])
 
 
 def test_units_are_the_studys_own():
