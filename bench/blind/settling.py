@@ -14,7 +14,9 @@ from bench.study.next_trial.predict import choose
 from bench.study.next_trial.rounds import in_rounds
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.model.fitted import Fit
-from compensator.lab.next_trial.suggestion import Suggestion, d_prime_of, shows_from_rest
+from compensator.lab.next_trial.rivals import shows_from_rest
+from compensator.lab.next_trial.suggest import d_prime_of
+from compensator.lab.next_trial.suggestion import Suggestion
 from compensator.lab.recordings.recording import Recording
 
 TRIALS = 6

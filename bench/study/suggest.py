@@ -17,7 +17,8 @@ from bench.study.next_trial.predict import choose
 from bench.study.selection import Criterion
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion, shows_from_rest
+from compensator.lab.next_trial.rivals import shows_from_rest
+from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
 
 MOST_TRIALS = 6
 

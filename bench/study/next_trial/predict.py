@@ -16,7 +16,8 @@ from bench.study.next_trial.twin import Twin
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fitted import Fit
-from compensator.lab.next_trial.suggestion import Option, Suggestion, suggest
+from compensator.lab.next_trial.suggest import suggest
+from compensator.lab.next_trial.suggestion import Option, Suggestion
 from compensator.lab.recordings.recording import Condition, Recording
 from compensator.lab.rows.dataset import Dataset
 from drivers.errors import DriveError

@@ -17,7 +17,7 @@ from compensator.lab.effects.effect import BreakawayShare, Effect, Shape
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
-from compensator.lab.next_trial.separation import Equations, Rival, Rivalry
+from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset

@@ -11,7 +11,7 @@ from compensator.lab.diagnosis.drawn_shape import answer_beside
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.gain import Gain
-from compensator.lab.next_trial.suggestion import d_prime_of
+from compensator.lab.next_trial.suggest import d_prime_of
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
