@@ -52,6 +52,8 @@ class Candidate:
         picture: why.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
         beside_open: errors and gain beside what the model's formulas leave open, where these decide (`second_look`).
+        beside_chain: gain beside the chain's columns that it stands in for near reversals (`beside_chain`); None: it
+            stands in for none there, or was not confirmed without.
         anew: errors and gain are those of a model with all shapes found anew, which is a second look, too.
     """
 
@@ -69,6 +71,7 @@ class Candidate:
     rows: EffectRows = "sliding"
     beside_open: BesideOpen | None = None
     anew: bool = False
+    beside_chain: Gain | None = None
 
     @property
     def looks(self) -> int:

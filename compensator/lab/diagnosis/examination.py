@@ -1,9 +1,11 @@
 """Examine candidates: refit with each, measure the gain on held-out rows, find its rivals."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
+from compensator.lab.diagnosis.beside_chain import gain_beside_chain
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
@@ -32,14 +34,16 @@ NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in fo
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
     before = _held_out(fit, gathered.show_in)
-    afters = [_held_out(with_effect(fit, item.block.name, shape_of(item)), gathered.show_in) for item in evidence]
+    fits = [with_effect(fit, item.block.name, shape_of(item)) for item in evidence]
+    afters = [_held_out(explained, gathered.show_in) for explained in fits]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
     candidates = []
     for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
         alike = _alike(item, spans)
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
-        candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
+        found = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
+        candidates.append(_beside_chain(found, fit, fits[index], gathered.show_in))
     candidates = _looked_at_again(gathered, candidates, evidence)
     return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
 
@@ -47,7 +51,16 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
 def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
     """The candidate with the held-out error of the model that it is added to: there, all shapes are found anew."""
     before, after = (_held_out(model, show_in) for model in (fit, explained))
-    return replace(candidate, after=after.relative, gain=held_out_gain(before, after))
+    found = replace(candidate, after=after.relative, gain=held_out_gain(before, after), beside_chain=None)
+    return _beside_chain(found, fit, explained, show_in)
+
+
+def _beside_chain(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
+    """The candidate; where it is confirmed near reversals, with what it gains beside the chain's columns, too."""
+    if show_in == "sliding" or not is_confirmed(candidate):
+        return candidate
+    gain = gain_beside_chain(candidate.effect, fit, explained, partial(_held_out, show_in=show_in))
+    return replace(candidate, beside_chain=gain)
 
 
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
@@ -129,9 +142,11 @@ def is_confirmed(candidate: Candidate) -> bool:
     else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
     evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
     falls at all; near reversals, where every chain leaves a little, if it falls as much as is asked for even without
-    the trial that gains most.
+    the trial that gains most. There it has to fall beside what the measuring chain leaves, too.
     """
-    return is_sure(candidate) and candidate.physical
+    beside = candidate.beside_chain
+    stands = beside is None or _helps(candidate, beside, LEAST_GAIN)
+    return is_sure(candidate) and candidate.physical and stands
 
 
 def is_sure(candidate: Candidate) -> bool:
@@ -143,14 +158,19 @@ def is_sure(candidate: Candidate) -> bool:
         before, gain = candidate.beside_open.before, candidate.beside_open.gain
     falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = gain.value >= least and falls and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows)))
-    return candidate.score > 0.0 and no_luck and helps
+    return candidate.score > 0.0 and no_luck and falls and _helps(candidate, gain, least)
 
 
-def _lasts(gain: Gain, rows: EffectRows) -> bool:
+def _helps(candidate: Candidate, gain: Gain, least: float) -> bool:
+    """Whether a gain is large enough, and no luck; trials drawn again need not be sure where the evidence is strong."""
+    strong = candidate.score >= VERY_STRONG
+    return gain.value >= least and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows, least)))
+
+
+def _lasts(gain: Gain, rows: EffectRows, least: float) -> bool:
     """Whether a gain that trials drawn again are not sure of is nevertheless one of more than a single trial."""
     if rows == "moving":
-        return gain.without_best >= LEAST_GAIN_NEAR_REVERSALS
+        return gain.without_best >= least
     return rows == "sliding"
 
 
