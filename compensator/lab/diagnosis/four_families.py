@@ -6,8 +6,9 @@ import numpy as np
 
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
+from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.drawn_shape import answer_beside
-from compensator.lab.diagnosis.examination import FORMULA_SHARE
+from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, FORMULA_SHARE
 from compensator.lab.diagnosis.families import Answer, answer_of, beside
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.errors import UnusableDataError
@@ -57,11 +58,29 @@ class FourFamilies:
         return len(np.unique(self.gathered.fit.dataset.block_index[self.gathered.rows]))
 
     def first(self) -> Answer:
-        """The answer: that of the first family with one, unless it is the shadow of a larger effect with memory."""
+        """The answer: that of the first family with one, unless it is the shadow of a larger effect with memory.
+
+        Nor is it an effect with memory that is the shadow of one of the measuring chain.
+        """
         first = _first_of(self.in_order)
-        if self.memory is not None and self.wide is not None and first is self.steady:
+        if self.memory is None or self.wide is None:
+            return first
+        if first is self.steady:
             return self.memory if _casts(self.wide, self.memory, self.steady) else first
-        return first
+        return self.chain if self._memory_is_of_the_chain() else first
+
+    def _memory_is_of_the_chain(self) -> bool:
+        """Whether what the chain names takes most of the evidence for the memory effect, and not the other way round.
+
+        An angle that is misread is misread near reversals, too, where every effect has a little of what it makes.
+        """
+        memory, chain = self.memory, self.chain
+        if memory is None or self.wide is None or memory.named is None or chain.named is None:
+            return False
+        left = _evidence_beside(self.wide, memory.named.block.name, chain.candidates[0])
+        left_of_chain = _evidence_beside(self.gathered, chain.named.block.name, memory.candidates[0])
+        taken = left < EXPLAINED_BY_RIVAL * memory.strength
+        return taken and left_of_chain >= EXPLAINED_BY_RIVAL * chain.strength
 
     def beside_the_other(self, first: Answer, fit: Fit) -> Answer:
         """Of joint and chain, one with what it leaves beside the other, too; any other answer as it is."""
@@ -117,10 +136,14 @@ def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
     """Whether what steady sliding speaks for is the shadow of a larger effect with memory, which stands without it."""
     if memory.verdict == "nothing" or steady.verdict != "missing" or memory.strength <= steady.strength:
         return False
-    shadow = steady.candidates[0]
-    given = wide.with_columns(wide.fit.dataset.columns(shadow.effect, shadow.shape))
-    name = memory.candidates[0].effect.name
-    return kept_evidence(given.bases, [block for block in given.named if block.name == name])[name] > steady.strength
+    return _evidence_beside(wide, memory.candidates[0].effect.name, steady.candidates[0]) > steady.strength
+
+
+def _evidence_beside(gathered: Candidates, name: str, other: Candidate) -> float:
+    """The evidence that an effect keeps once another one is in the model."""
+    given = gathered.with_columns(gathered.fit.dataset.columns(other.effect, other.shape))
+    blocks = [block for block in given.named if block.name == name]
+    return kept_evidence(given.bases, blocks, given.noise)[name]
 
 
 def _first_of(families: list[Answer]) -> Answer:
