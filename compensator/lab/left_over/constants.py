@@ -43,7 +43,7 @@ class Constants:
     @classmethod
     def in_motion(cls, fit: Fit) -> "Constants":
         """Of all rows in motion, those near reversals too, and the model fitted to them."""
-        return cls.tested(gather_curves(widened(fit, "moving"), "moving"))
+        return cls.tested(gather_in_motion(fit))
 
     @property
     def sliding(self) -> BoolArray:
@@ -64,3 +64,8 @@ class Constants:
     def of(self, signals: list[FloatArray]) -> FloatArray:
         """A signal of each trial, at the chosen rows, shape (n,)."""
         return self.dataset.rows_of(signals)[self.rows]
+
+
+def gather_in_motion(fit: Fit) -> Candidates:
+    """What a model leaves of all rows in motion, those near reversals too, where it is fitted to them."""
+    return gather_curves(widened(fit, "moving"), "moving")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.left_over.constancy import Change, change_of
-from compensator.lab.left_over.constants import Constants
+from compensator.lab.left_over.constants import Constants, gather_in_motion
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.orders import Line, contrary_of, growing_line_of, growing_of, line_of
@@ -69,20 +69,16 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, None, swing)
     constants = Constants.tested(gathered)
     change = change_of(constants)
-    plain = _is_plain(gathered.fit)
-    wandering = _wandering(gathered.fit, constants, plain=plain) if change is None else None
-    white = WhiteRows.of(gathered) if plain else None
+    if not _is_plain(gathered.fit):
+        # where the formula was found
+        return LeftOver(remainder, change, swing, wandering_of(constants, NAMED.wandering) if change is None else None)
+    in_motion = gather_in_motion(gathered.fit)
+    wandering = wandering_of(Constants.tested(in_motion), PLAIN.wandering) if change is None else None
+    white = WhiteRows.of(gathered)
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
-    swing = swing or ripple_of(gathered)
+    swing = swing or ripple_of(in_motion)
     return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))
-
-
-def _wandering(fit: Fit, sliding: Constants, *, plain: bool) -> Wandering | None:
-    """What wanders: of a plain model in all rows in motion; beside a name in sliding, where its formula was found."""
-    if not plain:
-        return wandering_of(sliding, NAMED.wandering)
-    return wandering_of(Constants.in_motion(fit), PLAIN.wandering)
 
 
 def _is_plain(fit: Fit) -> bool:

@@ -2,14 +2,22 @@
 
 Cosine and sine of every frequency, times the voltage, as a supply that ripples makes them, without what the model
 explains of them, by least squares in each trial (Lomb 1976, Scargle 1982; the phase is another one in each). What a
-trial gains by them is, over the noise's density there, an exponential variable if nothing ripples. The gains of all
-trials are summed, each up to a bound, so that no few trials, whose motion has that frequency, make a line.
+trial gains by them is, over the noise's density there, an exponential variable if nothing ripples.
+
+A supply ripples wherever the motor is driven, near reversals too, where some joints have five rows of six. What the
+model misses there comes back with the motion, whatever the load, and so with the motion's own frequencies. So trials of
+one motion tell once, by their mean, as in `swinging.py`, and no motion more than up to a bound. Trials and motions
+count by how much a ripple would give them, its voltage's power over the noise: for a small one, no other sum tells as
+much (the locally best test), and what is gained where there is hardly any voltage is not the supply's.
 
 The density is what trials gain by the frequencies around, without the line's own. Noise that is learnt from all that
 the model leaves would have the ripple in it, and hide it: what is periodic is no noise, but lies in a band of it.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
+from scipy.fft import next_fast_len
 
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.swinging import (
@@ -20,6 +28,7 @@ from compensator.lab.left_over.swinging import (
     Frequencies,
     Swing,
     is_peak,
+    motions_of,
     voltage_of,
 )
 from compensator.lab.left_over.waves import Waves
@@ -30,44 +39,106 @@ from compensator.lab.screening.evidence import Base
 
 CARRIERS = 2  # the other is none, of `swinging.py`
 CHANCE = PLAIN.ripple  # of such a line in noise alone, with any carrier
-MOST_OF_TRIAL = 5.0  # of what it gains over the noise: noise alone has so much once in 150
+MOST_GAIN = 5.0  # of a trial, or a motion, over the noise: noise alone has so much once in 150
 LINE_HZ = 0.3  # from its middle on, in a trial of some seconds: what is further away is not of it
 AT_ONCE = 2**21  # values of columns
 NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
-STEP = 0.05  # of a sum's distribution
+STEP = 0.05  # of a sum's distribution, in gains of what counts most
+LEAST_SHARE = 1e-3  # of what counts most: what counts less is left out
 NODES = 9  # of an integral over the noise
 TINY = float(np.finfo(float).tiny)
 
 Indices = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 
+@dataclass(frozen=True)
+class _Told:
+    """What motions tell of each frequency.
+
+    Attributes:
+        gains: over the noise, shape (k, m).
+        shares: by which motions count, shape (k,).
+        known_from: how many independent powers tell the noise at each frequency, shape (m,).
+    """
+
+    gains: FloatArray
+    shares: FloatArray
+    known_from: FloatArray
+
+    @property
+    def whole(self) -> FloatArray:
+        """What all motions gain together, shape (m,)."""
+        found: FloatArray = self.shares @ np.minimum(self.gains, MOST_GAIN)
+        return found
+
+
 def ripple_of(gathered: Candidates) -> Swing | None:
-    """The frequency at which what is left swings most surely with the voltage; None where it does not for sure."""
+    """The frequency at which what is left swings most surely with the voltage; None where it does not for sure.
+
+    Args:
+        gathered: the model, on all rows in motion.
+    """
     dataset, rows = gathered.fit.dataset, gathered.rows
     voltage = dataset.rows_of([voltage_of(trial) for trial in dataset.trials])[rows]
     time_s = np.concatenate([dataset.time_of(trial) for trial in dataset.trials])[rows]
-    index = dataset.trial_index[rows]
-    trials = [np.flatnonzero((index == one) & (voltage != 0.0)) for one in np.unique(index)]
-    trials = [own for own in trials if len(own) >= FEWEST_ROWS]
-    if len(trials) < FEWEST_TRIALS:
+    index = np.where(voltage != 0.0, dataset.trial_index[rows], -1)
+    numbers = [one for one in range(len(dataset.trials)) if (index == one).sum() >= FEWEST_ROWS]
+    if len(numbers) < FEWEST_TRIALS:
         return None
+    trials = [np.flatnonzero(index == one) for one in numbers]
     frequencies = Frequencies.of([time_s[own] for own in trials], dataset.cutoff_hz)
-    at_hz = frequencies.at_hz
-    if len(at_hz) <= 2 * WIDTH:
+    if len(frequencies.at_hz) <= 2 * WIDTH:
         return None
-    base, carrier = gathered.as_measured(WITH_CHAIN), gathered.weights * voltage
-    portions = -(-2 * len(at_hz) * len(carrier) // AT_ONCE)
-    parts = [_gains(base, carrier, time_s, some, trials) for some in np.array_split(at_hz, portions)]
-    gains, around = _over_noise(at_hz, np.concatenate(parts, axis=1))
-    whole = np.minimum(gains, MOST_OF_TRIAL).sum(axis=0)
-    lasted_s = [float(np.ptp(time_s[own])) for own in trials]
-    peaks = is_peak(whole)
+    motions = motions_of([dataset.trials[one] for one in numbers])
+    told = _told(gathered, gathered.weights * voltage, time_s, frequencies.at_hz, trials, motions)
+    peaks = is_peak(told.whole)
     if not peaks.any():
         return None
-    best = int(np.argmax(np.where(peaks, whole, 0.0)))
-    independent = float(around[best]) * float(at_hz[1] - at_hz[0]) * sum(lasted_s)
-    chance = min(1.0, frequencies.independent * chance_over_noise(gains[:, best], independent))
-    return Swing(float(at_hz[best]), chance, of_voltage=True) if CARRIERS * chance <= CHANCE else None
+    best = int(np.argmax(np.where(peaks, told.whole, 0.0)))
+    by_chance = chance_over_noise(told.gains[:, best], told.shares, float(told.known_from[best]))
+    chance = min(1.0, frequencies.independent * by_chance)
+    return Swing(float(frequencies.at_hz[best]), chance, of_voltage=True) if CARRIERS * chance <= CHANCE else None
+
+
+def _told(
+    gathered: Candidates,
+    carrier: FloatArray,
+    time_s: FloatArray,
+    at_hz: FloatArray,
+    trials: list[Indices],
+    motions: IntArray,
+) -> _Told:
+    """What trials (rows of each) tell of frequencies (m,), by their motions (trials,); carrier (n,) and time (n,).
+
+    Noise may be the denser the slower it is, so that frequencies below those that are asked count as noise, too.
+    """
+    base = gathered.as_measured(WITH_CHAIN)
+    step_hz = float(at_hz[1] - at_hz[0])
+    below = np.arange(at_hz[0] - step_hz, 0.0, -step_hz)[::-1]
+    every = np.concatenate([below, at_hz])
+    portions = -(-2 * len(every) * len(carrier) // AT_ONCE)
+    parts = [_gains(base, carrier, time_s, some, trials) for some in np.array_split(every, portions)]
+    gains = np.concatenate(parts, axis=1)
+    information = np.array([carrier[own] @ carrier[own] for own in trials]) / np.maximum(gains.mean(axis=1), TINY)
+    over, around = _over_noise(every, gains)
+    lasted_s = sum(float(np.ptp(time_s[own])) for own in trials)
+    told, shares = _by_motion(over[:, len(below) :], information, motions)
+    return _Told(told, shares, around[len(below) :] * step_hz * lasted_s)
+
+
+def _by_motion(gains: FloatArray, information: FloatArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
+    """What motions gain (k, m), each the mean of its trials (trials, m), and the shares by which they count (k,).
+
+    Args:
+        gains: over the noise.
+        information: how much a ripple would give each trial, shape (trials,).
+        motions: of each trial, shape (trials,).
+    """
+    theirs = np.equal.outer(np.unique(motions), motions)
+    means = (theirs @ information) / theirs.sum(axis=1)
+    counts = means > LEAST_SHARE * means.max()
+    within = theirs[counts] * information
+    return (within @ gains) / within.sum(axis=1, keepdims=True), means[counts] / means.max()
 
 
 def _over_noise(at_hz: FloatArray, gains: FloatArray) -> tuple[FloatArray, IntArray]:
@@ -76,7 +147,7 @@ def _over_noise(at_hz: FloatArray, gains: FloatArray) -> tuple[FloatArray, IntAr
     That is the mean around each frequency, of all trials; a trial's own scale is its mean over all frequencies.
     """
     gains = gains / np.maximum(gains.mean(axis=1, keepdims=True), TINY)
-    bounded = np.minimum(gains, MOST_OF_TRIAL).mean(axis=0) / (1.0 - float(np.exp(-MOST_OF_TRIAL)))
+    bounded = np.minimum(gains, MOST_GAIN).mean(axis=0) / (1.0 - float(np.exp(-MOST_GAIN)))
     apart_hz = np.abs(np.subtract.outer(at_hz, at_hz))
     around = (apart_hz <= AROUND_HZ) & (apart_hz > LINE_HZ)
     count = around.sum(axis=1)
@@ -84,27 +155,33 @@ def _over_noise(at_hz: FloatArray, gains: FloatArray) -> tuple[FloatArray, IntAr
     return gains / np.maximum(floor, TINY), count
 
 
-def chance_over_noise(gains: FloatArray, independent: float) -> float:
-    """The chance of such a sum of gains (n,) over noise that is known from so many independent powers.
+def chance_over_noise(gains: FloatArray, shares: FloatArray, independent: float) -> float:
+    """The chance of such a sum of gains (n,), by shares (n,), over noise that is known from so many independent powers.
 
     The mean of so many exponential variables scatters by one over their root, which a sum of gains far in its tail
     takes for evidence: the chance is the mean over what the noise may be (as Snedecor's F is).
     """
-    places, shares = np.polynomial.hermite_e.hermegauss(NODES)
+    places, chances_of = np.polynomial.hermite_e.hermegauss(NODES)
     scales = np.exp(places / np.sqrt(max(independent, 1.0)))
-    chances = [chance_of_sum(gains * scale) for scale in scales]
-    return float(shares @ chances / shares.sum())
+    chances = [chance_of_sum(gains * scale, shares) for scale in scales]
+    return float(chances_of @ chances / chances_of.sum())
 
 
-def chance_of_sum(gains: FloatArray) -> float:
-    """The chance that as many exponential variables, each up to MOST_OF_TRIAL, have a sum as large as these (n,)."""
-    edges = np.exp(-np.arange(0.0, MOST_OF_TRIAL + STEP / 2, STEP))
-    one = np.append(edges[:-1] - edges[1:], edges[-1])
-    count = len(gains)
-    size = count * len(one)
-    sums = np.fft.irfft(np.fft.rfft(one, size) ** count, size)
-    # each is counted at the lower end of its step
-    at = int((float(np.minimum(gains, MOST_OF_TRIAL).sum()) / STEP) - 0.5 * count)
+def chance_of_sum(gains: FloatArray, shares: FloatArray) -> float:
+    """The chance that as many exponential variables, each up to MOST_GAIN, have as large a sum, by shares (n,)."""
+    step = STEP * float(shares.max())
+    most = [int(np.ceil(MOST_GAIN * share / step)) for share in shares]
+    size = next_fast_len(sum(most) + 1, real=True)
+    passed, counted = np.ones(size // 2 + 1, dtype=complex), 0.0
+    for share, highest in zip(shares, most, strict=True):
+        edges = np.exp(-np.minimum(step / share * np.arange(highest + 1), MOST_GAIN))
+        chances = np.append(edges[:-1] - edges[1:], edges[-1])
+        passed *= np.fft.rfft(chances, size)
+        counted += step * float(chances @ np.arange(highest + 1))
+    sums = np.fft.irfft(passed, size)
+    # each is counted at the lower end of its step, and so for less than it is on average
+    missed = float(shares.sum()) * (1.0 - np.exp(-MOST_GAIN)) - counted
+    at = int((float(shares @ np.minimum(gains, MOST_GAIN)) - missed) / step)
     return float(np.clip(sums[max(at, 0) :].sum(), 0.0, 1.0))
 
 
