@@ -40,11 +40,6 @@ class Constants:
         base = gathered.as_measured(WITH_CHAIN)
         return cls(fit.dataset, rows, base, gathered.weights, fit.dry_friction, fit.static_friction[rows])
 
-    @classmethod
-    def in_motion(cls, fit: Fit) -> "Constants":
-        """Of all rows in motion, those near reversals too, and the model fitted to them."""
-        return cls.tested(gather_in_motion(fit))
-
     @property
     def sliding(self) -> BoolArray:
         """Near reversals nothing is constant; shape (n,)."""

@@ -7,7 +7,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over import cells
 from compensator.lab.left_over.constancy import change_of
-from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
+from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants, gather_in_motion
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
@@ -25,7 +25,7 @@ def fitted(extra=None, seed=0, **bench):
 
 
 def judged(fit):
-    return wandering_of(Constants.in_motion(fit))
+    return wandering_of(Constants.tested(gather_in_motion(fit)))
 
 
 def jumping(share, of=lambda x: np.sign(x.v)):
@@ -75,7 +75,7 @@ def from_stop_to_stop(share):
 def test_a_jump_that_is_too_small_for_stretches_is_told_with_its_size_and_where_it_is(what, of):
     fit = fitted(jumping(0.03, of), seed=1)
     assert change_of(constants_of(fit)) is None
-    constants, found = Constants.in_motion(fit), judged(fit)
+    constants, found = Constants.tested(gather_in_motion(fit)), judged(fit)
     assert found is not None
     assert found.what == what
     assert found.size == pytest.approx(0.03 * COULOMB_N_M, rel=0.5)
