@@ -39,7 +39,7 @@ class ErrorBudget:
         return float(sum(getattr(self, one.name) for one in fields(self))) + 2.0 * self.wandering
 
 
-PLAIN = ErrorBudget(change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-3, line=1e-6, following=1e-6, following_far=1e-5)
+PLAIN = ErrorBudget(change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-4, line=1e-6, following=1e-6, following_far=1e-5)
 """Of a model that is what every joint has."""
 
 NAMED = ErrorBudget(change=1e-4, wandering=1e-4, swing=1e-4, ripple=0.0, line=1e-6, following=1e-4, following_far=1e-4)

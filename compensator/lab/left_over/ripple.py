@@ -123,7 +123,7 @@ def _told(
     over, around = _over_noise(every, gains)
     lasted_s = sum(float(np.ptp(time_s[own])) for own in trials)
     told, shares = _by_motion(over[:, len(below) :], information, motions)
-    return _Told(told, shares, around[len(below) :] * step_hz * lasted_s)
+    return _Told(told, shares, around[len(below) :].astype(np.float64) * (step_hz * lasted_s))
 
 
 def _by_motion(gains: FloatArray, information: FloatArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
