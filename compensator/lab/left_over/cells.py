@@ -2,7 +2,8 @@
 
 What scatters in every joint has a covariance of its own: noise forgets at once or within half a second, friction along
 the path within some percent of the travel, and static friction is another one after each stop. Near reversals, where
-teeth fly and pre-sliding comes up, rows scatter more, and in each stroke in a way of its own.
+teeth fly and pre-sliding comes up, rows scatter more, and in each stroke in a way of its own: the more, the more
+reversals there are and the quicker, as in a chirp, so that each trial has its own scale of that.
 """
 
 from collections.abc import Sequence
@@ -23,6 +24,7 @@ MOST_CELLS = 120  # of a trial: longer ones have longer cells
 MOST_TRIALS = 60  # spread over all
 FEWEST_ROWS = 4  # of a stroke: fewer are all near its reversals
 NAMED = 2  # trials
+TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,9 @@ def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:
     strokes = np.concatenate([trial.motion.strokes.index[trial.picked] for trial in dataset.trials])[constants.rows]
     position = constants.of([trial.motion.position for trial in dataset.trials])
     times_s = np.concatenate([dataset.time_of(trial) for trial in dataset.trials])[constants.rows]
-    lengths = [share * max(float(np.ptp(position)), np.finfo(float).tiny) for share in PATHS]
+    lengths = [share * max(float(np.ptp(position)), TINY) for share in PATHS]
     there = np.unique(numbers)
+    usual = _power(base.residual[near])
     found = []
     for index in there[:: -(-len(there) // MOST_TRIALS)]:
         own = np.flatnonzero((numbers == index) & (column != 0.0))
@@ -70,7 +73,8 @@ def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:
         turned = np.sign(mean.plain(column[own]))
         kernels = _kernels(mean.size, turned, time_s, gone, cells[0], own_static, lengths)
         if near.any():
-            kernels = np.insert(kernels, 1, _near_reversals(mean.size, cells[0], cells[2]), axis=0)
+            times = _power(base.residual[own[near[own]]]) / usual
+            kernels = np.insert(kernels, 1, times * _near_reversals(mean.size, cells[0], cells[2]), axis=0)
         part = Part(mean.of(base.basis[own]), mean.of(base.residual[own][:, None])[:, 0], kernels)
         found.append(CellsOfTrial(int(index), time_s, mean.size, part))
     return found
@@ -130,6 +134,11 @@ def _near_reversals(size: FloatArray, stroke: IntArray, near: IntArray) -> Float
     """Covariances that cells (c,) have beside those if they are near a reversal: 0 or 1; shape (2, c, c)."""
     own = near * size
     return np.array([np.diag(near.astype(float)), np.outer(own, own) * np.equal.outer(stroke, stroke)])
+
+
+def _power(residual: FloatArray) -> float:
+    """Mean square of residuals (n,), 1 of none."""
+    return max(float(np.mean(residual**2)), TINY) if len(residual) else 1.0
 
 
 def most_changed(trials: Sequence[CellsOfTrial], courses: Sequence[FloatArray]) -> tuple[tuple[int, float], ...]:

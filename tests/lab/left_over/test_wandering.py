@@ -1,5 +1,7 @@
 """Dry friction that is another one for seconds is told however little it is; what scatters in any joint is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from tests.lab.left_over.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 COULOMB_N_M = 0.08
+FASTEST = 2  # of the trials
 SMALL = 0.008  # of dry friction, half of a jump: its variance is not sure, nor are rows in steady sliding alone
 
 
@@ -136,6 +139,19 @@ def test_what_comes_up_after_each_reversal_does_not_hide_a_jump():
 @pytest.mark.parametrize("seed", range(2))
 def test_what_any_joint_has_is_no_wandering(extra, seed):
     assert judged(fitted(extra, seed)) is None
+
+
+def test_a_trial_whose_reversals_scatter_more_has_a_larger_scale_of_that():
+    constants = Constants.tested(gather_in_motion(fitted(from_reversal_to_reversal(0.3))))
+    near = (constants.dataset.trial_index[constants.rows] == FASTEST) & ~constants.sliding
+    base = replace(constants.base, residual=np.where(near, 3.0, 1.0) * constants.base.residual)
+    before, after = (
+        [trial.part.kernels[1:3].sum() for trial in cells.cells_of(one, constants.weights)]
+        for one in (constants, replace(constants, base=base))
+    )
+    times = np.array(after) / before
+    assert times[FASTEST] == pytest.approx(9.0 * times[0])
+    assert np.delete(times, FASTEST) == pytest.approx(times[0])
 
 
 def test_long_trials_have_longer_cells_and_of_many_trials_some_are_looked_at(monkeypatch):
