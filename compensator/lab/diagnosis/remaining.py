@@ -17,6 +17,7 @@ from compensator.lab.diagnosis.wording import (
     wandering_in_words,
 )
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
+from compensator.lab.left_over.clear_rows import left_for_sure
 from compensator.lab.left_over.left_over import LeftOver, in_its_place, left_beside, left_over
 from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.model.fitted import Fit
@@ -35,10 +36,10 @@ def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: 
         generic: evidence for free curves.
         p_value: of the effects.
     """
-    left, bursts = left_over(gathered), _bursts(gathered)
+    left, bursts = left_for_sure(fit, gathered), _bursts(gathered)
     if bursts is not None and bursts.of_effort > LEAST_SHARE:
         return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials], p_value)
-    if not left.is_more_than_noise:
+    if left is None:
         return None
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
     wanders = _wanders(fit, left)
