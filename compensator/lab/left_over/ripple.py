@@ -120,17 +120,18 @@ def _told(
     parts = [_gains(base, carrier, time_s, some, trials) for some in np.array_split(every, portions)]
     gains = np.concatenate(parts, axis=1)
     information = np.array([carrier[own] @ carrier[own] for own in trials]) / np.maximum(gains.mean(axis=1), TINY)
-    over, around = _over_noise(every, gains)
-    lasted_s = sum(float(np.ptp(time_s[own])) for own in trials)
-    told, shares = _by_motion(over[:, len(below) :], information, motions)
-    return _Told(told, shares, around[len(below) :].astype(np.float64) * (step_hz * lasted_s))
+    within, shares = _by_motion(information, motions)
+    counts = shares @ within
+    over, around = _over_noise(every, gains, counts)
+    lasted_s = np.array([float(np.ptp(time_s[own])) for own in trials])
+    independent_s = counts.sum() ** 2 / float(np.sum(counts**2 / lasted_s))
+    return _Told((within @ over)[:, len(below) :], shares, around[len(below) :] * (step_hz * independent_s))
 
 
-def _by_motion(gains: FloatArray, information: FloatArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
-    """What motions gain (k, m), each the mean of its trials (trials, m), and the shares by which they count (k,).
+def _by_motion(information: FloatArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
+    """How much each trial counts within its motion (k, trials), and the shares by which motions count (k,).
 
     Args:
-        gains: over the noise.
         information: how much a ripple would give each trial, shape (trials,).
         motions: of each trial, shape (trials,).
     """
@@ -138,19 +139,20 @@ def _by_motion(gains: FloatArray, information: FloatArray, motions: IntArray) ->
     means = (theirs @ information) / theirs.sum(axis=1)
     counts = means > LEAST_SHARE * means.max()
     within = theirs[counts] * information
-    return (within @ gains) / within.sum(axis=1, keepdims=True), means[counts] / means.max()
+    return within / within.sum(axis=1, keepdims=True), means[counts] / means.max()
 
 
-def _over_noise(at_hz: FloatArray, gains: FloatArray) -> tuple[FloatArray, IntArray]:
+def _over_noise(at_hz: FloatArray, gains: FloatArray, counts: FloatArray) -> tuple[FloatArray, FloatArray]:
     """What trials gain (trials, m) over what they would by noise alone, and how many frequencies around tell that.
 
-    That is the mean around each frequency, of all trials; a trial's own scale is its mean over all frequencies.
+    That is the mean around each frequency, of all trials, as each counts (trials,) in what is summed: those that count
+    for little may have noise of another colour. A trial's own scale is its mean over all frequencies.
     """
     gains = gains / np.maximum(gains.mean(axis=1, keepdims=True), TINY)
-    bounded = np.minimum(gains, MOST_GAIN).mean(axis=0) / (1.0 - float(np.exp(-MOST_GAIN)))
+    bounded = counts @ np.minimum(gains, MOST_GAIN) / (counts.sum() * (1.0 - float(np.exp(-MOST_GAIN))))
     apart_hz = np.abs(np.subtract.outer(at_hz, at_hz))
     around = (apart_hz <= AROUND_HZ) & (apart_hz > LINE_HZ)
-    count = around.sum(axis=1)
+    count = around.sum(axis=1).astype(np.float64)
     floor = (around @ bounded) / np.maximum(count, 1)
     return gains / np.maximum(floor, TINY), count
 

@@ -26,7 +26,7 @@ from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
 SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
 SMALL_RIPPLE = 0.002
-NEAR_SHARE, NEAR_SEED = 0.001, 5
+NEAR_SHARE, NEAR_SEED = 0.0015, 6
 
 
 def recorded(extra=None, seed=0, noise=BENCH.noise) -> list[Recording]:
@@ -175,15 +175,27 @@ def test_what_swings_where_there_is_hardly_any_voltage_is_not_the_supplys(monkey
     fit = fitted([*hardly, *rippling(recorded(seed=1, noise=0.004)[7:], 0.0)])
     assert rippled(fit) is None
     even = ripple._by_motion
-    monkeypatch.setattr(ripple, "_by_motion", lambda gains, _, motions: even(gains, np.ones(len(gains)), motions))
+    monkeypatch.setattr(ripple, "_by_motion", lambda known, motions: even(np.ones_like(known), motions))
     assert rippled(fit) is not None
 
 
 def test_a_motion_counts_as_its_trials_do_on_average():
     gains, information = np.array([[4.0], [0.0], [2.0]]), np.array([1.0, 3.0, 1.0])
-    told, shares = ripple._by_motion(gains, information, np.array([0, 0, 1]))
-    assert told.tolist() == [[1.0], [2.0]]
+    within, shares = ripple._by_motion(information, np.array([0, 0, 1]))
+    assert (within @ gains).tolist() == [[1.0], [2.0]]
     assert shares.tolist() == [1.0, 0.5]
+
+
+def test_the_noise_is_that_of_the_trials_that_count():
+    """Two trials count, whose noise grows with the frequency; that of forty others does not."""
+    random, at_hz = np.random.default_rng(4), np.arange(0.5, 20.0, 0.05)
+    gains = random.exponential(size=(42, len(at_hz)))
+    gains[:2] *= 1.0 + at_hz / 10.0
+    counts = np.array([1.0, 0.8, *[0.001] * 40])
+    over, _ = ripple._over_noise(at_hz, gains, counts)
+    told = counts @ np.minimum(over, MOST_GAIN) / counts.sum()
+    assert told[at_hz > 15.0].mean() == pytest.approx(1.0, abs=0.06)
+    assert told[at_hz < 5.0].mean() == pytest.approx(1.0, abs=0.06)
 
 
 def test_where_no_voltage_is_known_nothing_ripples_with_it():
