@@ -78,7 +78,9 @@ def left_over(gathered: Candidates) -> LeftOver:
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
     swing = swing or ripple_of(in_motion)
-    return LeftOver(remainder, change, swing, wandering, line_of(gathered, white), following_of(gathered, white))
+    return LeftOver(
+        remainder, change, swing, wandering, line_of(gathered, white, growing=True), following_of(gathered, white)
+    )
 
 
 def _is_plain(fit: Fit) -> bool:

@@ -8,6 +8,7 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
 from compensator.lab.left_over.error_budget import PLAIN
+from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.orders import Line, growing_line_of, line_of
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates, gather
@@ -23,7 +24,7 @@ def line(fit: Fit, most: float = PLAIN.line) -> Line | None:
 
 
 def line_in(gathered: Candidates, most: float = PLAIN.line) -> Line | None:
-    return line_of(gathered, white_rows_of(gathered), most)
+    return line_of(gathered, white_rows_of(gathered), most, growing=True)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -111,6 +112,20 @@ def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
 
 
 SLOW_ORDER = 9.3  # that the filter passes in fast motion, too
+
+
+MISREAD_ORDER = 20.7
+
+
+def test_what_grows_with_the_speed_is_told_though_no_force_would_be():
+    """An angle that is misread round and round seems to be accelerated so, and may have no name in the catalogue."""
+    fit = fitted(lambda x: 0.5 * RIPPLE_N_M * x.v**2 * np.cos(MISREAD_ORDER * x.q + 0.4))
+    gathered = with_noise(gather(fit))
+    assert line_of(gathered, white_rows_of(gathered)) is None
+    found = left_over(gathered).line
+    assert found is not None
+    assert found.growing
+    assert found.order == pytest.approx(MISREAD_ORDER, rel=0.05)
 
 
 def growing_line(law):
