@@ -21,6 +21,7 @@ class ErrorBudget:
         swing: it swings at one frequency, the motor's voltage or none as its carrier.
         ripple: it swings with the voltage, by a matched filter.
         line: it comes back with the position.
+        growing: it does so, and grows with the square of the speed, which nothing in a joint that lacks nothing does.
         following: it follows a variable that is measured, however little it is.
         following_far: it does so by more than any joint's own friction.
     """
@@ -30,6 +31,7 @@ class ErrorBudget:
     swing: float
     ripple: float
     line: float
+    growing: float
     following: float
     following_far: float
 
@@ -39,9 +41,13 @@ class ErrorBudget:
         return float(sum(getattr(self, one.name) for one in fields(self))) + 2.0 * self.wandering
 
 
-PLAIN = ErrorBudget(change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-4, line=1e-6, following=1e-6, following_far=1e-5)
+PLAIN = ErrorBudget(
+    change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-4, line=1e-6, growing=1e-4, following=1e-6, following_far=1e-5
+)
 """Of a model that is what every joint has."""
 
-NAMED = ErrorBudget(change=1e-4, wandering=1e-4, swing=1e-4, ripple=0.0, line=1e-6, following=1e-4, following_far=1e-4)
+NAMED = ErrorBudget(
+    change=1e-4, wandering=1e-4, swing=1e-4, ripple=0.0, line=1e-6, growing=1e-4, following=1e-4, following_far=1e-4
+)
 """Of one with a further formula: though nearly right, it leaves some of friction. Lines and curves must be much beside
 the name as well, which those of complete joints never are; ripples are not asked for."""

@@ -78,9 +78,8 @@ def left_over(gathered: Candidates) -> LeftOver:
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
     swing = swing or ripple_of(in_motion)
-    return LeftOver(
-        remainder, change, swing, wandering, line_of(gathered, white, growing=True), following_of(gathered, white)
-    )
+    line = line_of(gathered, white) or growing_line_of(gathered, white, PLAIN.growing)
+    return LeftOver(remainder, change, swing, wandering, line, following_of(gathered, white))
 
 
 def _is_plain(fit: Fit) -> bool:
@@ -107,7 +106,12 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
     if white is None:
         return None
     follows = following_of(grown, white, NAMED.following, NAMED.following_far, 0.0)
-    found = (line_of(grown, white, NAMED.line, 0.0), follows, _growing(grown, white, named.block.name))
+    found = (
+        line_of(grown, white, NAMED.line, 0.0),
+        follows,
+        _growing(grown, white, named.block.name),
+        growing_line_of(grown, white, NAMED.growing),
+    )
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None
 

@@ -3,8 +3,7 @@
 What turns with the joint, the motor or a wheel between them comes back after so much travel: an order, in cycles per
 turn. A periodogram over the position, on rows whitened by the noise that a complete model would leave, holds cosine and
 sine of every order against that noise, once as a force and once against the motion, as friction is (Lomb 1976, Scargle
-1982: least squares at uneven places); of a model that nothing was named for, once more as what grows with the square of
-the speed, as an angle that is misread does. Chance has as many tries as there are independent orders, twice or thrice.
+1982: least squares at uneven places). Chance has as many tries as there are independent orders, twice.
 
 Noise that is learnt from all that is left has a line in it, spread over a band, and so hides it. What may be a line is
 looked at again, against noise that it has no part in.
@@ -35,7 +34,6 @@ SLOW = 0.1  # share of the rows, the slowest: an order that even these pass too 
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
 MOST_TURNED = np.pi / 4.0  # rad of phase: there force and friction share a ripple's power
-AGAINST_MOTION, GROWING = 1, 2  # of the kinds of lines; 0: a force
 TINY = float(np.finfo(float).tiny)
 LEAST_OF_EFFORT = 0.0005  # root mean square: no sensor is more linear
 
@@ -97,11 +95,6 @@ class _Path:
             2.0 * np.pi * dataset.cutoff_hz,
         )
 
-    @property
-    def kinds(self) -> FloatArray:
-        """What a line is multiplied by: as a force, against the motion, or growing with the speed; shape (3, n)."""
-        return np.array([np.ones_like(self.speed), self.direction, self.speed**2])
-
     def columns(self, orders: FloatArray) -> FloatArray:
         """Cosines, then sines, of orders (m,) [rad per unit of position], filtered and weighted, shape (n, 2m)."""
         over = np.outer(self.speed, orders) / self.cutoff_rad_s
@@ -112,11 +105,7 @@ class _Path:
 
 
 def line_of(
-    gathered: Candidates,
-    white: WhiteRows,
-    most: float = PLAIN.line,
-    look_again: float = LOOK_AGAIN,
-    growing: bool = False,
+    gathered: Candidates, white: WhiteRows, most: float = PLAIN.line, look_again: float = LOOK_AGAIN
 ) -> Line | None:
     """The line that is least by chance; None where none is there for sure.
 
@@ -125,23 +114,20 @@ def line_of(
         white: its rows.
         most: chance in noise alone up to which it is none.
         look_again: the same in noise that is learnt with it, up to which one without it is asked.
-        growing: whether it may grow with the square of the speed, too.
     """
     path = _Path.of(gathered)
     orders, sizes = _scanned(path, white)
-    if growing:
-        sizes = np.concatenate([sizes, _growing(path, white, orders)[None]])
-    kind, best = divmod(int(np.argmax(sizes)), len(orders))
+    against, best = divmod(int(np.argmax(sizes)), len(orders))
     tries = sizes.size / STEPS
-    chance = min(1.0, tries * white.noise.chance(float(sizes[kind, best]), 2))
+    chance = min(1.0, tries * white.noise.chance(float(sizes[against, best]), 2))
     if chance > max(most, look_again):
         return None
-    columns = path.columns(orders[best : best + 1]) * path.kinds[kind][:, None]
+    columns = path.columns(orders[best : best + 1]) * (path.direction[:, None] if against else 1.0)
     if most < chance <= look_again:
         white = white.cleared(gathered, columns)
         chance = min(1.0, tries * _chance(white, columns))
     line = _line(gathered, white, columns, float(orders[best]), chance)
-    line = replace(line, against_motion=kind == AGAINST_MOTION, growing=kind == GROWING)
+    line = replace(line, against_motion=bool(against))
     return line if line.is_there(most) else None
 
 
@@ -190,12 +176,14 @@ def growing_line_of(gathered: Candidates, white: WhiteRows, most: float) -> Line
     """
     path = _Path.of(gathered)
     orders, steady = _scanned(path, white)
-    growing = _growing(path, white, orders)
+    growing = np.concatenate(
+        [_sizes_of(white, path.columns(some) * path.speed[:, None] ** 2) for some in _portions(path, orders)]
+    )
     best = int(np.argmax(growing))
     chance = min(1.0, len(orders) / STEPS * white.noise.chance(float(growing[best]), 2))
     if chance > most or growing[best] < steady.max() + VERY_STRONG:
         return None
-    columns = path.columns(orders[best : best + 1]) * path.kinds[GROWING][:, None]
+    columns = path.columns(orders[best : best + 1]) * path.speed[:, None] ** 2
     line = replace(_line(gathered, white, columns, float(orders[best]), chance), growing=True)
     return line if line.is_there(most) else None
 
@@ -207,7 +195,7 @@ def growing_of(gathered: Candidates, white: WhiteRows, order: float, most: float
     joint has of a wheel off its centre, or one that never was, of an angle that is misread. Arguments as `line_of`.
     """
     path = _Path.of(gathered)
-    columns = path.columns(np.array([order])) * path.kinds[GROWING][:, None]
+    columns = path.columns(np.array([order])) * path.speed[:, None] ** 2
     line = _line(gathered, white, columns, order, _chance(white, columns))
     return replace(line, growing=True) if line.is_there(most) else None
 
@@ -244,12 +232,6 @@ def _scanned(path: _Path, white: WhiteRows) -> tuple[FloatArray, FloatArray]:
     """Every order (m,), and how far it is beyond noise as a force and against the motion, shape (2, m)."""
     orders = _orders(path)
     return orders, np.concatenate([_sizes(path, white, some) for some in _portions(path, orders)], axis=1)
-
-
-def _growing(path: _Path, white: WhiteRows, orders: FloatArray) -> FloatArray:
-    """How far each order (m,) is beyond noise where it grows with the square of the speed, shape (m,)."""
-    growing = path.kinds[GROWING][:, None]
-    return np.concatenate([_sizes_of(white, path.columns(some) * growing) for some in _portions(path, orders)])
 
 
 def _portions(path: _Path, orders: FloatArray) -> list[FloatArray]:

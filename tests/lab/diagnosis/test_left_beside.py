@@ -11,7 +11,8 @@ from compensator.lab.diagnosis import remaining
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import left_over, orders
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
-from compensator.lab.left_over.left_over import in_its_place
+from compensator.lab.left_over.left_over import in_its_place, left_beside
+from compensator.lab.left_over.orders import Line
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
@@ -146,6 +147,18 @@ def test_a_line_whose_phase_a_delay_may_turn_tells_nothing(monkeypatch):
     for share, told in ((2.0, True), (0.5, False)):
         monkeypatch.setattr(orders, "MOST_TURNED", share * turned)
         assert (in_its_place(gathered, found) is not None) == told
+
+
+@pytest.mark.parametrize(("enough", "told"), [(100.0, True), (1e6, False)])
+def test_beside_any_name_what_grows_with_the_speed_is_told_if_it_is_much(enough, told):
+    """As friction that differs with the direction was named for an angle that is misread, whose name nobody had."""
+    fit = fitted(lambda x: 0.01 * np.abs(x.v) + 0.06 * RIPPLE_N_M * x.v**2 * np.cos(20.7 * x.q), 2)
+    gathered = with_noise(gather(fit))
+    explained = fit_effects(fit.dataset, [*fit.names, "viscous_asymmetry"], fit.training)
+    evidence = screened(gathered, "viscous_asymmetry")
+    found = left_beside(explained, gathered, replace(evidence, noncentrality=enough))
+    assert (found is not None) == told
+    assert found is None or (isinstance(found, Line) and found.growing)
 
 
 def test_an_earlier_name_may_leave_more_of_its_own_line():

@@ -9,7 +9,7 @@ import pytest
 from compensator.lab.left_over import constancy, left_over, ripple, swinging
 from compensator.lab.left_over.error_budget import MOST, NAMED, PLAIN
 from compensator.lab.left_over.following import following_of
-from compensator.lab.left_over.orders import line_of
+from compensator.lab.left_over.orders import growing_line_of, line_of
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.screening.candidates import gather
@@ -62,5 +62,6 @@ def test_a_surface_that_is_a_little_rough_is_no_alarm(seed):
     gathered = with_noise(gather(fitted(rough(seed), seed)))
     white = white_rows_of(gathered)
     assert line_of(gathered, white) is None
+    assert growing_line_of(gathered, white, PLAIN.growing) is None
     assert following_of(gathered, white) is None
     assert line_of(gathered, white, most=1e-3) is not None  # else this test shows nothing

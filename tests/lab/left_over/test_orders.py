@@ -24,7 +24,7 @@ def line(fit: Fit, most: float = PLAIN.line) -> Line | None:
 
 
 def line_in(gathered: Candidates, most: float = PLAIN.line) -> Line | None:
-    return line_of(gathered, white_rows_of(gathered), most, growing=True)
+    return line_of(gathered, white_rows_of(gathered), most)
 
 
 @pytest.mark.parametrize("seed", range(4))
