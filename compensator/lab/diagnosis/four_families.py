@@ -67,7 +67,7 @@ class FourFamilies:
             return first
         if first is self.steady:
             return self.memory if _casts(self.wide, self.memory, self.steady) else first
-        return self.chain if self._memory_is_of_the_chain() else first
+        return self.chain if first is self.memory and self._memory_is_of_the_chain() else first
 
     def _memory_is_of_the_chain(self) -> bool:
         """Whether what the chain names takes most of the evidence for the memory effect, and not the other way round.

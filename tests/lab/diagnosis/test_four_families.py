@@ -51,6 +51,16 @@ def test_an_effect_with_memory_is_first_unless_it_is_the_shadow_of_the_chains(mo
     assert judged.first().candidates[0].effect.name == first
 
 
+def test_what_shows_at_starts_from_rest_is_no_shadow_of_the_chains(monkeypatch):
+    """Where it alone explains a curve that no formula follows, memory and chain have a little of that as well."""
+    kept = {"backlash": 12.0, "encoder_eccentricity": 58.0}
+    monkeypatch.setattr(four_families, "_evidence_beside", lambda _gathered, name, _other: kept[name])
+    curve, dwell = replace(NOTHING, verdict="unknown-effect", strength=200.0), named("dwell_strengthening", 195.0)
+    gathered: Any = SimpleNamespace()
+    judged = FourFamilies(curve, BACKLASH, dwell, ENCODER, gathered, gathered, {}, drawn=False)
+    assert judged.first() is dwell
+
+
 def test_an_effect_keeps_its_evidence_beside_what_has_nothing_of_it_and_none_beside_itself():
     dataset = make_dataset(recordings(Joint(extra=bristles), seed=4), FACTS, Processing())
     gathered = gather(widened(fit_model(dataset, default_effects(FACTS)), "moving"), "moving")
