@@ -123,9 +123,8 @@ def _told(
     within, shares = _by_motion(information, motions)
     counts = shares @ within
     over, around = _over_noise(every, gains, counts)
-    lasted_s = np.array([float(np.ptp(time_s[own])) for own in trials])
-    independent_s = counts.sum() ** 2 / float(np.sum(counts**2 / lasted_s))
-    return _Told((within @ over)[:, len(below) :], shares, around[len(below) :] * (step_hz * independent_s))
+    lasted_s = independent_s(counts, np.array([float(np.ptp(time_s[own])) for own in trials]))
+    return _Told((within @ over)[:, len(below) :], shares, around[len(below) :] * (step_hz * lasted_s))
 
 
 def _by_motion(information: FloatArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
@@ -140,6 +139,11 @@ def _by_motion(information: FloatArray, motions: IntArray) -> tuple[FloatArray, 
     counts = means > LEAST_SHARE * means.max()
     within = theirs[counts] * information
     return within / within.sum(axis=1, keepdims=True), means[counts] / means.max()
+
+
+def independent_s(counts: FloatArray, lasted_s: FloatArray) -> float:
+    """How long one trial would last whose noise is known as well as that of trials (n,) as they count (n,)."""
+    return float(counts.sum() ** 2 / np.sum(counts**2 / lasted_s))
 
 
 def _over_noise(at_hz: FloatArray, gains: FloatArray, counts: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -198,6 +198,11 @@ def test_the_noise_is_that_of_the_trials_that_count():
     assert told[at_hz < 5.0].mean() == pytest.approx(1.0, abs=0.06)
 
 
+def test_trials_that_hardly_count_tell_hardly_anything_of_the_noise():
+    assert ripple.independent_s(np.ones(2), np.array([5.0, 5.0])) == pytest.approx(10.0)
+    assert ripple.independent_s(np.array([1.0, *[1e-4] * 40]), np.full(41, 5.0)) == pytest.approx(5.0, rel=0.01)
+
+
 def test_where_no_voltage_is_known_nothing_ripples_with_it():
     assert rippled(fitted(recorded())) is None
 
