@@ -5,18 +5,17 @@ from dataclasses import dataclass
 from math import nan
 
 import numpy as np
-from scipy.optimize import minimize
 
 from bench.blind.calibration import interval
 from bench.blind.judge import Result
 from bench.blind.lab_answer import LabAnswer
 from bench.blind.oracle import Standing
 from bench.blind.recorded import ratio_of
+from bench.blind.smallest import smallest_found
 
 MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
 SHOWN = 0.15  # r from which an effect is expected in the class
 CLEAR = 0.3
-FEWEST = 20  # items that a threshold is fitted to
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +26,10 @@ class Figure:
         what: is measured.
         asked: in words.
         measured: a share, a ratio or a size; NaN where no item tells.
-        low, high: its 95 % interval, where it is a share.
+        low, high: its 95 % interval, NaN where none is known.
         items: it was measured on.
         reached: whether it is what was asked.
+        is_share: of items; otherwise a number.
     """
 
     what: str
@@ -39,6 +39,7 @@ class Figure:
     high: float
     items: int
     reached: bool
+    is_share: bool = True
 
 
 def figures(results: Sequence[Result]) -> list[Figure]:
@@ -161,22 +162,12 @@ def _class_size(named: Sequence[Result]) -> Figure:
 
 
 def _smallest_found(singles: Sequence[Result]) -> Figure:
-    """The r that is found nine times in ten, over what theory needs: a logistic curve in log r, by likelihood."""
-    what, asked = "smallest effect found 9 times in 10, over the bound", "at most 1.3"
-    found = np.array([_answer(one).verdict != "nothing" for one in singles], dtype=float)
-    if len(singles) < FEWEST or found.min() == found.max():
-        return Figure(what, asked, nan, nan, nan, len(singles), False)
-    size = np.log([max(_standing(one).ratio, 1e-6) / _standing(one).smallest for one in singles])
-
-    def unlikely(values: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> float:
-        steep, middle, guessed = np.exp(values[0]), values[1], 0.5 / (1.0 + np.exp(-values[2]))
-        chance = guessed + (1.0 - guessed) / (1.0 + np.exp(-np.clip(steep * (size - middle), -50, 50)))
-        chance = np.clip(chance, 1e-9, 1 - 1e-9)
-        return -float(np.sum(found * np.log(chance) + (1 - found) * np.log(1 - chance)))
-
-    best = minimize(unlikely, np.array([1.0, 0.0, -3.0]), method="Nelder-Mead", options={"maxiter": 2000}).x
-    ratio = float(np.exp(best[1] + np.log(9.0) / np.exp(best[0])))
-    return Figure(what, asked, ratio, nan, nan, len(singles), ratio <= 1.3)
+    """The r from which one is found, over what theory needs."""
+    found = [_answer(one).verdict != "nothing" for one in singles]
+    ratios = [max(_standing(one).ratio, 1e-6) / _standing(one).smallest for one in singles]
+    ratio, low, high = smallest_found(ratios, found)
+    what = "smallest effect found 9 times in 10, over the bound"
+    return Figure(what, "at most 1.3", ratio, low, high, len(singles), ratio <= 1.3, is_share=False)
 
 
 def _share(

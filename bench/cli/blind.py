@@ -133,6 +133,8 @@ def _measured(one: "Figure") -> str:
         return "not measured"
     if math.isnan(one.low):
         return f"{one.measured:.3g}"
+    if not one.is_share:
+        return f"{one.measured:.3g} ({one.low:.3g} .. {one.high:.3g})"
     return f"{one.measured:.1%} ({one.low:.1%} .. {one.high:.1%})"
 
 

@@ -2,6 +2,7 @@ import json
 from dataclasses import asdict, replace
 from math import isnan
 
+import numpy as np
 import pytest
 
 from bench.blind.calibration import came_of_prediction, named_by_prediction, names_by_detectability, p_values
@@ -11,6 +12,7 @@ from bench.blind.judge import Result
 from bench.blind.lab_answer import LabAnswer
 from bench.blind.oracle import Standing
 from bench.blind.settling import Settled
+from bench.blind.smallest import smallest_found
 
 
 def _result(
@@ -162,7 +164,26 @@ def test_smallest_effect_is_where_the_curve_of_detection_reaches_nine_in_ten() -
         ratio = 0.02 * 1.02**step  # 0.02 .. 1
         results.append(_result("single", "spring", ("spring",) if ratio > 0.15 else (), ratio, 5.0))
     # theory needs 0.1 (see `_result`), and all above 0.15 are found
-    assert _figure(results, "smallest effect").measured == pytest.approx(1.5, rel=0.05)
+    smallest = _figure(results, "smallest effect")
+    assert smallest.measured == pytest.approx(1.5, rel=0.05)
+    assert 1.4 < smallest.low <= smallest.measured <= smallest.high < 1.6
+    assert not smallest.is_share
+
+
+def test_the_interval_of_the_smallest_effect_holds_the_truth_as_often_as_it_says() -> None:
+    random = np.random.default_rng(7)
+    held = 0
+    for _ in range(40):
+        sizes = np.exp(random.uniform(-2.5, 2.5, 100))
+        chance = 1.0 / (1.0 + (1.2 / sizes) ** 3)  # nine in ten at 1.2 * 9^(1/3)
+        _, low, high = smallest_found(sizes.tolist(), (random.uniform(size=100) < chance).tolist())
+        held += low <= 1.2 * 9.0 ** (1.0 / 3.0) <= high
+    assert held >= 33  # of 95 %, less luck, and less what so few items make of the guessed share
+
+
+def test_of_few_items_or_of_those_that_are_all_found_no_smallest_effect_is_told() -> None:
+    assert all(isnan(one) for one in smallest_found([1.0] * 30, [True] * 30))
+    assert all(isnan(one) for one in smallest_found([0.1, 1.0] * 9, [False, True] * 9))
 
 
 def test_confusion_by_effect_and_rivals_on_the_same_items() -> None:
