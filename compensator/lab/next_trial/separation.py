@@ -11,6 +11,7 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry
+from compensator.lab.next_trial.scatter import rows_per_independent_row
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset, IntArray
@@ -97,21 +98,12 @@ def _imitator(gathered: Candidates, name: str) -> Rival:
 
 
 def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatArray, stretch: IntArray) -> float:
-    """Rows per independent row for an effect, from how its share of the residual differs between stretches.
-
-    What neighbouring rows have in common does not see slow scatter: friction that is another one each time, a mean that
-    drifts. Sums over whole stretches do (Liang, Zeger 1986).
-    """
+    """Rows per independent row for an effect, by its scatter between stretches."""
     block = _block(gathered, candidate)
     base = gathered.bases[block.base]
     projected = block.columns - base.basis @ (base.basis.T @ block.columns)
     coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
-    own = projected @ coefficients
-    _, labels = np.unique(stretch, return_inverse=True)
-    sums = np.bincount(labels, weights=own * left)
-    count = len(sums)
-    expected = float(np.mean(left**2) * np.sum(own**2))
-    return float(np.sum(sums**2)) * count / max(count - 1, 1) / expected if expected > 0.0 else 1.0
+    return rows_per_independent_row(projected @ coefficients, left, stretch)
 
 
 def _block(gathered: Candidates, candidate: Candidate) -> Block:
