@@ -19,7 +19,7 @@ class ErrorBudget:
         change: something constant is another one in each stretch.
         wandering: dry friction, or a constant force, wanders in time, or jumps; of each of the three.
         swing: it swings at one frequency, the motor's voltage or none as its carrier.
-        ripple: it swings with the voltage, by a matched filter.
+        ripple: it swings with the voltage, by a matched filter, whose chances hold far into the tail.
         line: it comes back with the position.
         growing: it does so, and grows with the square of the speed, which nothing in a joint that lacks nothing does.
         following: it follows a variable that is measured, however little it is.
@@ -42,7 +42,7 @@ class ErrorBudget:
 
 
 PLAIN = ErrorBudget(
-    change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-4, line=1e-6, growing=1e-4, following=1e-6, following_far=1e-5
+    change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-3, line=1e-6, growing=1e-4, following=1e-6, following_far=1e-5
 )
 """Of a model that is what every joint has."""
 
