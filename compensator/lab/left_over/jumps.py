@@ -71,14 +71,32 @@ class _Expected:
 
     Attributes:
         likelihood: its logarithm.
-        means: of each trial's course, shape (c,); squares: of the same, shape (c, c).
+        means: of each trial's course, shape (c,).
+        chances: of each of its courses or its mirror image, shape (m,).
         height: that would be likelier.
     """
 
     likelihood: float
     means: list[FloatArray]
-    squares: list[FloatArray]
+    chances: list[FloatArray]
     height: float
+
+
+@dataclass(frozen=True)
+class _Weighed:
+    """What variances alone make of a trial: the same in all steps between new ones.
+
+    Attributes:
+        precision: of the cells, shape (c, c); volume: logarithm of its determinant's root.
+        base: the precision by the base's columns, shape (c, b); courses: by those of the courses, shape (c, m).
+        sizes: of the courses, shape (m,).
+    """
+
+    precision: FloatArray
+    volume: float
+    base: FloatArray
+    courses: FloatArray
+    sizes: FloatArray
 
 
 def jumps_of(trials: Sequence[CellsOfTrial], variances: FloatArray) -> Jumps:
@@ -88,21 +106,23 @@ def jumps_of(trials: Sequence[CellsOfTrial], variances: FloatArray) -> Jumps:
         trials: their last component is left out.
         variances: of the others (k - 1,), likeliest where nothing jumps.
     """
-    alone = _without(trials, variances)
-    plain = _expected(trials, [_Courses(np.zeros((len(one.time_s), 1)), np.zeros(1)) for one in trials], alone)
+    straight = [_Courses(np.zeros((len(one.time_s), 1)), np.zeros(1)) for one in trials]
+    alone = _without(trials, straight, variances)
+    plain = _expected(trials, straight, _weighed(trials, straight, alone.variances), alone)
     courses = [_courses(one) for one in trials]
     left = np.concatenate(_left(trials, alone.coefficients))
     size = np.concatenate([one.size for one in trials])
     model = _Model(alone.variances, alone.coefficients, float(np.sqrt(left @ left / max(size @ size, TINY))))
     gained, expected = -np.inf, plain
     for _ in range(ROUNDS):
+        weighed = _weighed(trials, courses, model.variances)
         for _ in range(STEPS):
-            expected = _expected(trials, courses, model)
-            model = _likelier(trials, model, expected)
+            expected = _expected(trials, courses, weighed, model)
+            model = _likelier(trials, weighed, model, expected)
         before, gained = gained, 2.0 * (expected.likelihood - plain.likelihood)
         if gained - before < CONVERGED:
             break
-        model = _Model(_scattering(trials, model, expected), model.coefficients, model.height)
+        model = _Model(_scattering(trials, courses, model, expected), model.coefficients, model.height)
     found = [model.height * mean / one.size for mean, one in zip(expected.means, trials, strict=True)]
     return Jumps(gained, abs(model.height), found)
 
@@ -124,12 +144,14 @@ def _courses(trial: CellsOfTrial) -> _Courses:
     return _Courses(values * trial.size[:, None], likely - np.log(np.sum(np.exp(likely))))
 
 
-def _without(trials: Sequence[CellsOfTrial], variances: FloatArray) -> _Model:
-    """The likeliest model where nothing jumps."""
-    nothing = _Expected(0.0, [np.zeros(len(one.time_s)) for one in trials], [np.zeros((1, 1)) for _ in trials], 0.0)
-    model = _likelier(trials, _Model(variances, np.zeros(0), 0.0), nothing)
+def _without(trials: Sequence[CellsOfTrial], straight: Sequence[_Courses], variances: FloatArray) -> _Model:
+    """The likeliest model where nothing jumps, by courses that do not."""
+    nothing = _Expected(0.0, [np.zeros(len(one.time_s)) for one in trials], [np.ones(1) for _ in trials], 0.0)
+    model = _likelier(trials, _weighed(trials, straight, variances), _Model(variances, np.zeros(0), 0.0), nothing)
     for _ in range(2):
-        model = _likelier(trials, _Model(_scattering(trials, model, nothing), model.coefficients, 0.0), nothing)
+        scattering = _scattering(trials, straight, model, nothing)
+        weighed = _weighed(trials, straight, scattering)
+        model = _likelier(trials, weighed, _Model(scattering, model.coefficients, 0.0), nothing)
     return model
 
 
@@ -138,50 +160,60 @@ def _left(trials: Sequence[CellsOfTrial], coefficients: FloatArray) -> list[Floa
     return [one.part.residual - one.part.base @ coefficients for one in trials]
 
 
-def _precision(trial: CellsOfTrial, variances: FloatArray) -> tuple[FloatArray, float]:
-    """Of the cells (c, c), and the logarithm of its determinant's root."""
-    root = np.linalg.cholesky(np.tensordot(variances, trial.part.kernels[:-1], 1))
-    inverse = np.linalg.inv(root)
-    return inverse.T @ inverse, -float(np.sum(np.log(np.diag(root))))
+def _weighed(trials: Sequence[CellsOfTrial], courses: Sequence[_Courses], variances: FloatArray) -> list[_Weighed]:
+    """Each trial's base and courses by the precision that these variances have."""
+    found = []
+    for trial, own in zip(trials, courses, strict=True):
+        root = np.linalg.cholesky(np.tensordot(variances, trial.part.kernels[:-1], 1))
+        inverse = np.linalg.inv(root)
+        precision, volume = inverse.T @ inverse, -float(np.sum(np.log(np.diag(root))))
+        weighed = precision @ own.values
+        sizes = np.einsum("cm,cm->m", own.values, weighed)
+        found.append(_Weighed(precision, volume, precision @ trial.part.base, weighed, sizes))
+    return found
 
 
-def _expected(trials: Sequence[CellsOfTrial], courses: Sequence[_Courses], model: _Model) -> _Expected:
+def _expected(
+    trials: Sequence[CellsOfTrial], courses: Sequence[_Courses], weighed: Sequence[_Weighed], model: _Model
+) -> _Expected:
     """How likely each course is, by the residuals."""
     likelihood, along, power = 0.0, 0.0, 0.0
-    means, squares = [], []
-    for trial, own, left in zip(trials, courses, _left(trials, model.coefficients), strict=True):
-        precision, volume = _precision(trial, model.variances)
-        weighed = precision @ own.values
-        scores, sizes = left @ weighed, np.einsum("cm,cm->m", own.values, weighed)
+    means, all_chances = [], []
+    for own, by, left in zip(courses, weighed, _left(trials, model.coefficients), strict=True):
+        scores = left @ by.courses
         # a course and its mirror image
-        both = model.height * np.array([scores, -scores]) - 0.5 * model.height**2 * sizes + own.likely
+        both = model.height * np.array([scores, -scores]) - 0.5 * model.height**2 * by.sizes + own.likely
         most = float(both.max())
         chances = np.exp(both - most)
         sum_of = float(chances.sum())
         chances /= sum_of
-        likelihood += volume + most + float(np.log(0.5 * sum_of)) - 0.5 * float(left @ precision @ left)
+        likelihood += by.volume + most + float(np.log(0.5 * sum_of)) - 0.5 * float(left @ by.precision @ left)
         way, any_way = chances[0] - chances[1], chances[0] + chances[1]
         means.append(own.values @ way)
-        squares.append((own.values * any_way) @ own.values.T)
+        all_chances.append(any_way)
         along += float(scores @ way)
-        power += float(sizes @ any_way)
-    return _Expected(likelihood, means, squares, along / power if power > 0.0 else 0.0)
+        power += float(by.sizes @ any_way)
+    return _Expected(likelihood, means, all_chances, along / power if power > 0.0 else 0.0)
 
 
-def _likelier(trials: Sequence[CellsOfTrial], model: _Model, expected: _Expected) -> _Model:
+def _likelier(
+    trials: Sequence[CellsOfTrial], weighed: Sequence[_Weighed], model: _Model, expected: _Expected
+) -> _Model:
     """Coefficients by generalised least squares beside the expected courses, and the expected height."""
-    sides = [_precision(trial, model.variances)[0] @ trial.part.base for trial in trials]
-    normal = np.sum([side.T @ trial.part.base for side, trial in zip(sides, trials, strict=True)], axis=0)
+    normal = np.sum([by.base.T @ trial.part.base for by, trial in zip(weighed, trials, strict=True)], axis=0)
     left = [one.part.residual - expected.height * mean for one, mean in zip(trials, expected.means, strict=True)]
-    moment = np.sum([side.T @ own for side, own in zip(sides, left, strict=True)], axis=0)
+    moment = np.sum([by.base.T @ own for by, own in zip(weighed, left, strict=True)], axis=0)
     coefficients: FloatArray = np.linalg.pinv(normal, rcond=1e-10, hermitian=True) @ moment
     return _Model(model.variances, coefficients, expected.height)
 
 
-def _scattering(trials: Sequence[CellsOfTrial], model: _Model, expected: _Expected) -> FloatArray:
+def _scattering(
+    trials: Sequence[CellsOfTrial], courses: Sequence[_Courses], model: _Model, expected: _Expected
+) -> FloatArray:
     """Likelier variances of what scatters beside the expected courses."""
-    moments = []
-    for left, mean, square in zip(_left(trials, model.coefficients), expected.means, expected.squares, strict=True):
-        crossed = model.height * np.outer(left, mean)
-        moments.append(np.outer(left, left) - crossed - crossed.T + model.height**2 * square)
+    moments, left = [], _left(trials, model.coefficients)
+    for one, own, mean, chances in zip(left, courses, expected.means, expected.chances, strict=True):
+        crossed = model.height * np.outer(one, mean)
+        square = (own.values * chances) @ own.values.T
+        moments.append(np.outer(one, one) - crossed - crossed.T + model.height**2 * square)
     return likeliest_of_moments(moments, [one.part.kernels[:-1] for one in trials], model.variances)
