@@ -19,7 +19,14 @@ SHORT = {
     "chirp": {"duration_s": 2.0, "high_hz": 2.0},
     "multisine": {"tones": 3, "low_hz": 1.0, "high_hz": 3.0, "wave_s": 1.0, "waves": 1},
     "coast-down": {"speeds_rad_s": [2.0], "coast_s": 1.0},
-    "hold-and-soak": {"load_kg": 0.0, "hold_rad": 0.5, "soak_s": 2.0, "probe_every_s": 1.0},
+    "hold-and-soak": {
+        "load_kg": 0.0,
+        "hold_rad": 0.5,
+        "soak_s": 1.5,
+        "probe_every_s": 1.0,
+        "probe_rad": 0.2,
+        "probe_rad_s": 1.0,
+    },
     "waveform": {"csv": WAVEFORM},
 }
 CAMPAIGN = {
