@@ -30,7 +30,7 @@ from compensator.lab.screening.evidence import VERY_STRONG
 
 STEPS = 3.0  # per width of a line, so that none falls between two orders
 MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
-SLOW = 0.1  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
+SLOW = 0.02  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
 MOST_TURNED = np.pi / 4.0  # rad of phase: there force and friction share a ripple's power

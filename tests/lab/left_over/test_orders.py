@@ -111,6 +111,17 @@ def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
     assert found.order == pytest.approx(ORDER / (2.0 * np.pi), rel=0.02)
 
 
+def test_an_order_that_only_the_slowest_rows_show_is_told():
+    """Teeth and magnets go round so often that the filter takes them off all but the ends of strokes."""
+    gathered = with_noise(gather(fitted(lambda x: 8.0 * RIPPLE_N_M * np.cos(QUICK_ORDER * x.q))))
+    speed = np.abs(gathered.fit.dataset.rows_of([one.motion.velocity for one in gathered.fit.dataset.trials]))
+    assert QUICK_ORDER * np.quantile(speed[gathered.rows], 0.1) > 2.0 * np.pi * gathered.fit.dataset.cutoff_hz
+    found = line_in(gathered)
+    assert found is not None
+    assert found.order == pytest.approx(QUICK_ORDER, rel=0.02)
+
+
+QUICK_ORDER = 300.3
 SLOW_ORDER = 9.3  # that the filter passes in fast motion, too
 
 
