@@ -13,6 +13,7 @@ from compensator.lab.left_over.following import Following
 from compensator.lab.left_over.left_over import LeftOver
 from compensator.lab.left_over.orders import Line
 from compensator.lab.left_over.swinging import Swing
+from compensator.lab.left_over.varying import Varying
 from compensator.lab.left_over.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
@@ -115,6 +116,8 @@ def unexplained_in_words(
         how = f"it {swinging_in_words(left.swing)}"
     elif wanders:
         how = wanders
+    elif left.varying is not None and left.following is None:
+        how = f"it {varying_in_words(left.varying)}"
     elif driver is not None or left.following is not None:
         named = driver if left.following is None else left.following.driver
         how = f"it varies with {named}, most of all that is measured"
@@ -131,6 +134,11 @@ def recurring_in_words(line: Line, facts: Facts) -> str:
     per = "a turn of the joint" if facts.joint == "rotary" else f"per {facts.position_unit}"
     way = ", against the motion" if line.against_motion else ", and grows with the speed" if line.growing else ""
     return f"comes back with the position about {line.order:.3g} times {per}{way}: look at what goes round so often"
+
+
+def varying_in_words(varying: Varying) -> str:
+    """Whose coefficient is another one, and at what."""
+    return f"has the form of {varying.effect.lower()} that varies with {varying.condition}"
 
 
 def swinging_in_words(swing: Swing) -> str:
@@ -179,9 +187,12 @@ def still_bending_in_words(name: str) -> str:
     )
 
 
-def still_left_in_words(name: str, left: Line | Following, facts: Facts) -> str:
+def still_left_in_words(name: str, left: Line | Following | Varying, facts: Facts) -> str:
     """What an effect that is named explains some of, and another cause all of."""
-    how = recurring_in_words(left, facts) if isinstance(left, Line) else f"varies with {left.driver}"
+    if isinstance(left, Line):
+        how = recurring_in_words(left, facts)
+    else:
+        how = varying_in_words(left) if isinstance(left, Varying) else f"varies with {left.driver}"
     return (
         f"{name} describes it in part: beside it, what is left {how}; another cause, which the catalogue does not "
         "have, may explain both."

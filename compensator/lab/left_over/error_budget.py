@@ -24,6 +24,7 @@ class ErrorBudget:
         growing: it does so, and grows with the square of the speed, which nothing in a joint that lacks nothing does.
         following: it follows a variable that is measured, however little it is.
         following_far: it does so by more than any joint's own friction.
+        varying: a coefficient of friction is another one at another load, temperature or time of the session.
     """
 
     change: float
@@ -34,6 +35,7 @@ class ErrorBudget:
     growing: float
     following: float
     following_far: float
+    varying: float
 
     @property
     def whole(self) -> float:
@@ -42,12 +44,28 @@ class ErrorBudget:
 
 
 PLAIN = ErrorBudget(
-    change=1e-4, wandering=5e-4, swing=1e-4, ripple=1e-3, line=1e-6, growing=1e-4, following=1e-6, following_far=1e-5
+    change=1e-4,
+    wandering=5e-4,
+    swing=1e-4,
+    ripple=1e-3,
+    line=1e-6,
+    growing=1e-4,
+    following=1e-6,
+    following_far=1e-5,
+    varying=1e-4,
 )
 """Of a model that is what every joint has."""
 
 NAMED = ErrorBudget(
-    change=1e-4, wandering=1e-4, swing=1e-4, ripple=0.0, line=1e-6, growing=1e-4, following=1e-4, following_far=1e-4
+    change=1e-4,
+    wandering=1e-4,
+    swing=1e-4,
+    ripple=0.0,
+    line=1e-6,
+    growing=1e-4,
+    following=1e-4,
+    following_far=1e-4,
+    varying=1e-4,
 )
 """Of one with a further formula: though nearly right, it leaves some of friction. Lines and curves must be much beside
 the name as well, which those of complete joints never are; ripples are not asked for."""

@@ -11,6 +11,7 @@ from compensator.lab.left_over.orders import Line, contrary_of, growing_line_of,
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.left_over.ripple import ripple_of
 from compensator.lab.left_over.swinging import Swing, swing_of
+from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.left_over.wandering import Wandering, wandering_of
 from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fitted import Fit
@@ -35,6 +36,7 @@ class LeftOver:
         wandering: that dry friction is another one for seconds, however little; None where it is not for sure.
         line: that it comes back with the position; None where it does not for sure, or where it is not asked for.
         following: the variable that it follows; None likewise.
+        varying: the coefficient of friction that is another one at another load or temperature; None likewise.
     """
 
     remainder: Remainder
@@ -43,11 +45,12 @@ class LeftOver:
     wandering: Wandering | None = None
     line: Line | None = None
     following: Following | None = None
+    varying: Varying | None = None
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        found = (self.change, self.swing, self.wandering, self.line, self.following)
+        found = (self.change, self.swing, self.wandering, self.line, self.following, self.varying)
         return self.remainder.is_more_than_noise or any(one is not None for one in found)
 
 
@@ -79,7 +82,8 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, change, swing, wandering)
     swing = swing or ripple_of(in_motion)
     line = line_of(gathered, white) or growing_line_of(gathered, white, PLAIN.growing)
-    return LeftOver(remainder, change, swing, wandering, line, following_of(gathered, white))
+    varying = varying_of(gathered, white, PLAIN.varying)
+    return LeftOver(remainder, change, swing, wandering, line, following_of(gathered, white), varying)
 
 
 def _is_plain(fit: Fit) -> bool:
@@ -88,8 +92,8 @@ def _is_plain(fit: Fit) -> bool:
     return all(effect.name in plain or effect.pipeline for effect in fit.effects)
 
 
-def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line | Following | None:
-    """The line or curve that an effect which is named leaves, if it is much beside what the effect explains.
+def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line | Following | Varying | None:
+    """The line, curve or coefficient that an effect which is named leaves, if it is much beside what that explains.
 
     A formula of the right name, though it is not exact, leaves little of what it explains; one that imitates another
     cause leaves much.
@@ -111,6 +115,7 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
         follows,
         _growing(grown, white, named.block.name),
         growing_line_of(grown, white, NAMED.growing),
+        varying_of(grown, white, NAMED.varying),
     )
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None
