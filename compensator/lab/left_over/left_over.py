@@ -13,7 +13,7 @@ from compensator.lab.left_over.ripple import ripple_of
 from compensator.lab.left_over.swinging import Swing, swing_of
 from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.left_over.wandering import Wandering, wandering_of
-from compensator.lab.left_over.white_rows import WhiteRows
+from compensator.lab.left_over.white_rows import LOOK_AGAIN, WhiteRows
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.regimes import Regime
@@ -115,7 +115,7 @@ def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line |
         follows,
         _growing(grown, white, named.block.name),
         growing_line_of(grown, white, NAMED.growing),
-        varying_of(grown, white, NAMED.varying),
+        varying_of(grown, white, NAMED.varying, LOOK_AGAIN),
     )
     there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
     return there[0] if there else None

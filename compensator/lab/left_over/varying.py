@@ -6,6 +6,10 @@ Tibshirani 1993). Where a name imitates it in part, as warm-up does, no curve ov
 
 Loads, temperatures and times are of the trial, not of the motion, so that nothing of a reversal follows them. What the
 arm weighs is not asked: loads are not weighed so well.
+
+Friction of each trial is another one, and noise that is learnt without what follows a condition of the trials has
+hardly any of that: what is looked at again against such noise seems too sure. So nothing is where a model has all that
+every joint has, and nothing else speaks for a cause that it lacks; beside a name one is missing for sure.
 """
 
 from collections.abc import Callable
@@ -15,7 +19,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Motion
 from compensator.lab.left_over.following import is_large, new_columns
-from compensator.lab.left_over.white_rows import FORETOLD, LOOK_AGAIN, WhiteRows
+from compensator.lab.left_over.white_rows import FORETOLD, WhiteRows
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
@@ -50,7 +54,7 @@ class Varying:
         return self.chance <= most and self.foretold >= FORETOLD
 
 
-def varying_of(gathered: Candidates, white: WhiteRows, most: float, look_again: float = LOOK_AGAIN) -> Varying | None:
+def varying_of(gathered: Candidates, white: WhiteRows, most: float, look_again: float = 0.0) -> Varying | None:
     """The coefficient of friction that varies most surely; None where none does for sure, or by next to nothing.
 
     Args:

@@ -1,11 +1,14 @@
 """A coefficient of friction that varies is told, beside a name that imitates it, too; a load weighed wrongly is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.wording import still_left_in_words, unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.left_over import following, varying
+from compensator.lab.left_over import left_over as left_over_module
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import left_beside, left_over
 from compensator.lab.left_over.varying import Varying, varying_of
@@ -94,3 +97,11 @@ def test_it_does_not_hide_itself_in_noise_that_is_learnt_with_it():
     most = 0.5 * told.chance
     assert found(thinning(), most) is None
     assert found(thinning(), most, 2.0 * told.chance) is not None
+
+
+def test_in_a_model_that_lacks_nothing_for_sure_it_is_not_looked_at_again(monkeypatch):
+    told = found(thinning(), 1.0)
+    assert told is not None
+    monkeypatch.setattr(left_over_module, "PLAIN", replace(PLAIN, varying=0.5 * told.chance))
+    with withheld(["viscous_temperature"]):
+        assert left_over(with_noise(gather(thinning()))).varying is None
