@@ -45,6 +45,8 @@ def main() -> None:
     parser.add_argument("--most-s", type=float, default=600.0, help="of one core, that bam gets")
     parser.add_argument("--ours", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
+    if not (asked.checkout / "bam" / "model.py").is_file():
+        parser.error(f"{asked.checkout} holds no bam/model.py: clone https://github.com/Rhoban/bam and name its folder")
     if asked.ours:
         print(json.dumps(_ours(asked.recordings, asked.hold_out_kp)))
         return
