@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from compensator.interval import CONFIDENCE, Interval
-from compensator.kinetic_friction import FloatArray
+from compensator.motion.kinetic_friction import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

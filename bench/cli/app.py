@@ -6,34 +6,14 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from bench.cli import (
-    audit,
-    bench_report,
-    blind,
-    calibrate,
-    campaign,
-    challenge,
-    demo,
-    doctor,
-    effects,
-    experiments,
-    figures,
-    paper,
-    queue,
-    recordings,
-    rivals,
-    run,
-    serve,
-    service,
-    simulate_device,
-    study,
-    token,
-    trials,
-)
-from bench.cli import store as store_commands  # `store` is an option of every command
 from bench.cli.bench_session import BenchSession
+from bench.cli.evaluation import bench_report, blind, demo, figures, paper, rivals
 from bench.cli.exit_codes import HELP, errors_as_messages
+from bench.cli.lab import challenge, effects, study
+from bench.cli.operation import audit, calibrate, campaign, doctor, queue, run, serve, service, simulate_device, token
 from bench.cli.output import say
+from bench.cli.records import experiments, recordings, trials
+from bench.cli.records import store as store_commands  # `store` is an option of every command
 
 _ORDER = (
     "demo",
@@ -122,7 +102,7 @@ def options(
     """
     context.obj = BenchSession(config, store)
     if log:
-        from bench import event_log  # imported when needed: `--help` starts at once
+        from bench.runs import event_log  # imported when needed: `--help` starts at once
 
         event_log.begin(log)
 

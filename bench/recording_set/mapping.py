@@ -24,9 +24,9 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
+from bench.config.rig import Section
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.toml_file import parse_toml
-from bench.rig import Section
+from bench.recording_set.text.toml_file import parse_toml
 from compensator.lab.recordings.channels import CHANNELS, EVENT_COLUMN
 from compensator.lab.recordings.recording import Condition
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bench.recording_set import events as event_cells
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.stream import Piece, RecordingStream
+from bench.recording_set.text import events as event_cells
 from compensator.lab.recordings.channels import EVENT_COLUMN
 from compensator.lab.recordings.recording import Condition
 

@@ -5,16 +5,16 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.config.rig import Rig
 from bench.recording_set import known_conditions
 from bench.recording_set.container import Container, check_name, open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping
 from bench.recording_set.recording_csv import read_recording_csv
 from bench.recording_set.recording_set import RecordingSet
-from bench.recording_set.table import Table, place
-from bench.recording_set.toml_file import MOST_BYTES, parse_toml
+from bench.recording_set.text.table import Table, place
+from bench.recording_set.text.toml_file import MOST_BYTES, parse_toml
 from bench.recording_set.trials_csv import DEFAULT_KIND, TRIALS_FILE, TrialEntry, name_of, read_trials_csv
-from bench.rig import Rig
 from compensator.lab.recordings.recording import Recording
 
 RIG_FILE = "rig.toml"

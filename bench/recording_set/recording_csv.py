@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from bench.recording_set import events as event_cells
-from bench.recording_set import numbers
-from bench.recording_set.columns import Use, plan
 from bench.recording_set.mapping import Mapping
-from bench.recording_set.table import Chunk, Row, Table
+from bench.recording_set.text import events as event_cells
+from bench.recording_set.text import numbers
+from bench.recording_set.text.columns import Use, plan
+from bench.recording_set.text.table import Chunk, Row, Table
 from compensator.lab.recordings.recording import Event, FloatArray
 
 MOST_ROWS = 50_000_000

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from bench.rig import Rig
+from bench.config.rig import Rig
 from compensator.lab.recordings.recording import Recording
 
 

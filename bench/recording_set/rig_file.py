@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from bench.config.rig import Rig
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.toml_file import parse_toml
-from bench.rig import Rig
+from bench.recording_set.text.toml_file import parse_toml
 
 
 def read_rig(path: Path) -> Rig:

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bench.recording_set import known_conditions, values
+from bench.recording_set import known_conditions
 from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Column, Mapping
-from bench.recording_set.table import Row, Table, quoted
+from bench.recording_set.text import values
+from bench.recording_set.text.table import Row, Table, quoted
 from compensator.lab.recordings.recording import Condition
 
 TRIALS_FILE = "trials.csv"

@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 
-from bench.store import samples, trials
-from bench.store.conditions import Wanted
-from bench.store.custody import Custody
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
 from bench.store.records import Condition, Event, Trial
-from bench.store.reduction import MIN_POINTS
+from bench.store.tables import samples, trials
+from bench.store.tables.conditions import Wanted
+from bench.store.tables.reduction import MIN_POINTS
+from bench.store.tables.window import Stretch, reduced
 from bench.store.trial_writer import TrialWriter
-from bench.store.window import Stretch, reduced
+from bench.store.upkeep.custody import Custody
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 

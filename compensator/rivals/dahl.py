@@ -9,7 +9,7 @@ P. R. Dahl, "Solid friction damping of mechanical vibrations", AIAA Journal 14 (
 from math import copysign, exp
 from typing import NamedTuple
 
-from compensator.load_estimate import LoadEstimate, Observation
+from compensator.motion.load_estimate import LoadEstimate, Observation
 from compensator.rivals.measured_speed import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from compensator.load_estimate import EstimatorSettings
+from compensator.motion.load_estimate import EstimatorSettings
 
 READINGS = 5
 

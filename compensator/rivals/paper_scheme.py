@@ -9,7 +9,7 @@ Between these the last estimate is held. No inertia: accelerated motion is the p
 from math import copysign, nan
 from typing import NamedTuple
 
-from compensator.load_estimate import LoadEstimate, Observation
+from compensator.motion.load_estimate import LoadEstimate, Observation
 from compensator.rivals.measured_speed import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 

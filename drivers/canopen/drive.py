@@ -2,15 +2,15 @@
 
 from contextlib import suppress
 
-from drivers.canopen.demand import Demand
+from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.period import check_bus_load, check_period
+from drivers.canopen.cia301.sync_cycle import CycleCounts
+from drivers.canopen.cia402.demand import Demand
+from drivers.canopen.cia402.power_stage import PowerStage
+from drivers.canopen.cia402.state_machine import State, status_of, towards_standstill
 from drivers.canopen.description import describe
-from drivers.canopen.link import CanLink
-from drivers.canopen.period import check_bus_load, check_period
-from drivers.canopen.power_stage import PowerStage
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
-from drivers.canopen.state_machine import State, status_of, towards_standstill
-from drivers.canopen.sync_cycle import CycleCounts
 from drivers.contract import Command, Description, Mode, Sample, Status
 from drivers.demand import check_mode
 from drivers.errors import DriveError, DriveFault

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from bench.clock import VirtualClock
-from bench.drive_factory import make_equipment
+from bench.control.clock import VirtualClock
+from bench.control.drive_factory import make_equipment
+from bench.control.limits import Guard
+from bench.control.loop import RECORDED, ControlLoop
+from bench.control.servo import CurrentServo
+from bench.control.stop_request import StopRequest
 from bench.experiments.registry import FinishedTrial, find_kind, parse_parameters
-from bench.limits import Guard
-from bench.loop import RECORDED, ControlLoop
-from bench.servo import CurrentServo
-from bench.stop_request import StopRequest
 from tests.bench.fake_drive import ListSink
 
 

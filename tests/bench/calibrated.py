@@ -1,8 +1,8 @@
 """The paper's bench with what a calibration of it told: made once with the simulated drive, rounded."""
 
-from bench.configuration import default_configuration
-from bench.friction import FrictionCurve, FrictionSettings
-from bench.rest import RestSettings
+from bench.config.configuration import default_configuration
+from bench.config.friction_curves import FrictionCurve, FrictionSettings
+from bench.config.rest_knowledge import RestSettings
 
 CURVES = tuple(
     FrictionCurve(

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from math import copysign, nan, sin
 
-from bench.rig import Arm, Gear, Motor, Rig, Sensor, Supply
+from bench.config.rig import Arm, Gear, Motor, Rig, Sensor, Supply
 from drivers.contract import Command, Description, Mode, Sample, Status
 from drivers.errors import DriveStateError
 

@@ -1,6 +1,6 @@
 """The bench of the paper, with another plant behind its drive."""
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 
 
 def bench_with(seed=1, **plant):

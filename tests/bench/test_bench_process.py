@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.bench_process import RemoteRunner, process
-from bench.bench_process.errors import BenchProcessError
-from bench.bench_process.failures import error_of, failure_of
-from bench.bench_process.stop_line import LineStop, StopLine
-from bench.configuration import BenchConfiguration, default_configuration
+from bench.config.configuration import BenchConfiguration, default_configuration
+from bench.control.loop import RECORDED
 from bench.errors import BusyError, LimitError, ParameterError, PromptError, UnknownKindError
-from bench.loop import RECORDED
-from bench.runner import Runner
+from bench.runs.bench_process import RemoteRunner, process
+from bench.runs.bench_process.errors import BenchProcessError
+from bench.runs.bench_process.failures import error_of, failure_of
+from bench.runs.bench_process.stop_line import LineStop, StopLine
+from bench.runs.runner import Runner
 from bench.store import Store
 from bench.store.errors import StoreFileError
 from drivers.errors import DriveConnectionError
@@ -204,7 +204,7 @@ def test_sigterm_to_the_bench_process_stops_the_joint_first(runner, store):
 SERVICE = """
 import sys, time
 from pathlib import Path
-from bench.bench_process import RemoteRunner
+from bench.runs.bench_process import RemoteRunner
 from bench.store import Store
 from tests.bench.test_bench_process import configured
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
+from bench.config.rig import Arm
 from bench.errors import ConfigurationError, LimitError
+from bench.experiments.parts.slip import comparing_cycles, slip_index
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.experiments.slip import comparing_cycles, slip_index
-from bench.rig import Arm
 from tests.bench.bench_run import Ran
 from tests.bench.plants import bench_with
 

@@ -2,7 +2,7 @@
 
 import time
 
-from bench.clock import VirtualClock, WallClock
+from bench.control.clock import VirtualClock, WallClock
 
 
 def test_the_virtual_clock_never_waits():

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from bench import cluster
-from bench.cluster import ClusterError
-from bench.over_cores import as_they_end, over_cores
+from bench.parallel import cluster
+from bench.parallel.cluster import ClusterError
+from bench.parallel.over_cores import as_they_end, over_cores
 from bench.store import Store
 from bench.study import create_study
 from bench.study.diagnose_many import diagnose_many

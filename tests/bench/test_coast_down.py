@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from bench.errors import LimitError
-from bench.experiments.coast_fit import fit_coast
+from bench.experiments.analysis.coast_fit import fit_coast
 from bench.experiments.registry import find_kind, parse_parameters
 from tests.bench.bench_run import Ran
 from tests.bench.plants import bench_with, dry_plant

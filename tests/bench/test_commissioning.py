@@ -2,14 +2,14 @@
 
 import pytest
 
-from bench import station
-from bench.commissioned import fingerprint
-from bench.configuration import default_configuration, parse_configuration
-from bench.cycle import Reading
-from bench.drive_factory import Equipment
+from bench.config.configuration import default_configuration, parse_configuration
+from bench.control import station
+from bench.control.commissioned import fingerprint
+from bench.control.cycle import Reading
+from bench.control.drive_factory import Equipment
 from bench.errors import LimitError, NotCommissionedError
-from bench.experiments.commissioning_checks import Push, findings
-from bench.runner import Runner
+from bench.experiments.analysis.commissioning_checks import Push, findings
+from bench.runs.runner import Runner
 from bench.store import Store
 from drivers.contract import Sample, Status
 from tests.bench.bench_run import Ran

@@ -2,10 +2,15 @@
 
 import pytest
 
-from bench.configuration import default_configuration, parse_configuration, preset_configuration, read_configuration
-from bench.drive_factory import make_equipment
+from bench.config.configuration import (
+    default_configuration,
+    parse_configuration,
+    preset_configuration,
+    read_configuration,
+)
+from bench.config.quantities import unit_of
+from bench.control.drive_factory import make_equipment
 from bench.errors import ConfigurationError
-from bench.quantities import unit_of
 from tests.paths import EXAMPLES
 
 

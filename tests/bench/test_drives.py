@@ -2,10 +2,10 @@
 
 import pytest
 
-from bench.configuration import default_configuration, parse_configuration
-from bench.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
+from bench.config.configuration import default_configuration, parse_configuration
+from bench.control.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
+from bench.control.technician import PersonTechnician
 from bench.errors import ConfigurationError, ExperimentError
-from bench.technician import PersonTechnician
 from drivers.errors import DriveConnectionError
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 

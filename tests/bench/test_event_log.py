@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from bench import event_log, presets
+from bench import presets
 from bench.errors import ConfigurationError
-from bench.event_log import JsonLine
+from bench.runs import event_log
+from bench.runs.event_log import JsonLine
 
 
 def lines_of(file: Path) -> list[dict[str, object]]:

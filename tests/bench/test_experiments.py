@@ -6,13 +6,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
+from bench.config.quantities import unit_of
+from bench.config.reflected_load import reflected_load_kg
+from bench.config.rest_knowledge import RestSettings
+from bench.config.rig import Arm, Gear, Motor, Rig
 from bench.errors import ConfigurationError, LimitError, ParameterError, UnknownKindError
 from bench.experiments.registry import KINDS, find_kind, parse_parameters
-from bench.quantities import unit_of
-from bench.reflected_load import reflected_load_kg
-from bench.rest import RestSettings
-from bench.rig import Arm, Gear, Motor, Rig
 from tests.bench.bench_run import Ran
 
 CONFIGURATION = default_configuration()

@@ -4,10 +4,10 @@ import time
 
 import pytest
 
-from bench.configuration import parse_configuration, read_configuration
-from bench.drive_factory import make_equipment
+from bench.config.configuration import parse_configuration, read_configuration
+from bench.control.drive_factory import make_equipment
 from bench.errors import ConfigurationError
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from bench.store import Store
 from drivers.contract import Command, Mode, Status
 from tests.bench.bench_run import Ran

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
+from bench.config.reflected_load import load_current_a
 from bench.errors import ConfigurationError, LimitError, ParameterError
-from bench.experiments.load_follower import joint_model
+from bench.experiments.kinds.steady_speeds import run_up, run_up_s
+from bench.experiments.parts.load_follower import joint_model
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.experiments.steady_speeds import run_up, run_up_s
-from bench.reflected_load import load_current_a
 from tests.bench.bench_run import Ran
 from tests.bench.calibrated import calibrated_configuration
 

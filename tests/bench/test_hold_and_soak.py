@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from bench.errors import LimitError, ParameterError
-from bench.experiments.hold_and_soak import HoldAndSoakParameters
+from bench.experiments.kinds.hold_and_soak import HoldAndSoakParameters
 from bench.experiments.registry import find_kind, parse_parameters
 from tests.bench.bench_run import Ran
 from tests.bench.plants import bench_with

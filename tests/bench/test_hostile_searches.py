@@ -6,13 +6,13 @@ from math import isfinite, nan, pi, sin
 
 import pytest
 
-from bench import station
-from bench.configuration import default_configuration
-from bench.drive_factory import Equipment, make_equipment
+from bench.config.configuration import default_configuration
+from bench.control import station
+from bench.control.drive_factory import Equipment, make_equipment
 from bench.recording_set.transfer import export_experiment
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from bench.store import Store
-from compensator.zero_speed_search import Reason
+from compensator.rest.zero_speed_search import Reason
 from drivers.contract import Mode
 from tests.bench.calibrated import calibrated_configuration
 

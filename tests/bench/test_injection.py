@@ -5,13 +5,13 @@ import re
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from bench.errors import LimitError, ParameterError
-from bench.experiments.chirp import ChirpParameters, chirp
-from bench.experiments.multisine import MultisineParameters, frequencies_hz, multisine
-from bench.experiments.refusal import refuse_modes
+from bench.experiments.kinds.chirp import ChirpParameters, chirp
+from bench.experiments.kinds.multisine import MultisineParameters, frequencies_hz, multisine
+from bench.experiments.parts.refusal import refuse_modes
+from bench.experiments.parts.waveform_csv import read_waveform
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.experiments.waveform_csv import read_waveform
 from drivers.contract import Mode
 from tests.bench.bench_run import Ran
 from tests.bench.fake_drive import FakeDrive

@@ -1,14 +1,14 @@
 """A host that is late: a limit that trips for it says so, and braking lasts as long as it is given."""
 
-from bench.clock import VirtualClock
-from bench.configuration import default_configuration
-from bench.drive_factory import make_equipment
-from bench.experiments.chirp import KIND, ChirpParameters
-from bench.late_cycles import BRAKING_S, LateCycles
-from bench.limits import Guard, Limits
-from bench.loop import Action, ControlLoop, Outcome
-from bench.servo import current_servo
-from bench.stop_request import StopRequest
+from bench.config.configuration import default_configuration
+from bench.control.clock import VirtualClock
+from bench.control.drive_factory import make_equipment
+from bench.control.late_cycles import BRAKING_S, LateCycles
+from bench.control.limits import Guard, Limits
+from bench.control.loop import Action, ControlLoop, Outcome
+from bench.control.servo import current_servo
+from bench.control.stop_request import StopRequest
+from bench.experiments.kinds.chirp import KIND, ChirpParameters
 from drivers.contract import Command, Mode, Status
 from tests.bench.fake_drive import RIG, FakeDrive, ListSink
 

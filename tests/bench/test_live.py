@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench.live import LiveBuffer
+from bench.runs.live import LiveBuffer
 
 
 def block(first, count):

@@ -7,11 +7,11 @@ from math import nan
 import numpy as np
 import pytest
 
-from bench.clock import VirtualClock
-from bench.limits import Guard, Limits
-from bench.loop import OFF, RECORDED, Action, ControlLoop, Outcome
-from bench.servo import CurrentServo
-from bench.stop_request import StopRequest
+from bench.control.clock import VirtualClock
+from bench.control.limits import Guard, Limits
+from bench.control.loop import OFF, RECORDED, Action, ControlLoop, Outcome
+from bench.control.servo import CurrentServo
+from bench.control.stop_request import StopRequest
 from compensator.lab.recordings.channels import CHANNELS
 from drivers.contract import Ages, Command, Mode, Status
 from drivers.errors import DriveFault

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.experiments.profile import Trapezoid
-from bench.experiments.waveforms import WAVEFORMS, sampled
+from bench.experiments.parts.profile import Trapezoid
+from bench.experiments.parts.waveforms import WAVEFORMS, sampled
 
 
 def test_a_long_move_by_hand():

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from bench.over_cores import over_cores
+from bench.parallel.over_cores import over_cores
 
 
 def _squared(item):

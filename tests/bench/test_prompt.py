@@ -5,14 +5,14 @@ import time
 
 import pytest
 
-from bench import station
-from bench.configuration import default_configuration
-from bench.drive_factory import Equipment
+from bench.config.configuration import default_configuration
+from bench.control import station
+from bench.control.drive_factory import Equipment
+from bench.control.prompt import PromptDesk
+from bench.control.technician import PersonTechnician
 from bench.errors import PromptError
-from bench.prompt import PromptDesk
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from bench.store import Store
-from bench.technician import PersonTechnician
 from tests.bench.fake_drive import FakeDrive
 
 

@@ -7,8 +7,8 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
+from bench.control.recorder import Recorder
 from bench.errors import RecordingError
-from bench.recorder import Recorder
 from tests.bench.fake_drive import ListSink
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from bench.errors import LimitError
 from bench.experiments.registry import find_kind, parse_parameters
 from tests.bench.bench_run import Ran

@@ -6,12 +6,12 @@ import time
 import numpy as np
 import pytest
 
-from bench import station
-from bench.configuration import default_configuration
-from bench.drive_factory import Equipment
+from bench.config.configuration import default_configuration
+from bench.control import station
+from bench.control.drive_factory import Equipment
+from bench.control.loop import RECORDED
 from bench.errors import BusyError, ConfigurationError, LimitError, ParameterError, UnknownKindError
-from bench.loop import RECORDED
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from bench.store import Store
 from bench.store.errors import StoreFullError
 from bench.store.sqlite import Sqlite

@@ -5,7 +5,7 @@ from math import exp, nan
 import numpy as np
 import pytest
 
-from bench.experiments.saturation import (
+from bench.experiments.analysis.saturation import (
     ARRIVED,
     Ending,
     Stroke,

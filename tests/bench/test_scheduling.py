@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from bench import scheduling
+from bench.control import scheduling
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "sched_setscheduler"), reason="scheduling of Linux")
 

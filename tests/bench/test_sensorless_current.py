@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
-from bench.drives.simulated import SimulatedDriveSettings
-from compensator import motor
-from compensator.motor import MotorConstants
+from bench.config.configuration import default_configuration
+from bench.config.drives.simulated import SimulatedDriveSettings
+from compensator.motor import dc_motor as motor
+from compensator.motor.dc_motor import MotorConstants
 from tests.bench.bench_run import Ran
 
 WARM = {

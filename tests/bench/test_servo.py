@@ -5,12 +5,12 @@ from math import nan
 
 import pytest
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
+from bench.config.rig import Gear, Motor, Rig
+from bench.control.loop import Reading
+from bench.control.servo import CurrentServo, PositionServo, ServoSettings, current_servo
 from bench.errors import ConfigurationError
-from bench.experiments.joint import Joint
-from bench.loop import Reading
-from bench.rig import Gear, Motor, Rig
-from bench.servo import CurrentServo, PositionServo, ServoSettings, current_servo
+from bench.experiments.parts.joint import Joint
 from drivers.contract import Command, Mode, Sample, Status
 from tests.bench.fake_drive import RIG
 

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from bench import session
-from bench.configuration import default_configuration
-from bench.runner import Runner
-from bench.session import PAGE, Session, session_start
+from bench.config.configuration import default_configuration
+from bench.runs import session
+from bench.runs.runner import Runner
+from bench.runs.session import PAGE, Session, session_start
 from bench.store import Store
 
 NOW = datetime(2026, 3, 1, 12, tzinfo=UTC)

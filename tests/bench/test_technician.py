@@ -2,8 +2,8 @@
 
 import pytest
 
+from bench.control.technician import PersonTechnician, SimulatedTechnician
 from bench.errors import ExperimentError
-from bench.technician import PersonTechnician, SimulatedTechnician
 from tests.bench.fake_drive import FakeDrive
 
 

@@ -5,9 +5,9 @@ from math import inf, nan
 
 import pytest
 
+from bench.control.servo import ServoSettings, check_modes
+from bench.control.timing import check_timing
 from bench.errors import ConfigurationError
-from bench.servo import ServoSettings, check_modes
-from bench.timing import check_timing
 from drivers.contract import Mode
 from tests.bench.fake_drive import FakeDrive
 

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from bench.service.roles import Role
-from bench.service.tokens import digest_of, make_token
+from bench.service.auth.roles import Role
+from bench.service.auth.tokens import digest_of, make_token
 from tests.service.running_service import running_service
 
 pytestmark = pytest.mark.browser

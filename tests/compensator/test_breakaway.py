@@ -2,8 +2,8 @@
 
 import pytest
 
-from compensator import breakaway
 from compensator.errors import ModelParameterError
+from compensator.rest import breakaway
 
 
 def test_by_hand():

@@ -6,14 +6,14 @@ from math import nan
 import numpy as np
 import pytest
 
-from bench.clock import VirtualClock
-from bench.cycle import OFF, Action
-from bench.limits import Guard, Limits
-from bench.pair.cycle import PAIR_RECORDED, PairAction, Reach, Truth
-from bench.pair.joint import PairJoint
-from bench.pair.loop import PairLoop
-from bench.servo import CurrentServo
-from bench.stop_request import StopRequest
+from bench.control.clock import VirtualClock
+from bench.control.cycle import OFF, Action
+from bench.control.limits import Guard, Limits
+from bench.control.pair.cycle import PAIR_RECORDED, PairAction, Reach, Truth
+from bench.control.pair.joint import PairJoint
+from bench.control.pair.loop import PairLoop
+from bench.control.servo import CurrentServo
+from bench.control.stop_request import StopRequest
 from compensator.lab.recordings.channels import CHANNELS
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration, parse_configuration
-from bench.drives.simulated import SimulatedDriveSettings
+from bench.config.configuration import default_configuration, parse_configuration
+from bench.config.drives.simulated import SimulatedDriveSettings
+from bench.control.pair.cycle import PAIR_RECORDED
 from bench.errors import BenchError, ConfigurationError, LimitError
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.pair.cycle import PAIR_RECORDED
 from bench.recording_set import export_experiment, read_recording_set
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from bench.store import Store
 from tests.bench.calibrated import calibrated_configuration
 

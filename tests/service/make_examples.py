@@ -1,5 +1,5 @@
 """The examples in the interface's description: `python -m tests.service.make_examples` asks every route, and keeps
-what was answered in bench/service/examples.json. To be run again where an answer has changed; a test says where.
+what was answered in bench/service/http/examples.json. To be run again where an answer has changed; a test says where.
 """
 
 import json
@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from bench.challenge import difficulty
-from bench.challenge.difficulty import Difficulty
-from bench.service.examples import FILE, key
+from bench.evaluation.challenge import difficulty
+from bench.evaluation.challenge.difficulty import Difficulty
+from bench.service.http.examples import FILE, key
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
 from tests.service.running_service import RunningService, running_service

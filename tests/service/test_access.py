@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from bench.errors import ConfigurationError
-from bench.service.access import check_bind
+from bench.service.auth.access import check_bind
 from bench.service.server import Address, listen
 from tests.service.running_service import TOKEN, running_service
 

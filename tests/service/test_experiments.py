@@ -8,9 +8,9 @@ from threading import Event
 import httpx
 import pytest
 
-from bench import station
-from bench.drive_factory import Equipment
-from bench.technician import PersonTechnician
+from bench.control import station
+from bench.control.drive_factory import Equipment
+from bench.control.technician import PersonTechnician
 from tests.bench.fake_drive import FakeDrive
 
 

@@ -7,8 +7,8 @@ import httpx
 import jsonschema_rs
 import pytest
 
-from bench.figures import trials as figures
-from bench.paper.measurements import Plan
+from bench.evaluation.figures import trials as figures
+from bench.evaluation.paper.measurements import Plan
 from compensator.lab.effects.catalogue import catalogue
 
 

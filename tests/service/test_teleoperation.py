@@ -1,6 +1,6 @@
 """Teleoperation over REST."""
 
-from bench.pair.cycle import PAIR_RECORDED
+from bench.control.pair.cycle import PAIR_RECORDED
 from tests.bench.calibrated import calibrated_configuration
 from tests.service.running_service import running_service
 

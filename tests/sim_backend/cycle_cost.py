@@ -12,17 +12,17 @@ from functools import partial
 from time import process_time, thread_time
 from typing import Any, NamedTuple
 
-from bench.clock import VirtualClock
-from bench.configuration import BenchConfiguration, default_configuration
-from bench.cycle import Action, Procedure, Reading
-from bench.demo.bench import run_experiment
-from bench.drive_factory import Equipment, make_equipment
+from bench.config.configuration import BenchConfiguration, default_configuration
+from bench.control.clock import VirtualClock
+from bench.control.cycle import Action, Procedure, Reading
+from bench.control.drive_factory import Equipment, make_equipment
+from bench.control.limits import Guard
+from bench.control.loop import ControlLoop
+from bench.control.servo import current_servo
+from bench.control.stop_request import StopRequest
+from bench.evaluation.demo.bench import run_experiment
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.limits import Guard
-from bench.loop import ControlLoop
-from bench.servo import current_servo
-from bench.stop_request import StopRequest
 from bench.store import Store
 from drivers.contract import Command, Drive, Sample
 

@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from sqlalchemy import insert
 
-from bench.cycle import RECORDED
+from bench.control.cycle import RECORDED
 from bench.store import Store, TrialWriter
-from bench.store.experiments import now
 from bench.store.schema import TRIAL, TRIAL_CONDITION
+from bench.store.tables.experiments import now
 
 CHANNELS = RECORDED[:10]
 APPENDED_ROWS = 32_768

@@ -9,9 +9,9 @@ from sqlalchemy import text, update
 
 from bench.store import Store
 from bench.store.errors import StoreFileError, StoreFullError, StoreStateError
-from bench.store.retention import Policy
 from bench.store.schema import EXPERIMENT
-from bench.store.space import SpaceNeed
+from bench.store.upkeep.retention import Policy
+from bench.store.upkeep.space import SpaceNeed
 from tests.databases import PostgresqlServer
 from tests.store.examples import begin, begin_trial, rows
 from tests.store.freeze import fill

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from bench.rig import Rig
-from bench.service.json_numbers import plain
-from bench.service.study_models import Comparison
+from bench.config.rig import Rig
+from bench.service.http.json_numbers import plain
+from bench.service.models.study_models import Comparison
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study import compare, create_study, describe, diagnose, list_studies

@@ -7,12 +7,12 @@ from functools import partial
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from bench.clock import Clock, VirtualClock, WallClock
-from bench.configuration import BenchConfiguration, default_configuration, parse_configuration
-from bench.drive_factory import make_equipment
-from bench.limits import Guard
-from bench.loop import ControlLoop, Outcome
-from bench.servo import current_servo
+from bench.config.configuration import BenchConfiguration, default_configuration, parse_configuration
+from bench.control.clock import Clock, VirtualClock, WallClock
+from bench.control.drive_factory import make_equipment
+from bench.control.limits import Guard
+from bench.control.loop import ControlLoop, Outcome
+from bench.control.servo import current_servo
 from drivers.contract import Drive
 from tests.bench.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
