@@ -65,7 +65,8 @@ export function messageOf(stop, { status, fresh, heard_ms, now_ms }) {
   if (!stop) return null;
   const newer = fresh && heard_ms > stop.at_ms;
   const run = status?.run;
-  if (newer && status.state === "running" && run.experiment_id !== stop.experiment_id) return null; // something else runs by now
+  const another = stop.experiment_id !== undefined && run?.experiment_id != null && run.experiment_id !== stop.experiment_id;
+  if (newer && status.state === "running" && another) return null;
   if (stop.phase === "confirmed") return now_ms - stop.at_ms > SHOWN_MS ? null : stop;
   const over = newer && status.state === "idle" && run?.power_off !== "failed";
   return stop.phase !== "asking" && over ? null : stop;

@@ -16,7 +16,8 @@ export function stopButton(button, answer, state) {
   const stop = async () => {
     asked += 1;
     const mine = asked; // a second press begins anew; what the first one finds is of no interest any more
-    const experiment_id = state.live.status?.run?.experiment_id ?? null;
+    const run = state.live.status?.run;
+    const experiment_id = run ? run.experiment_id ?? undefined : null; // undefined: it runs, and has no number yet
     const tell = (phase, text) => { if (mine === asked) state.stop = { phase, text, experiment_id }; };
     tell("asking", "Stopping …");
     const accepted = await ask(tell, () => mine === asked);
