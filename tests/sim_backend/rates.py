@@ -45,7 +45,7 @@ FIRST_CALL = """
 from time import perf_counter
 began = perf_counter()
 from drivers.contract import Command, Mode
-from sim_backend import presets
+from sim_backend.plant import presets
 from sim_backend.drive.simulated_drive import SimulatedDrive
 drive = SimulatedDrive(presets.paper())
 drive.open(0.005)
