@@ -20,7 +20,7 @@ from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
 from bench.control.servo import current_servo
 from bench.control.stop_request import StopRequest
-from bench.evaluation.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.store import Store

@@ -19,7 +19,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from bench.evaluation.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.store import Store
 from drivers.contract import Command, Mode
 from sim_backend.drive.simulated_drive import SimulatedDrive
