@@ -4,12 +4,12 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from bench.config.drives.faults import AnyFault
+from bench.config.drives.kind import DriveSettings
 from bench.config.quantities import quantity
-from bench.config.rig import Section
+from bench.drives.sim.faults import AnyFault
 
 
-class SimulatedDriveSettings(Section):
+class SimulatedDriveSettings(DriveSettings):
     """A drive and a joint in software."""
 
     kind: Literal["sim"] = "sim"
