@@ -15,8 +15,8 @@ Section = dict[str, str | int | float]
 
 app = typer.Typer(
     no_args_is_help=True,
-    help="A drive in software that speaks its wire protocol, with a simulated joint on it. Start it in one terminal, "
-    "paste the section that it prints into bench.toml, and run the bench in another.",
+    help="A drive in software that speaks its wire protocol, with a simulated joint on it.\n\n"
+    "Start it in one terminal, paste the section that it prints into bench.toml, and run the bench in another.",
 )
 
 Baud = Annotated[int, typer.Option(min=0, help="Pace of the line in bits a second; 0 is as fast as the machine.")]
