@@ -219,4 +219,4 @@ def report(kind: str) -> Iterator[str]:
 if __name__ == "__main__":
     for kind_name in sys.argv[1:] or KINDS:
         for line in report(kind_name):
-            print(line, flush=True)  # noqa: T201
+            print(line, flush=True)
