@@ -17,7 +17,7 @@ FAST = Plan("fast", [(1.2, 0.9, 0.3)], load_kg=0.1)  # up to eleven counts a sam
 
 
 def ramp(speed_rad_s):
-    """A trial that moves at one speed, and steps over several counts at a time, of which it never shows a single one."""
+    """A trial that moves at one speed, in steps of several counts, and never shows a single one."""
     (one,) = recordings(bench=BENCH, trials=[SLOW], seed=3)
     position = COUNT_RAD * np.round(speed_rad_s * one.channels["time_s"] / COUNT_RAD)
     return replace(one, name=f"ramp {speed_rad_s}", channels={**one.channels, "position_rad": position})
