@@ -63,6 +63,7 @@ def bench(asking: Asking, service: RunningService) -> None:
     ask("GET /lease")
     service.client.delete("/lease")
     ask("GET /experiment-kinds")
+    ask("GET /channels")
     ask("POST /experiments/plan", STEPS)
     ask("POST /experiments", STEPS | {"pace": "real-time"})
     wait_for(lambda: len(service.runner.live().rows) > 20)

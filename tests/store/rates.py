@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from sqlalchemy import insert
 
-from bench.control.cycle import RECORDED
+from bench.config.channels import RECORDED
 from bench.store import Store, TrialWriter
 from bench.store.schema import TRIAL, TRIAL_CONDITION
 from bench.store.tables.experiments import now

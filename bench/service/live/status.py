@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
-from bench.control.loop import Reading
+from bench.control.cycle import Reading
 from bench.runs.runner import RunnerStatus
 from bench.service.http.json_numbers import plain
 from bench.service.routes.leases import LeaseNow
