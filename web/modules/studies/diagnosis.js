@@ -20,7 +20,7 @@ export async function diagnosis(place, found, add) {
   replace(place, h("p", { class: "sentence", role: "status" }, found.sentence),
     found.data_problems.filter((problem) => !found.sentence.includes(problem)).map((problem) => h("div", { class: "problem" }, problem)),
     found.notes.filter((note) => !NOT_JUDGED.test(note)).map((note) => h("p", { class: "soft" }, note)),
-    found.classes.map(className), curve, named, first.some((one) => !one.in_class) && h("h3", {}, found.classes.length ? "Less likely" : "Tested"), others,
+    found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
     found.ranking.length > SHOWN && more,
     notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map((note) => h("p", { class: "soft" }, note))));
   if (curve) await provisional(curve, found.provisional, add);
@@ -29,6 +29,11 @@ export async function diagnosis(place, found, add) {
     const rest = more.querySelector(".cards");
     if (more.open && !rest.children.length) for (const one of found.ranking.slice(SHOWN)) await card(rest, one, add);
   });
+}
+
+// what is named comes first; where nothing is, what was tested is shown at once
+function folded(found, others) {
+  return h("details", { open: !found.classes.length }, h("summary", {}, found.classes.length ? "Less likely" : "Tested"), others);
 }
 
 function className(one) {
