@@ -6,9 +6,10 @@ from bench.config.channels import known_to_lab
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
 from bench.store.records import Condition, Event, Trial
-from bench.store.tables import samples, trials
+from bench.store.tables import samples, trial_search, trials
 from bench.store.tables.conditions import Wanted
 from bench.store.tables.reduction import MIN_POINTS
+from bench.store.tables.trial_search import TrialQuery
 from bench.store.tables.window import Stretch, reduced
 from bench.store.trial_writer import TrialWriter
 from bench.store.upkeep.custody import Custody
@@ -70,6 +71,17 @@ class TrialStore:
             wanted = conditions or {}
             found = trials.find(connection, experiment_id, kind, outcome, source, wanted, limit, offset)
         return list(map(self.custody.as_ended, found))
+
+    def search_trials(self, wanted: TrialQuery, limit: int, offset: int = 0) -> tuple[list[Trial], int]:
+        """One page of the trials that are looked for, sorted, and how many there are in all.
+
+        Raises:
+            StoreValueError: an unknown order, or too many words.
+        """
+        with self._database.reading() as connection:
+            ids, count = trial_search.search(connection, wanted, limit, offset)
+            found = trials.of_ids(connection, ids)
+        return list(map(self.custody.as_ended, found)), count
 
     def events(self, trial_id: int) -> list[Event]:
         """The events of a trial, in order of time, or `NotFoundError`."""

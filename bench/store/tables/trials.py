@@ -123,6 +123,13 @@ def find(
     return [_record(row, found) for row in rows]
 
 
+def of_ids(connection: Connection, ids: Sequence[int]) -> list[Trial]:
+    """Trials in the order of their ids in a list; those that were removed meanwhile are left out."""
+    rows = {row.id: row for row in connection.execute(select(TRIAL).where(TRIAL.c.id.in_(ids)))}
+    found = condition_rows.of_trials(connection, rows)
+    return [_record(rows[trial_id], found) for trial_id in ids if trial_id in rows]
+
+
 def _check_experiment(connection: Connection, experiment_id: int, wanted: str) -> None:
     query = select(EXPERIMENT.c.outcome).where(EXPERIMENT.c.id == experiment_id)
     outcome = connection.execute(query).scalar_one_or_none()
