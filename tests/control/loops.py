@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bench.config.channels import PAIR_RECORDED, RECORDED
-from bench.config.limits import Limits
 from bench.config.rig import Rig
+from bench.config.sections import Limits
 from bench.control.clock import Clock, VirtualClock
 from bench.control.cycle import Action, Reading
 from bench.control.ending import Outcome, StopRequest

@@ -7,7 +7,7 @@ from math import nan
 import numpy as np
 import pytest
 
-from bench.config.limits import Limits
+from bench.config.sections import Limits
 from bench.control.cycle import OFF, Action
 from bench.control.ending import Outcome, StopRequest
 from drivers.contract import Ages, Command, Mode, Status

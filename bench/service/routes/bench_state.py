@@ -13,7 +13,7 @@ from starlette.requests import ClientDisconnect
 
 from bench import __version__
 from bench.config.channels import CHANNELS
-from bench.config.limits import Limits
+from bench.config.sections import Limits
 from bench.control.drive_factory import is_simulated
 from bench.service.auth.access import Viewer, allow_read, require_viewer
 from bench.service.auth.audit_trail import note
