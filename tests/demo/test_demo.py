@@ -7,6 +7,7 @@ import pytest
 from bench.evaluation.demo import run_demo
 from bench.evaluation.demo.hidden_effect import draw
 from bench.store import Store
+from tests.paths import ROOT
 
 pytestmark = pytest.mark.timeout(600)  # a minute by itself; a shared machine may take several
 
@@ -36,6 +37,19 @@ def test_the_hidden_effect_is_named_and_its_addition_lowers_the_held_out_error(d
     assert section.tables[0].rows[0][0] == "Direction-asymmetric viscous friction"
     base, added, floor = (row[2] for row in section.tables[1].rows)
     assert floor < added < 0.6 * base
+
+
+def test_the_readme_states_what_the_demonstration_prints(demo):
+    """Figures of README.md, rounded as they stand there."""
+    spreads, sweep, effect = demo[2]
+    with_friction, compensated = (row[3] for row in spreads.tables[0].rows)
+    mean, _, largest = sweep.tables[1].rows
+    base, added, floor = (row[2] for row in effect.tables[1].rows)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"| {with_friction:.0f} mA | {compensated:.1f} mA |" in readme
+    assert f"| {mean[1]:.2f} g | {mean[2]:.2f} g |" in readme
+    assert f"| {largest[1]:.2f} g | {largest[2]:.2f} g |" in readme
+    assert f"falls from {base:.1f} % to {added:.1f} %. Repeated trials differ by {floor:.1f} %" in readme
 
 
 def test_the_report_is_one_file_that_asks_nothing_of_the_network(demo):
