@@ -5,6 +5,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+import typer
 import yaml
 from typer.core import TyperGroup
 
@@ -68,7 +69,8 @@ def test_commands_and_options_are_there(place: str, line: str) -> None:
     command = next(ListedCommand(entry).loaded for entry in COMMANDS if entry.name == words[0])
     words = words[1:]
     while isinstance(command, TyperGroup) and words and not words[0].startswith("--"):
-        command = command.commands[words.pop(0)]
+        command = command.get_command(typer.Context(command), words.pop(0))
+        assert command is not None, place
     known = {"--help"} | {option for parameter in command.params for option in parameter.opts}
     assert {word.partition("=")[0] for word in words if word.startswith("--")} <= known, place
 
