@@ -26,7 +26,7 @@ def main() -> None:
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/pictures")
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as store, running_service(Path(store)) as service, browser() as chromium:
-        page = open_page(chromium, service.url, 1100, "light")
+        page = open_page(chromium, f"{service.url}/#bench", 1100, "light")
         _bench(page, folder / "page.png")
         _hidden_effect(page, service, folder / "hidden-effect.png")
     for picture in sorted(folder.glob("*.png")):

@@ -24,7 +24,7 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     begin_s = time.monotonic()
     with tempfile.TemporaryDirectory() as store, running_service(Path(store)) as service, browser() as chromium:
-        page = open_page(chromium, service.url, 1280, "light")
+        page = open_page(chromium, f"{service.url}/#bench", 1280, "light")
         shot = _camera(page, folder)
         _bench(page, shot)
         study = _challenge(page, shot, service)
