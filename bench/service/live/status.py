@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from bench.control.cycle import Reading
-from bench.runs.runner import RunnerStatus
+from bench.runs.bench_control import RunnerStatus
 from bench.service.http.json_numbers import plain
 from bench.service.routes.leases import LeaseNow
 
