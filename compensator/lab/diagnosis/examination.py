@@ -28,7 +28,7 @@ LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: les
 NOT_WORSE = 0.10  # one-sided
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
-NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
+NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:

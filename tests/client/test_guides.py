@@ -1,16 +1,17 @@
-"""What README says to paste works when it is pasted."""
+"""What the guides to REST and Python say to paste works when it is pasted."""
 
 import os
 import re
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 
+from tests.paths import ROOT
 from tests.service.running_service import TOKEN
 
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+REST = (ROOT / "docs" / "how-to" / "rest.md").read_text(encoding="utf-8")
+PYTHON = (ROOT / "docs" / "how-to" / "python.md").read_text(encoding="utf-8")
 ADDRESS = "http://127.0.0.1:8000"
 # fails on an answer that is an error, and on one that does not come; -m of the stream is its end
 STRICT = """curl() {
@@ -22,8 +23,7 @@ STRICT = """curl() {
 def test_the_curl_examples(bench, service, study):
     if shutil.which("curl") is None or shutil.which("bash") is None:
         pytest.skip("needs curl and bash")
-    part = README.partition("## Over REST")[2].partition("\n## ")[0]
-    commands = re.findall(r"^    (curl (?:.*\\\n)*.*)$", part, re.MULTILINE)
+    commands = re.findall(r"^    (curl (?:.*\\\n)*.*)$", REST, re.MULTILINE)
     assert len(commands) == 5
     for command in commands:
         script = f"{STRICT}\n{command.replace(ADDRESS, service.url)}"
@@ -35,7 +35,7 @@ def test_the_curl_examples(bench, service, study):
 
 
 def test_the_python_example(bench, service, study, capsys):
-    [code] = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    [code] = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
     code = code.replace(ADDRESS, service.url).replace('"..."', repr(TOKEN))
     names: dict[str, object] = {}
     exec(code, names)
