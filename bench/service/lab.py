@@ -13,8 +13,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Protocol
 
 from bench.errors import BenchError
-from bench.runs.bench_process.failures import error_of, failure_of
-from bench.runs.bench_process.messages import Failure
+from bench.runs.bench_process.messages import Failure, error_of, failure_of
 from bench.service.http.json_numbers import plain
 from bench.store import Store
 

@@ -201,4 +201,4 @@ def report() -> Iterator[str]:
 
 if __name__ == "__main__":
     for line in report():
-        print(line, flush=True)  # noqa: T201
+        print(line, flush=True)

@@ -38,8 +38,8 @@ class _DeviceGroup(TyperGroup):
 app = typer.Typer(
     cls=_DeviceGroup,
     no_args_is_help=True,
-    help="A drive in software that speaks its wire protocol, with a simulated joint on it. Start it in one terminal, "
-    "paste the section that it prints into bench.toml, and run the bench in another.",
+    help="A drive in software that speaks its wire protocol, with a simulated joint on it.\n\n"
+    "Start it in one terminal, paste the section that it prints into bench.toml, and run the bench in another.",
 )
 
 
