@@ -1,4 +1,4 @@
-"""A second simulated joint with its own physics, protocol and sensors, for judging the model lab on data it was not built on.
+"""A second simulated joint, for judging the model lab on data that it was not built on.
 
-It is written from physics books alone: it imports nothing of this project, and nothing but the blind benchmark imports it.
+It is written from physics books alone and imports nothing of this project; nothing but the blind benchmark imports it.
 """

@@ -65,13 +65,13 @@ FOREIGN = table(
     Mechanism(
         "other_axis",
         "another axis loads the common supply",
-        lambda size, s, draw: {"other_axis_v": 0.5 * size * s.peak_v},
+        lambda size, s, _: {"other_axis_v": 0.5 * size * s.peak_v},
         needs=("voltage", "nominal"),
     ),
     Mechanism(
         "belt_creep",
         "belt slips with its tension",
-        lambda size, s, draw: {"creep_per_s": 0.08 * size / s.moment_n_m},
+        lambda size, s, _: {"creep_per_s": 0.08 * size / s.moment_n_m},
         5.0,
     ),
     Mechanism("interpolation", "position sensor errs within its period", _interpolation, 10.0),
@@ -86,7 +86,7 @@ FOREIGN = table(
     Mechanism(
         "torque_ripple",
         "torque constant ripples with the electrical angle",
-        lambda size, s, draw: {"ripple_share": 0.25 * size, "pole_pairs": float(draw.choice([1, 2, 4]))},
+        lambda size, _s, draw: {"ripple_share": 0.25 * size, "pole_pairs": float(draw.choice([1, 2, 4]))},
         3.0,
     ),
     Mechanism("worn_sector", "a worn sector of the gear rubs", _sector),
@@ -94,7 +94,7 @@ FOREIGN = table(
     Mechanism(
         "acceleration_loss",
         "friction grows with acceleration",
-        lambda size, s, draw: {"acceleration_loss": 0.05 * size},
+        lambda size, _s, _: {"acceleration_loss": 0.05 * size},
     ),
     Mechanism(
         "wandering_bias",
