@@ -12,8 +12,8 @@ from math import degrees, radians
 import numpy as np
 
 from compensator.errors import SingularPoseError
-from compensator.planar_arm import PlanarArm
-from compensator.tip_force import require_complete, tip_force
+from compensator.reflection.planar_arm import PlanarArm
+from compensator.reflection.tip_force import require_complete, tip_force
 
 ARM = PlanarArm(first_m=0.5, second_m=0.4)
 TORQUE_PER_CURRENT_N_M_A = 1.0

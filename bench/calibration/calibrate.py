@@ -12,12 +12,12 @@ from bench.calibration.points import FrictionPoint, Row, friction_points
 from bench.calibration.rest import rest_of
 from bench.calibration.samples import points_of_recording
 from bench.calibration.selection import drive_of_experiment
+from bench.config.rig import Rig
 from bench.provenance import software
-from bench.rig import Rig
 from bench.store import Experiment, Store, Trial
-from bench.store.json_text import plain
+from bench.store.tables.json_text import plain
 from compensator.errors import CalibrationError
-from compensator.friction_calibration import FrictionFit
+from compensator.motion.friction_calibration import FrictionFit
 
 UPRIGHT = 0.1  # |sin| of an angle below which gravity has no moment worth the name
 FROM_SEARCH = "zero-speed search at angle 0"

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from bench.calibration.selection import friction_of
-from bench.rig import Rig
+from bench.config.rig import Rig
 from bench.store import CalibrationRow
-from compensator import motor
-from compensator.motor import MotorConstants
+from compensator.motor import dc_motor as motor
+from compensator.motor.dc_motor import MotorConstants
 
 CURVE_POINTS = 80
 

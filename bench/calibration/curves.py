@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from bench.calibration.points import FrictionPoint
 from compensator.errors import CalibrationError
-from compensator.friction_calibration import FrictionFit, fit
-from compensator.friction_lookup import FrictionLookup
+from compensator.motion.friction_calibration import FrictionFit, fit
+from compensator.motion.friction_lookup import FrictionLookup
 
 
 def friction_fits(points: Mapping[float, Sequence[FrictionPoint]], stribeck: bool = True) -> dict[float, FrictionFit]:

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from math import nan
 
 from bench.calibration.points import Row, sign_of
-from compensator import motor_identification
-from compensator.motor_identification import MotorIdentification, MotorSample
+from compensator.motor import identification as motor_identification
+from compensator.motor.identification import MotorIdentification, MotorSample
 
 
 def identify_motor(rows: Iterable[Row]) -> MotorIdentification:

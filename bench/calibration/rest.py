@@ -6,14 +6,14 @@ from dataclasses import asdict
 from math import isfinite, sin
 from typing import NamedTuple
 
+from bench.config.reflected_load import LEAST_LEVER, arm_angle_rad, load_current_a
+from bench.config.rig import Rig
+from bench.config.sections import RestSettings
 from bench.errors import ConfigurationError
-from bench.reflected_load import LEAST_LEVER, arm_angle_rad, load_current_a
-from bench.rest import RestSettings
-from bench.rig import Rig
 from bench.store import Trial
-from compensator.breakaway_fit import Breakaway, BreakawayFit, fit
 from compensator.errors import CalibrationError
-from compensator.rest_calibration import RestPoint, calibrate
+from compensator.rest.breakaway_fit import Breakaway, BreakawayFit, fit
+from compensator.rest.rest_calibration import RestPoint, calibrate
 
 
 class SearchedTrial(NamedTuple):

@@ -9,12 +9,12 @@ from itertools import pairwise
 import numpy as np
 
 from bench.calibration.points import FrictionPoint
-from bench.rig import Rig
-from compensator import motor
+from bench.config.rig import Rig
 from compensator.errors import CalibrationError
-from compensator.kinetic_friction import FloatArray
 from compensator.lab.recordings.recording import Recording
-from compensator.motor import MotorConstants
+from compensator.motion.kinetic_friction import FloatArray
+from compensator.motor import dc_motor as motor
+from compensator.motor.dc_motor import MotorConstants
 
 WINDOW_S = 0.2
 LEAST_ROWS = 8  # of a window

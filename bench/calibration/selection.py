@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from bench.configuration import BenchConfiguration
+from bench.config.configuration import BenchConfiguration
+from bench.config.friction_curves import FrictionCurve, FrictionSettings, StudiedModel
+from bench.config.sections import RestSettings
 from bench.errors import ConfigurationError
-from bench.friction import FrictionCurve, FrictionSettings, StudiedModel
-from bench.rest import RestSettings
 from bench.store import CalibrationRow, Experiment, Store
 
 _NOT_THE_JOINT = ("seed", "faults")  # settings of a drive that say nothing about the joint's friction

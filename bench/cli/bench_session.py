@@ -11,7 +11,7 @@ import typer
 from bench.errors import ConfigurationError
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.configuration import BenchConfiguration
+    from bench.config.configuration import BenchConfiguration
     from bench.store import Store
 
 
@@ -29,7 +29,7 @@ class BenchSession:
 
     def configuration(self) -> "BenchConfiguration":
         """The configuration, with the store that the options choose."""
-        from bench.configuration import default_configuration, read_configuration
+        from bench.config.configuration import default_configuration, read_configuration
 
         found = default_configuration() if self.config is None else read_configuration(self.config)
         url = self._store_url(found.store.url)

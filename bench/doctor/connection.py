@@ -3,11 +3,11 @@
 import time
 from dataclasses import dataclass
 
-from bench.clock import Clock, VirtualClock, WallClock
-from bench.configuration import BenchConfiguration
-from bench.cycle import OFF
-from bench.drive_factory import is_simulated, make_equipment
-from bench.timing import check_timing
+from bench.config.configuration import BenchConfiguration
+from bench.control.clock import Clock, VirtualClock, WallClock
+from bench.control.cycle import OFF
+from bench.control.drive_factory import is_simulated, make_equipment
+from bench.control.timing import check_timing
 from drivers.contract import Description, Drive, Sample
 
 CYCLES = 200

@@ -3,8 +3,8 @@
 import time
 from dataclasses import dataclass
 
-from bench.configuration import BenchConfiguration
-from bench.drive_factory import make_equipment
+from bench.config.configuration import BenchConfiguration
+from bench.control.drive_factory import make_equipment
 from drivers.contract import Command, Drive, Mode, Status
 from drivers.errors import DriveConnectionError, DriveError
 

@@ -4,8 +4,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from bench.config.validation import problems
 from bench.errors import ParameterError, UnknownKindError
-from bench.experiments import (
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.kinds import (
     breakaway_ramps,
     chirp,
     coast_down,
@@ -22,8 +24,6 @@ from bench.experiments import (
     teleoperation,
     waveform,
 )
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.validation import problems
 
 KINDS: dict[str, ExperimentKind] = {
     kind.name: kind

@@ -7,16 +7,16 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from bench.config.rig import Rig
+from bench.config.validation import problems
 from bench.provenance import software
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.parquet import parquet_chunks
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.stream import RecordingStream, stream_of_trial
 from bench.recording_set.write import write_streams
-from bench.rig import Rig
 from bench.store import Store, Trial
 from bench.store.records import OUTCOMES
-from bench.validation import problems
 from compensator.lab.recordings.recording import Recording
 
 IMPORT_KIND = "import"

@@ -10,13 +10,13 @@ from typing import IO
 
 import tomli_w
 
-from bench.recording_set.csv_text import csv_chunks
+from bench.config.rig import Rig
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.read import RIG_FILE
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.stream import RecordingStream, stream_of
+from bench.recording_set.text.csv_text import csv_chunks
 from bench.recording_set.trials_csv import TRIALS_FILE, TrialEntry, trials_csv_lines
-from bench.rig import Rig
 
 LONGEST_NAME = 100
 _FOREVER = (1980, 1, 1, 0, 0, 0)  # the same set makes the same zip

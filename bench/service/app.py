@@ -4,42 +4,39 @@ import asyncio
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from importlib.metadata import version
 
 import anyio.to_thread
 from fastapi import APIRouter, FastAPI
 
-from bench.bench_control import BenchControl
-from bench.lease import Lease
-from bench.queue import Conductor
-from bench.service import (
+from bench import __version__
+from bench.runs.bench_control import BenchControl
+from bench.runs.lease import Lease
+from bench.runs.queue import Conductor
+from bench.service.auth.access import Access
+from bench.service.auth.audit_trail import AuditTrail, AuditWriter
+from bench.service.auth.token_register import REFRESH_S
+from bench.service.http import conditional, openapi, page, problems, turns
+from bench.service.http.guard import Guard
+from bench.service.lab import Lab, LabHere
+from bench.service.live.live_events import LiveEvents
+from bench.service.routes import (
     audit,
     bench_state,
     calibrations,
     challenges,
     closed_loop,
-    conditional,
     effects,
     error_map,
+    experiment_plan,
     experiments,
     leases,
     live,
-    openapi,
-    page,
-    problems,
     queue,
     recording_sets,
     studies,
     study_rounds,
     trials,
-    turns,
 )
-from bench.service.access import Access
-from bench.service.audit_trail import AuditTrail, AuditWriter
-from bench.service.guard import Guard
-from bench.service.lab import Lab, LabHere
-from bench.service.live_events import LiveEvents
-from bench.service.token_register import REFRESH_S
 from bench.store import Store
 
 PREFIX = "/api/v1"
@@ -89,6 +86,7 @@ A missing effect, found and added:
 _ROOMS = (
     bench_state,
     leases,
+    experiment_plan,
     experiments,
     queue,
     live,
@@ -134,7 +132,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
 
     app = FastAPI(
         title="friction-bench",
-        version=version("friction-bench"),
+        version=__version__,
         summary="Bench driver and test service for a geared servo joint",
         description=DESCRIPTION,
         openapi_url=f"{PREFIX}/openapi.json",

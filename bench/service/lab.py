@@ -12,10 +12,10 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any, Protocol
 
-from bench.bench_process.failures import error_of, failure_of
-from bench.bench_process.messages import Failure
 from bench.errors import BenchError
-from bench.service.json_numbers import plain
+from bench.runs.bench_process.failures import error_of, failure_of
+from bench.runs.bench_process.messages import Failure
+from bench.service.http.json_numbers import plain
 from bench.store import Store
 
 NICENESS = 10  # -20 .. 19: more is less of the processor

@@ -4,25 +4,25 @@ import signal
 import socket
 from collections.abc import Callable
 from contextlib import closing
-from importlib.metadata import version
 from types import FrameType
 from typing import NamedTuple
 
 import uvicorn
 from fastapi import FastAPI
 
-from bench import event_log
-from bench.bench_control import BenchControl
-from bench.bench_process import RemoteRunner
-from bench.configuration import BenchConfiguration
+from bench import __version__
+from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
-from bench.service.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
+from bench.runs import event_log
+from bench.runs.bench_control import BenchControl
+from bench.runs.bench_process import RemoteRunner
 from bench.service.app import create_app
-from bench.service.first_token import first_token, has_valid_token
+from bench.service.auth.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
+from bench.service.auth.first_token import first_token, has_valid_token
+from bench.service.auth.tls import Certificate
+from bench.service.auth.token_register import TokenRegister
+from bench.service.auth.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
 from bench.service.lab import LabProcesses
-from bench.service.tls import Certificate
-from bench.service.token_register import TokenRegister
-from bench.service.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
 from bench.service.welcome import Place, welcome
 from bench.store import Store
 
@@ -116,7 +116,7 @@ def serve_bench(
                     for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
                         say(line)
                     facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}
-                    event_log.note("service started", **facts, version=version("friction-bench"))
+                    event_log.note("service started", **facts, version=__version__)
                     _serve(BenchServer(app, runner, tls), listener)
     event_log.note("service ended")
 

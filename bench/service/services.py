@@ -4,8 +4,8 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
-from bench.bench_control import BenchControl
-from bench.queue import Conductor
+from bench.runs.bench_control import BenchControl
+from bench.runs.queue import Conductor
 from bench.store import Store
 
 

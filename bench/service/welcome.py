@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-from bench.configuration import BenchConfiguration
-from bench.drive_factory import is_simulated
-from bench.service.access import is_loopback
+from bench.config.configuration import BenchConfiguration
+from bench.control.drive_factory import is_simulated
 from bench.service.app import PREFIX
-from bench.service.first_token import Tokens
-from bench.service.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
+from bench.service.auth.access import is_loopback
+from bench.service.auth.first_token import Tokens
+from bench.service.auth.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
 from bench.store.backend import shown
 
 

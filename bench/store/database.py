@@ -9,7 +9,7 @@ from sqlalchemy.exc import StatementError
 
 from bench.store.backend import Claim, backend_of
 from bench.store.errors import StoreLockedError, StoreValueError
-from bench.store.json_text import NoJsonError
+from bench.store.tables.json_text import NoJsonError
 
 
 class Database:

@@ -4,12 +4,12 @@ from collections.abc import Iterable
 from contextlib import suppress
 from typing import Any
 
-from bench.store import experiments
-from bench.store.custody import UNWRITTEN, Custody
 from bench.store.database import Database
 from bench.store.errors import StoreError
-from bench.store.importing import Import
 from bench.store.records import Experiment
+from bench.store.tables import experiments
+from bench.store.upkeep.custody import UNWRITTEN, Custody
+from bench.store.upkeep.importing import Import
 from compensator.lab.recordings.recording import Recording
 
 

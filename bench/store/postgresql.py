@@ -24,7 +24,7 @@ from bench.store.errors import (
     StoreUnreachableError,
     StoreValueError,
 )
-from bench.store.json_text import to_json
+from bench.store.tables.json_text import to_json
 
 WRITER_KEY = 0x46524943  # "FRIC": below all keys of claims
 CLAIM_PREFIX = "pg-"

@@ -17,7 +17,6 @@ from sqlalchemy import Connection, Engine, Pool, create_engine, event
 from sqlalchemy.engine import URL
 from sqlalchemy.pool import ConnectionPoolEntry
 
-from bench.store import owner
 from bench.store.errors import (
     StoreError,
     StoreFileError,
@@ -25,7 +24,8 @@ from bench.store.errors import (
     StoreLockedError,
     StoreReadOnlyError,
 )
-from bench.store.json_text import to_json
+from bench.store.tables.json_text import to_json
+from bench.store.upkeep import owner
 
 WAL_LIMIT_BYTES = 64 * 2**20  # the log is cut back to this after a large import
 PAGE_BYTES = 16_384  # of a new file: blocks are read 1.6 times as fast as with SQLite's 4096, measured

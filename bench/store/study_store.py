@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from bench.store import studies
 from bench.store.database import Database
 from bench.store.records import ModelRow, StudyRow
+from bench.store.tables import studies
 
 
 class StudyStore:

@@ -5,10 +5,10 @@ from typing import Any
 
 from sqlalchemy import Connection
 
-from bench.store import samples, trials
 from bench.store.database import Database
 from bench.store.errors import StoreStateError
 from bench.store.records import Event
+from bench.store.tables import samples, trials
 from compensator.lab.recordings.recording import FloatArray
 
 

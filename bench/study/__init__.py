@@ -12,12 +12,12 @@ from bench.study.effects import effect_example, effects_catalogue
 from bench.study.error_map import error_map, moments
 from bench.study.extend import extend_study
 from bench.study.ladder import ladder
-from bench.study.next_round import next_round
 from bench.study.on_bench import bench_configurations, keep_bench_error
 from bench.study.refit import refit
-from bench.study.report import report_html
+from bench.study.report.report import report_html
 from bench.study.search import search
-from bench.study.suggest import suggest
+from bench.study.suggestion.next_round import next_round
+from bench.study.suggestion.suggest import suggest
 from bench.study.use import use
 
 __all__ = [

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from bench.rig import Rig
-from bench.servo import ServoSettings
+from bench.config.rig import Rig
+from bench.config.sections import ServoSettings
 from bench.store import Store
 from bench.store.records import Experiment, ModelRow
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load_model
-from bench.study.next_trial.dynamics import drive_of
+from bench.study.suggestion.dynamics import drive_of
 from compensator.lab.closed_loop.control_law import ControlLaw
 from compensator.lab.closed_loop.loop_comparison import LoopComparison, LoopError, TrialInLoop, compare_in_loop
 from compensator.lab.closed_loop.refinement import Refinement, refine

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from bench.rig import Rig
+from bench.config.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bench.over_cores import over_cores
+from bench.parallel.over_cores import over_cores
 from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.diagnose import answer_of

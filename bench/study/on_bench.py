@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from bench.calibration import with_friction
-from bench.configuration import BenchConfiguration
+from bench.config.configuration import BenchConfiguration
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.use import studied_model

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.rig import Rig
+from bench.config.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors

@@ -4,10 +4,10 @@ from typing import Any
 
 from bench import calibration
 from bench.calibration.selection import in_use
-from bench.configuration import BenchConfiguration
-from bench.friction import StudiedEffect, StudiedModel
+from bench.config.configuration import BenchConfiguration
+from bench.config.friction_curves import StudiedEffect, StudiedModel
+from bench.config.rig import Rig
 from bench.provenance import software
-from bench.rig import Rig
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import Material, facts_of, load_model

@@ -9,8 +9,8 @@ P. R. Dahl, "Solid friction damping of mechanical vibrations", AIAA Journal 14 (
 from math import copysign, exp
 from typing import NamedTuple
 
-from compensator.load_estimate import LoadEstimate, Observation
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.motion.load_estimate import LoadEstimate, Observation
+from compensator.rivals.load_observer import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 

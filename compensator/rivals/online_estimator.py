@@ -1,7 +1,7 @@
 """The estimator of this package, as one of the rivals."""
 
-from compensator import load_estimator
-from compensator.load_estimate import EstimatorState, LoadEstimate, Observation
+from compensator.motion import load_estimator
+from compensator.motion.load_estimate import EstimatorState, LoadEstimate, Observation
 from compensator.rivals.rival import Knowledge, Rival
 
 
@@ -20,7 +20,7 @@ def advance(
 RIVAL = Rival(
     "online",
     "ours: one estimator at rest and in motion",
-    "compensator.load_estimator",
+    "compensator.motion.load_estimator",
     begin,
     advance,
     searches=True,

@@ -9,8 +9,8 @@ Between these the last estimate is held. No inertia: accelerated motion is the p
 from math import copysign, nan
 from typing import NamedTuple
 
-from compensator.load_estimate import LoadEstimate, Observation
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.motion.load_estimate import LoadEstimate, Observation
+from compensator.rivals.load_observer import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 CREEP_RAD_S = 1e-6  # of the motor: the curve's value next to speed 0

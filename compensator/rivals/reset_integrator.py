@@ -11,8 +11,8 @@ calm an integration, is left out: from encoder counts it would be noise.
 from math import copysign
 from typing import NamedTuple
 
-from compensator.load_estimate import LoadEstimate, Observation
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.motion.load_estimate import LoadEstimate, Observation
+from compensator.rivals.load_observer import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from compensator.friction_lookup import FrictionLookup
-from compensator.joint_model import JointModel
-from compensator.kinetic_friction import FloatArray, KineticFriction
-from compensator.load_estimate import Branch, EstimatorSettings, LoadEstimate, Observation
+from compensator.motion.friction_lookup import FrictionLookup
+from compensator.motion.joint_model import JointModel
+from compensator.motion.kinetic_friction import FloatArray, KineticFriction
+from compensator.motion.load_estimate import Branch, EstimatorSettings, LoadEstimate, Observation
 
 BANDWIDTH_RAD_S = 2.0 * pi * 5.0
 """Of the observers: fast enough for a master arm, slow enough for speeds from encoder counts."""

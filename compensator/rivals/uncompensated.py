@@ -1,6 +1,6 @@
 """No compensation: the motor current is what is reflected."""
 
-from compensator.load_estimate import LoadEstimate, Observation
+from compensator.motion.load_estimate import LoadEstimate, Observation
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 from math import nan
 
-from drivers.canopen.identity import Identity
-from drivers.canopen.object_access import ObjectAccess
-from drivers.canopen.objects import (
+from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.objects import (
     ENCODER_INCREMENTS,
     ENCODER_REVOLUTIONS,
     SUPPORTED_MODES,
@@ -15,10 +14,11 @@ from drivers.canopen.objects import (
     VELOCITY_UNIT,
     DriveObject,
 )
-from drivers.canopen.profiles import ObjectProfile, choose_profile
-from drivers.canopen.scale import DriveScale
+from drivers.canopen.cia402.profiles import ObjectProfile, choose_profile
+from drivers.canopen.cia402.scale import DriveScale
+from drivers.canopen.cia402.units import velocity_unit_code, velocity_unit_name, velocity_unit_rad_s
+from drivers.canopen.identity import Identity
 from drivers.canopen.settings import CanopenSettings
-from drivers.canopen.units import velocity_unit_code, velocity_unit_name, velocity_unit_rad_s
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Final
 
-from drivers.canopen.bus_load import cycle_s
+from drivers.canopen.cia301.bus_load import cycle_s
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Description

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
-from drivers.canopen.object_access import ObjectAccess
-from drivers.canopen.objects import DEVICE_TYPE, PRODUCT, REVISION, SERIAL, VENDOR
+from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.objects import DEVICE_TYPE, PRODUCT, REVISION, SERIAL, VENDOR
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
 

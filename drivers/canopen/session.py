@@ -6,27 +6,27 @@ from time import perf_counter
 from typing import Final
 
 from drivers.canopen.capabilities import Capabilities, probe
-from drivers.canopen.emergency import HEARTBEAT_LOST, Emergency, error_name
-from drivers.canopen.heartbeat import DriveMonitor, HostHeartbeat, NmtState
-from drivers.canopen.identity import identify
-from drivers.canopen.limits import set_current_limit
-from drivers.canopen.link import CanLink
-from drivers.canopen.measurement import Measurement
-from drivers.canopen.object_access import ObjectAccess, ObjectRefusedError
-from drivers.canopen.objects import (
+from drivers.canopen.cia301.emergency import HEARTBEAT_LOST, Emergency, error_name
+from drivers.canopen.cia301.heartbeat import DriveMonitor, HostHeartbeat, NmtState
+from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
+from drivers.canopen.cia301.objects import (
     CONTROLWORD,
     ERROR_CODE,
     INTERPOLATION_EXPONENT,
     INTERPOLATION_PERIOD,
     SYNC_COB_ID,
 )
-from drivers.canopen.pdo_setup import ProcessData, choose_pdos, configure_pdos
-from drivers.canopen.presence import check_presence
+from drivers.canopen.cia301.pdo_setup import ProcessData, choose_pdos, configure_pdos
+from drivers.canopen.cia301.presence import check_presence
+from drivers.canopen.cia301.sync_cycle import SyncCycle, answer_wait_s
+from drivers.canopen.cia402.limits import set_current_limit
+from drivers.canopen.cia402.measurement import Measurement
+from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE
+from drivers.canopen.cia402.units import interpolation_period
+from drivers.canopen.identity import identify
 from drivers.canopen.settings import CanopenSettings
 from drivers.canopen.slow_poll import SlowPoll
-from drivers.canopen.state_machine import DISABLE_VOLTAGE
-from drivers.canopen.sync_cycle import SyncCycle, answer_wait_s
-from drivers.canopen.units import interpolation_period
 from drivers.canopen.watchdog import Watchdog, heartbeat_ms
 from drivers.contract import Sample, Status
 from drivers.errors import DriveConnectionError

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from drivers.canopen.profiles import PROFILES
-from drivers.canopen.units import VELOCITY_UNITS
+from drivers.canopen.cia402.profiles import PROFILES
+from drivers.canopen.cia402.units import VELOCITY_UNITS
 from drivers.errors import DriveConfigurationError
 
 Interface = Literal["socketcan", "slcan", "socketcand", "virtual"]

@@ -7,7 +7,7 @@ waits for it.
 import struct
 from typing import Final, NamedTuple
 
-from drivers.canopen.objects import DriveObject
+from drivers.canopen.cia301.objects import DriveObject
 
 _REQUEST: Final = struct.Struct("<BHB4x")
 _ANSWER: Final = struct.Struct("<BHB4s")

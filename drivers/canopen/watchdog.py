@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from drivers.canopen.object_access import ObjectAccess, ObjectRefusedError
-from drivers.canopen.objects import (
+from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
+from drivers.canopen.cia301.objects import (
     BEHAVIOUR_ON_COMMUNICATION_ERROR,
     CONNECTION_LOSS_OPTION,
     CONSUMER_HEARTBEAT,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from sim_backend.challenge.ranges import COUNTS, DUTY_COUNTS, JOINT, VOLTAGES
-from sim_backend.gravity import STANDARD_GRAVITY_M_S2
+from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2
 
 Tables = dict[str, dict[str, Any]]
 ACCELERATION_RAD_S2 = 20.0  # of the quickest motion that a motor is chosen for

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sim_backend.challenge.joint import SESSION_S, Joint, Tables
-from sim_backend.gravity import STANDARD_GRAVITY_M_S2
+from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2
 
 Make = Callable[[float, Joint, np.random.Generator], Tables]
 """(size, joint, generator) -> plant tables that differ from the joint's own."""

@@ -4,15 +4,15 @@ from math import isnan, pi
 from typing import NamedTuple, Protocol
 
 from drivers.contract import Sample, Status
+from sim_backend.drive.overload import OverloadMeter
 from sim_backend.errors import ParameterError
-from sim_backend.fault_play import FaultPlay
-from sim_backend.faults import Fault, FaultScript, ModeRefused, OverCurrent, TorqueDisabled, Trip
-from sim_backend.gravity import Load
-from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
-from sim_backend.overload import OverloadMeter
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import COARSEST_STEP_S, Plant
-from sim_backend.thermal_drift import drifted
+from sim_backend.faults.play import FaultPlay
+from sim_backend.faults.script import Fault, FaultScript, ModeRefused, OverCurrent, TorqueDisabled, Trip
+from sim_backend.mechanisms.joint.gravity import Load
+from sim_backend.mechanisms.motor.motor import BRAKE, CURRENT, OPEN, VOLTAGE
+from sim_backend.mechanisms.motor.thermal_drift import drifted
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import COARSEST_STEP_S, Plant
 
 TICK_S = 1e-3
 _STEPS = round(TICK_S / COARSEST_STEP_S)

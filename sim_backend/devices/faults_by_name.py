@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from sim_backend import faults
 from sim_backend.errors import ParameterError
-from sim_backend.faults import Fault
+from sim_backend.faults import script as faults
+from sim_backend.faults.script import Fault
 
 NAMES: dict[str, type[Fault]] = {
     "over-temperature": faults.OverTemperature,

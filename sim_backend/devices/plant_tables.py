@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from sim_backend.parameters import PlantParameters
-from sim_backend.presets import by_name
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.presets import by_name
 
 # every drive that has a wire protocol measures its current and is warm
 _DRIVE = {

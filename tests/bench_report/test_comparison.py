@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from bench.bench_report import campaign
-from bench.bench_report.baseline import read_baseline, write_baseline
-from bench.bench_report.campaign import METRICS, SeedValues
-from bench.bench_report.comparison import FAMILY_RATE, compare, permutation_p
-from bench.bench_report.documents import is_bad, sections, write_junit
-from bench.bench_report.errors import BaselineError
 from bench.cli.app import app
+from bench.errors import BaselineError
+from bench.evaluation.bench_report import campaign
+from bench.evaluation.bench_report.baseline import read_baseline, write_baseline
+from bench.evaluation.bench_report.campaign import METRICS, SeedValues
+from bench.evaluation.bench_report.comparison import FAMILY_RATE, compare, permutation_p
+from bench.evaluation.bench_report.documents import is_bad, sections, write_junit
 from bench.report.html import html_page
 
 NAMES = [metric.name for metric in METRICS]
@@ -124,7 +124,7 @@ def test_the_command_from_baseline_to_alarm(tmp_path, monkeypatch):
         return SeedValues(seed, {name: float(generator.lognormal(0, 0.2) * worse[name]) for name in NAMES})
 
     monkeypatch.setattr(campaign, "run_seed", fake)
-    monkeypatch.setattr("bench.over_cores.over_cores", map)
+    monkeypatch.setattr("bench.parallel.over_cores.over_cores", map)
 
     def report(*words: str):
         return CliRunner().invoke(app, ["bench-report", *words])

@@ -5,14 +5,19 @@ from math import isnan
 import numpy as np
 import pytest
 
-from bench.blind.calibration import came_of_prediction, named_by_prediction, names_by_detectability, p_values
-from bench.blind.confusion import confusions, rival_figures
-from bench.blind.figures import Figure, figures
-from bench.blind.judge import Result
-from bench.blind.lab_answer import LabAnswer
-from bench.blind.oracle import Standing
-from bench.blind.settling import Settled
-from bench.blind.smallest import smallest_found
+from bench.evaluation.blind.calibration import (
+    came_of_prediction,
+    named_by_prediction,
+    names_by_detectability,
+    p_values,
+)
+from bench.evaluation.blind.confusion import confusions, rival_figures
+from bench.evaluation.blind.figures import Figure, figures
+from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.lab_answer import LabAnswer
+from bench.evaluation.blind.oracle import Standing
+from bench.evaluation.blind.settling import Settled
+from bench.evaluation.blind.smallest import smallest_found
 
 
 def _result(

@@ -1,8 +1,8 @@
 import numpy as np
 
-from bench.blind.items import draw_item, items_of, protocol_of
-from bench.blind.recorded import bench_for
-from bench.challenge.session import Protocol
+from bench.evaluation.blind.items import draw_item, items_of, protocol_of
+from bench.evaluation.blind.recorded import bench_for
+from bench.evaluation.challenge.session import Protocol
 
 
 def _protocol() -> Protocol:

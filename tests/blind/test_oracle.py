@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from bench.blind import judge
-from bench.blind.figures import MUST_NAME
-from bench.blind.oracle import NEEDED, Standing, standing, standing_at_breakaway
+from bench.evaluation.blind import judge
+from bench.evaluation.blind.figures import MUST_NAME
+from bench.evaluation.blind.oracle import NEEDED, Standing, standing, standing_at_breakaway
 from compensator.lab.screening.candidates import gather
 from tests.blind.columns import ROWS, gathered, independent
 from tests.lab.ramps import STATIC, ramp_fit

@@ -1,10 +1,10 @@
 from pathlib import Path
 
-from bench.blind.calibration import interval
-from bench.blind.judge import Result
-from bench.blind.lab_answer import LabAnswer
-from bench.blind.oracle import Standing
-from bench.blind.pictures import sections_of, write_page
+from bench.evaluation.blind.calibration import interval
+from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.lab_answer import LabAnswer
+from bench.evaluation.blind.oracle import Standing
+from bench.evaluation.blind.pictures import sections_of, write_page
 
 
 def _complete(key: str, p_value: float) -> Result:

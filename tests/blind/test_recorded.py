@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.blind import recorded
-from bench.blind.items import FAMILIES, MODERATE, draw_item, items_of, wanted_ratio
-from bench.blind.recorded import NEAR, Recorded, Scale, ratio_of
-from bench.challenge.hidden_plant import DrawnPlant
+from bench.evaluation.blind import recorded
+from bench.evaluation.blind.items import FAMILIES, MODERATE, draw_item, items_of, wanted_ratio
+from bench.evaluation.blind.recorded import NEAR, Recorded, Scale, ratio_of
+from bench.evaluation.challenge.hidden_plant import DrawnPlant
 
 HOSE = next(item for item in items_of(3, 2) if item.family == "outside-moderate" and item.turn == 1)
 

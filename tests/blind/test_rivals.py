@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from bench.blind.rivals import RIVALS
+from bench.evaluation.blind.baseline_methods import RIVALS
 from tests.blind.columns import ROWS, gathered, independent
 
 

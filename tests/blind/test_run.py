@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.blind import pool
-from bench.blind.imperfections import worn
-from bench.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
-from bench.blind.judge import Result, judge
-from bench.blind.pool import ResultsError, run_items
 from bench.errors import ParameterError
+from bench.evaluation.blind import pool
+from bench.evaluation.blind.imperfections import worn
+from bench.evaluation.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
+from bench.evaluation.blind.judge import Result, judge
+from bench.evaluation.blind.pool import ResultsError, run_items
 from compensator.lab.recordings.recording import Recording
 
 

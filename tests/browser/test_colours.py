@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from bench.service.page import WEB
+from bench.service.http.page import WEB
 
 # linear RGB as seen without one kind of cone: Machado, Oliveira, Fernandes 2009, severity 1
 VISION = {

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from bench.challenge import difficulty
-from bench.challenge.difficulty import Difficulty
+from bench.evaluation.challenge import difficulty
+from bench.evaluation.challenge.difficulty import Difficulty
 
 pytestmark = pytest.mark.browser
 QUICK = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 2.0, 1, 1)

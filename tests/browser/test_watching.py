@@ -5,10 +5,10 @@ import zipfile
 
 import pytest
 
-from bench import station
-from bench.drive_factory import Equipment
-from bench.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from bench.control import station
+from bench.control.drive_factory import Equipment
+from bench.control.technician import PersonTechnician
+from tests.control.fake_drive import FakeDrive
 from tests.service.running_service import TOKEN
 
 pytestmark = pytest.mark.browser

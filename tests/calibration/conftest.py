@@ -2,8 +2,8 @@
 
 import pytest
 
-from bench.configuration import default_configuration
-from bench.runner import Runner
+from bench.config.configuration import default_configuration
+from bench.runs.runner import Runner
 from bench.store import Store
 
 LOADS_KG = (0.0, 0.1)

@@ -6,10 +6,10 @@ import pytest
 from bench.calibration.curves import friction_fits, friction_lookup, inertia_of
 from bench.calibration.motor_constants import identify_motor
 from bench.calibration.points import friction_points
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from compensator.errors import CalibrationError, LookupRangeError
-from compensator.motor import MotorConstants
-from tests.bench.bench_run import Ran
+from compensator.motor.dc_motor import MotorConstants
+from tests.experiments.bench_run import Ran
 
 CONFIGURATION = default_configuration()
 MOTOR = MotorConstants(8.0, 0.05)  # of the preset

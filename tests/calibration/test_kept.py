@@ -7,7 +7,7 @@ from bench import calibration
 from bench.calibration.calibrate import FROM_CURVE, FROM_SEARCH
 from bench.errors import ConfigurationError
 from bench.recording_set import export_experiment, import_recording_set, read_recording_set
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from compensator.errors import CalibrationError
 
 

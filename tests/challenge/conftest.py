@@ -1,7 +1,7 @@
 import pytest
 
-from bench.challenge import difficulty
-from bench.challenge.difficulty import Difficulty
+from bench.evaluation.challenge import difficulty
+from bench.evaluation.challenge.difficulty import Difficulty
 
 QUICK = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 2.0, 1, 1)
 

@@ -1,9 +1,9 @@
 import pytest
 
-from bench.challenge.guess import Guess, score
-from bench.challenge.hidden_plant import MECHANISMS
-from bench.challenge.names import ABSORBED, ACCEPTED, accepted
 from bench.errors import ParameterError
+from bench.evaluation.challenge.guess import Guess, score
+from bench.evaluation.challenge.hidden_plant import MECHANISMS
+from bench.evaluation.challenge.names import ABSORBED, ACCEPTED, accepted
 
 
 def test_every_mechanism_has_its_names_and_the_lab_knows_them() -> None:

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import pytest
 
-from bench.challenge import make
-from bench.challenge.difficulty import Difficulty
-from bench.challenge.hidden_plant import MECHANISMS, Wanted, draw_plant
-from bench.challenge.make import make_challenge, write_challenge
-from bench.challenge.owner import bench_of, rig_of
-from bench.challenge.seal import SealError, digest_of, read_sealed
-from bench.challenge.session import protocol_of, record
-from bench.challenge.share import effort_share
 from bench.errors import ParameterError
+from bench.evaluation.challenge import make
+from bench.evaluation.challenge.difficulty import Difficulty
+from bench.evaluation.challenge.hidden_plant import MECHANISMS, Wanted, draw_plant
+from bench.evaluation.challenge.make import make_challenge, write_challenge
+from bench.evaluation.challenge.owner import bench_of, rig_of
+from bench.evaluation.challenge.seal import SealError, digest_of, read_sealed
+from bench.evaluation.challenge.session import protocol_of, record
+from bench.evaluation.challenge.share import effort_share
 from bench.recording_set import read_recording_set
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.recordings.recording import Condition, Recording

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from bench.challenge import difficulty
-from bench.challenge.difficulty import Difficulty
+from bench.evaluation.challenge import difficulty
+from bench.evaluation.challenge.difficulty import Difficulty
 
 
 @pytest.fixture(autouse=True)

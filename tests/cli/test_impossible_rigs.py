@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import tomli_w
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from bench.store import Store
 from tests.cli.conftest import Command
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from bench.paper import reproduction
-from bench.paper.measurements import Plan
+from bench.evaluation.paper import reproduction
+from bench.evaluation.paper.measurements import Plan
 from tests.paper.test_reproduction import SWEEP
 
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes

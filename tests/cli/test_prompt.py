@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
-from bench.cli.prompt import attend
-from bench.prompt import PromptDesk
+from bench.cli.operation.prompt import attend
+from bench.control.prompt import PromptDesk
 
 
 class Asking:

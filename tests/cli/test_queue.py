@@ -79,7 +79,7 @@ def test_tags_of_a_run_are_found_again(command):
 def test_what_a_study_suggests_goes_into_the_queue_with_the_study_s_note(asked, command, monkeypatch):
     trials = [{"kind": "steps", "parameters": {"repeats": 1, "load_kg": load_kg}} for load_kg in (0.0, 0.05)]
     found = {"study_id": 4, "note": "suggested for study 4", "trials": trials}
-    monkeypatch.setattr("bench.cli.study_trials.suggested", lambda *_: found)
+    monkeypatch.setattr("bench.cli.lab.study_trials.suggested", lambda *_: found)
     assert asked("queue", "pause", "--json")["state"] == "held"
     assert asked("study", "suggest", "4", "--queue", "--json")["item_ids"] == [1, 2]
     waiting = asked("queue", "list", "--json")["waiting"]

@@ -39,7 +39,7 @@ def test_info_check_backup_vacuum(path: Path, tmp_path: Path) -> None:
 
 
 def test_prune_lists_first_and_removes_only_when_told(path: Path, tmp_path: Path) -> None:
-    from bench.configuration import PRESETS
+    from bench.config.configuration import PRESETS
 
     assert "everything is kept" in run(path, "prune")[1]
     config = tmp_path / "bench.toml"
@@ -55,7 +55,7 @@ def test_prune_lists_first_and_removes_only_when_told(path: Path, tmp_path: Path
 
 
 def test_what_a_study_uses_goes_only_when_that_is_said(path: Path, tmp_path: Path) -> None:
-    from bench.configuration import PRESETS
+    from bench.config.configuration import PRESETS
 
     config = tmp_path / "bench.toml"
     config.write_text((PRESETS / "paper.toml").read_text() + "\n[store.retention]\ncompleted_days = 1e-9\n")

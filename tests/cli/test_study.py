@@ -50,9 +50,9 @@ def test_effects(command):
 
 
 def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):
-    from bench.study.next_trial.options import choices
+    from bench.study.suggestion.options import choices
 
-    suggest = importlib.import_module("bench.study.suggest")
+    suggest = importlib.import_module("bench.study.suggestion.suggest")
 
     def few(*args):
         return [one for one in choices(*args) if one.parameters.get("waveforms") == ["slow-sine"]]

@@ -31,8 +31,8 @@ def started(command, monkeypatch):
                 raise outcome
             return SimpleNamespace(id=9 - len(left), outcome=outcome, reason=""), 130 if outcome == "stopped" else None
 
-        monkeypatch.setattr("bench.cli.study_trials.suggested", suggested)
-        monkeypatch.setattr("bench.cli.study_trials.carry_out", carry_out)
+        monkeypatch.setattr("bench.cli.lab.study_trials.suggested", suggested)
+        monkeypatch.setattr("bench.cli.lab.study_trials.carry_out", carry_out)
         monkeypatch.setattr("bench.study.extend_study", lambda _store, _study, numbers: {"added": numbers})
         monkeypatch.setattr("bench.study.diagnose", lambda _store, _study: {"sentence": "so"})
         told = command("study", "suggest", 1, "--start", "--json", *extra)

@@ -3,7 +3,7 @@
 import json
 from importlib import resources
 
-from bench.service.tokens import digest_of
+from bench.service.auth.tokens import digest_of
 from bench.store import Store
 
 
@@ -51,7 +51,7 @@ def test_making_and_revoking_is_on_record(command):
 
 def test_the_audit_log_has_its_retention(command, tmp_path):
     config = tmp_path / "bench.toml"
-    preset = (resources.files("bench") / "presets" / "paper.toml").read_text(encoding="utf-8")
+    preset = (resources.files("bench.config") / "presets" / "paper.toml").read_text(encoding="utf-8")
     config.write_text(preset + "\n[store.retention]\naudit_days = 1\n")
     command("token", "new", "ada")
     pruned = command("--config", config, "store", "prune", "--delete")

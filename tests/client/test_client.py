@@ -6,11 +6,11 @@ import time
 import numpy as np
 import pytest
 
-from bench import station
 from bench.client import Bench, Refused, Unreachable, connection
-from bench.drive_factory import Equipment
-from bench.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from bench.control import station
+from bench.control.drive_factory import Equipment
+from bench.control.technician import PersonTechnician
+from tests.control.fake_drive import FakeDrive
 from tests.service.running_service import TOKEN
 
 

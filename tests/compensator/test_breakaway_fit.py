@@ -5,8 +5,8 @@ from math import isnan
 import numpy as np
 import pytest
 
-from compensator.breakaway_fit import Breakaway, fit
 from compensator.errors import ModelParameterError
+from compensator.rest.breakaway_fit import Breakaway, fit
 
 RATES = (0.6, 0.15)
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from compensator.calibration_points import check_points
 from compensator.errors import CalibrationError
-from compensator.friction_calibration import NOT_COVERED, NOT_TOLD, fit, fit_duty
-from compensator.kinetic_friction import KineticFriction
-from compensator.motor import MotorConstants
+from compensator.motion.calibration_points import check_points
+from compensator.motion.friction_calibration import NOT_COVERED, NOT_TOLD, fit, fit_duty
+from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motor.dc_motor import MotorConstants
 
 # the balanced joint of the paper's rig under 100 g, at the motor shaft
 TRUE = KineticFriction(coulomb_a=0.16, static_a=0.27, stribeck_speed_rad_s=5.0, shape=2.0, viscous_a_s_rad=2.1e-3)

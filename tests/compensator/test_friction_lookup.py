@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from compensator.errors import CalibrationError, LookupRangeError
-from compensator.friction_lookup import FrictionLookup
-from compensator.kinetic_friction import KineticFriction
-from compensator.motor import MotorConstants
+from compensator.motion.friction_lookup import FrictionLookup
+from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motor.dc_motor import MotorConstants
 
 
 def curve(coulomb_a):

@@ -3,7 +3,7 @@
 import pytest
 
 from compensator.errors import ModelParameterError
-from compensator.gear_loss import GearLoss
+from compensator.motion.gear_loss import GearLoss
 
 LOSS = GearLoss(driving=0.25, back_driving=0.2, carried_a=0.003)
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from compensator import rest_search, zero_speed_search
 from compensator.errors import NoEstimateError
-from compensator.zero_speed_search import Reason, SearchReading
+from compensator.rest import rest_search, zero_speed_search
+from compensator.rest.zero_speed_search import Reason, SearchReading
 from tests.compensator import test_rest_search as improved
 from tests.compensator import test_zero_speed_search as flow_chart
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compensator.errors import ModelParameterError
-from compensator.kinetic_friction import KineticFriction
+from compensator.motion.kinetic_friction import KineticFriction
 
 CURVE = KineticFriction(coulomb_a=0.2, static_a=0.3, stribeck_speed_rad_s=2.0, shape=2.0, viscous_a_s_rad=0.01)
 

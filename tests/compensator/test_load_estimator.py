@@ -6,12 +6,12 @@ from math import cos, inf, isnan, nan, pi, sin
 
 import pytest
 
-from compensator import load_estimator
 from compensator.errors import ModelParameterError
-from compensator.friction_lookup import FrictionLookup
-from compensator.gear_loss import GearLoss
-from compensator.kinetic_friction import KineticFriction
-from compensator.load_estimator import Branch, EstimatorSettings, JointModel, Observation, RestResult
+from compensator.motion import load_estimator
+from compensator.motion.friction_lookup import FrictionLookup
+from compensator.motion.gear_loss import GearLoss
+from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motion.load_estimator import Branch, EstimatorSettings, JointModel, Observation, RestResult
 
 PERIOD_S, COUNT_RAD = 0.005, 1e-5
 LIGHT, HEAVY = KineticFriction(0.06, 0.1, 5.0, 2.0, 2e-3), KineticFriction(0.16, 0.27, 5.0, 2.0, 2e-3)

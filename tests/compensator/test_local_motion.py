@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compensator.errors import ModelParameterError
-from compensator.local_motion import window
+from compensator.motion.local_motion import window
 
 PERIOD_S = 0.01
 

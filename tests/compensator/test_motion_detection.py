@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compensator.errors import ModelParameterError
-from compensator.motion_detection import false_alarms_per_hour, threshold_counts
+from compensator.rest.motion_detection import false_alarms_per_hour, threshold_counts
 
 PERIOD_S = 0.005
 HOUR = 3600.0 / PERIOD_S

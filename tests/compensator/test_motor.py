@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compensator import motor
 from compensator.errors import ModelParameterError
-from compensator.motor import MotorConstants
+from compensator.motor import dc_motor as motor
+from compensator.motor.dc_motor import MotorConstants
 
 MOTOR = MotorConstants(resistance_ohm=4.0, back_emf_v_s_rad=0.05)
 

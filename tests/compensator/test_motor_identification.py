@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from compensator.errors import CalibrationError
-from compensator.kinetic_friction import KineticFriction
-from compensator.motor_identification import MotorSample, identify
+from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motor.identification import MotorSample, identify
 
 R_OHM, KE_V_S_RAD, SUPPLY_V = 8.0, 0.05, 24.0
 FRICTION = KineticFriction(0.16, 0.27, 5.0, viscous_a_s_rad=2.1e-3)

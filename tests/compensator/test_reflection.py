@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from compensator.errors import ModelParameterError
-from compensator.reflection import Following, Reflection
-from compensator.reflection_quality import delay_s, swing
+from compensator.reflection.reflection import Following, Reflection
+from compensator.reflection.reflection_quality import delay_s, swing
 
 LAW = Reflection(force_scale=2.0, torque_n_m=1.0, slew_n_m_s=20.0, damping_n_m_s_rad=0.1, period_s=0.005)
 PATH = Following(

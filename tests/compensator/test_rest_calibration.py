@@ -5,9 +5,9 @@ from math import copysign, pi, sin
 import numpy as np
 import pytest
 
-from compensator.breakaway_fit import Breakaway, fit
 from compensator.errors import CalibrationError
-from compensator.rest_calibration import RestCalibration, RestPoint, calibrate
+from compensator.rest.breakaway_fit import Breakaway, fit
+from compensator.rest.rest_calibration import RestCalibration, RestPoint, calibrate
 
 GAIN, STEP_A, ASYMMETRY, SLOPE, OFFSET_A = 1.03, 0.002, 0.15, 0.24, 0.004
 FULL_A, SCATTER = 4.9, 0.015  # A per kg at 90 degrees

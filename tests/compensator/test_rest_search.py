@@ -6,11 +6,11 @@ from math import nan
 import numpy as np
 import pytest
 
-from compensator import rest_search
-from compensator.breakaway_fit import fit
 from compensator.errors import ModelParameterError
-from compensator.rest_search import Phase, RestSearchSettings
-from compensator.zero_speed_search import Reason, SearchReading
+from compensator.rest import rest_search
+from compensator.rest.breakaway_fit import fit
+from compensator.rest.rest_search import Phase, RestSearchSettings
+from compensator.rest.zero_speed_search import Reason, SearchReading
 
 COUNT_RAD = 1e-4
 SETTINGS = RestSearchSettings(

@@ -5,9 +5,9 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from compensator.friction_lookup import FrictionLookup
-from compensator.kinetic_friction import KineticFriction
-from compensator.load_estimate import EstimatorSettings, Observation, RestResult
+from compensator.motion.friction_lookup import FrictionLookup
+from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motion.load_estimate import EstimatorSettings, Observation, RestResult
 from compensator.rivals import RIVALS, Knowledge
 from compensator.rivals.rival import smoothed
 

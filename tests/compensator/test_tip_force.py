@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from compensator.errors import ModelParameterError, SingularPoseError
-from compensator.planar_arm import PlanarArm
-from compensator.tip_force import require_complete, tip_force
+from compensator.reflection.planar_arm import PlanarArm
+from compensator.reflection.tip_force import require_complete, tip_force
 from tests.paths import EXAMPLES
 
 ARM = PlanarArm(0.5, 0.4)

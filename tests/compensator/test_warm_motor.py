@@ -3,7 +3,7 @@
 import pytest
 
 from compensator.errors import ModelParameterError
-from compensator.motor import MotorConstants, at_temperature
+from compensator.motor.dc_motor import MotorConstants, at_temperature
 
 COLD = MotorConstants(resistance_ohm=8.0, back_emf_v_s_rad=0.05)
 

@@ -5,9 +5,9 @@ from math import nan
 
 import pytest
 
-from compensator import zero_speed_search
 from compensator.errors import ModelParameterError, NoEstimateError
-from compensator.zero_speed_search import Phase, Reason, SearchReading, SearchSettings
+from compensator.rest import zero_speed_search
+from compensator.rest.zero_speed_search import Phase, Reason, SearchReading, SearchSettings
 
 COUNT_RAD = 1e-4
 SETTINGS = SearchSettings(

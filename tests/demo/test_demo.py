@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from bench.demo import run_demo
-from bench.demo.hidden_effect import draw
+from bench.evaluation.demo import run_demo
+from bench.evaluation.demo.hidden_effect import draw
 from bench.store import Store
 
 pytestmark = pytest.mark.timeout(600)  # a minute by itself; a shared machine may take several

@@ -3,12 +3,12 @@ from typing import Any
 import pytest
 
 from drivers.contract import Command, Mode, Sample
-from sim_backend import presets
 from sim_backend.devices.axis import CURRENT, OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.plant_tables import behind_a_drive
-from sim_backend.drive import SimulatedDrive
+from sim_backend.drive.simulated_drive import SimulatedDrive
 from sim_backend.errors import ParameterError
-from sim_backend.faults import OverCurrent, TorqueDisabled
+from sim_backend.faults.script import OverCurrent, TorqueDisabled
+from sim_backend.plant import presets
 
 
 class _Held:

@@ -7,7 +7,7 @@ from sim_backend.devices.canopen.eds import eds_text
 from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.generic import GENERIC
-from sim_backend.faults import OverCurrent
+from sim_backend.faults.script import OverCurrent
 from tests.devices.can_host import NODE, CanHost
 
 PRE_OPERATIONAL, OPERATIONAL = b"\x7f", b"\x05"

@@ -7,7 +7,7 @@ import pytest
 
 from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.generic import GENERIC
-from sim_backend.faults import OverTemperature, SupplyLost, TorqueDisabled
+from sim_backend.faults.script import OverTemperature, SupplyLost, TorqueDisabled
 from tests.devices.can_host import CanHost
 
 MASTER = 0x7F

@@ -13,7 +13,7 @@ from sim_backend.devices.roboclaw.commands import COMMANDS
 from sim_backend.devices.roboclaw.crc import crc16
 from sim_backend.devices.roboclaw.device import MEASURED, RoboClaw
 from sim_backend.devices.roboclaw.encoder import BACKWARD, OVERFLOW, UNDERFLOW, Counter
-from sim_backend.faults import DriveFailed, OverTemperature, SupplyLost, TorqueDisabled
+from sim_backend.faults.script import DriveFailed, OverTemperature, SupplyLost, TorqueDisabled
 
 ACK = b"\xff"
 ADDRESS = 0x80

@@ -5,16 +5,16 @@ from math import isnan, pi, sqrt
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
-from bench.figures import figures_table, rigs
-from bench.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
-from bench.figures.coverage import Share, true_load_a
-from bench.figures.rigs import drawn_rig
-from bench.figures.table import COLUMNS
-from bench.figures.trials import SeedResults, drawn_loads
-from bench.reflected_load import load_current_a
-from bench.rest import RestSettings
-from sim_backend.presets import paper
+from bench.config.configuration import default_configuration
+from bench.config.reflected_load import load_current_a
+from bench.config.sections import RestSettings
+from bench.evaluation.figures import figures_table, rigs
+from bench.evaluation.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
+from bench.evaluation.figures.coverage import Share, true_load_a
+from bench.evaluation.figures.rigs import drawn_rig
+from bench.evaluation.figures.table import COLUMNS
+from bench.evaluation.figures.trials import SeedResults, drawn_loads
+from sim_backend.plant.presets import paper
 
 CONFIGURATION = default_configuration()
 

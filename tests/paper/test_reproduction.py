@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from bench.configuration import default_configuration
-from bench.paper import reproduce, summary
-from bench.paper.measurements import Plan
-from bench.paper.row import in_words, spans
+from bench.config.configuration import default_configuration
+from bench.evaluation.paper import reproduce, summary
+from bench.evaluation.paper.measurements import Plan
+from bench.evaluation.paper.row import in_words, spans
 from bench.report import write_html
 from bench.store import Store
 from bench.store.errors import NotFoundError

@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from bench.configuration import default_configuration
-from bench.queue import Conductor
-from bench.runner import Runner
+from bench.config.configuration import default_configuration
+from bench.runs.queue import Conductor
+from bench.runs.runner import Runner
 from bench.store import Store
 from tests.queue.waiting import wait_for
 

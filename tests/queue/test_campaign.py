@@ -5,12 +5,12 @@ from itertools import permutations
 import pytest
 from pydantic import ValidationError
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from bench.errors import ConfigurationError, LimitError, ParameterError, UnknownKindError
-from bench.queue import Campaign, plan_campaign
-from bench.queue.campaign_file import read_campaign
-from bench.queue.load_order import fewest_changes, load_changes
-from bench.store.queue import NewItem
+from bench.runs.queue import Campaign, plan_campaign
+from bench.runs.queue.campaign_file import read_campaign
+from bench.runs.queue.load_order import fewest_changes, load_changes
+from bench.store.tables.queue import NewItem
 
 CONFIGURATION = default_configuration()
 GRID = {"speed_rad_s": [0.5, 1.0, 2.0], "load_kg": [0.0, 0.05, 0.1]}

@@ -4,17 +4,17 @@ import threading
 
 import pytest
 
-from bench import station
-from bench.configuration import default_configuration
-from bench.drive_factory import Equipment
+from bench.config.configuration import default_configuration
+from bench.control import station
+from bench.control.drive_factory import Equipment
+from bench.control.technician import PersonTechnician
 from bench.errors import BusyError, LimitError
-from bench.lease import LeaseHeldError
-from bench.queue import Conductor, Order, queue_state
-from bench.queue.conductor import RESTARTED
-from bench.runner import Runner
+from bench.runs.lease import LeaseHeldError
+from bench.runs.queue import Conductor, Order, queue_state
+from bench.runs.queue.conductor import RESTARTED
+from bench.runs.runner import Runner
 from bench.store.errors import NotFoundError, StoreStateError
-from bench.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from tests.control.fake_drive import FakeDrive
 from tests.queue.waiting import wait_for
 
 
@@ -198,7 +198,7 @@ def test_what_ran_when_the_process_died_is_as_its_record_says(runner, store):
 
 
 def _item():
-    from bench.queue import checked_item
+    from bench.runs.queue import checked_item
 
     return checked_item(steps(), default_configuration())
 

@@ -8,8 +8,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.recording_set.csv_text import csv_chunks, lines
 from bench.recording_set.stream import PIECE_ROWS, stream_of
+from bench.recording_set.text.csv_text import csv_chunks, lines
 from compensator.lab.recordings.recording import Event, Recording
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.recording_set.numbers import NoNumber, column, matrix
+from bench.recording_set.text.numbers import NoNumber, column, matrix
 
 FLOATS = st.floats(allow_nan=False)
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from bench.config.rig import Arm, Effort, Gear, Motor, Rig
 from bench.recording_set import (
     RecordingSet,
     RecordingSetError,
@@ -17,7 +18,6 @@ from bench.recording_set import (
     read_recording_set,
     write_recording_set,
 )
-from bench.rig import Arm, Effort, Gear, Motor, Rig
 from bench.store import Store
 from compensator.lab.recordings.channels import CHANNELS
 from compensator.lab.recordings.recording import Event, Recording

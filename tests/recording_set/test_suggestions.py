@@ -3,8 +3,8 @@
 import pytest
 
 from bench.recording_set import Mapping
-from bench.recording_set.suggestions import _UNITS, suggestion
-from bench.recording_set.toml_file import parse_toml
+from bench.recording_set.text.suggestions import _UNITS, suggestion
+from bench.recording_set.text.toml_file import parse_toml
 from compensator.lab.recordings.channels import CHANNELS
 
 

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from bench.recording_set import RecordingSetError, read_recording_set, table
+from bench.recording_set import RecordingSetError, read_recording_set
 from bench.recording_set.container import Folder
-from bench.recording_set.table import Table
+from bench.recording_set.text import table
+from bench.recording_set.text.table import Table
 from tests.recording_set.examples import write_set
 
 TEXT = 'a,b\n1,"two\nlines, ""quoted"""\n\n2,plain\r\n3,"x\n\ny"\n4,end'

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.recording_set.toml_file import line_of
+from bench.recording_set.text.toml_file import line_of
 
 TEXT = """# rig
 name = "x"

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.recording_set.values import parse, shield, unshield, write
+from bench.recording_set.text.values import parse, shield, unshield, write
 from compensator.lab.recordings.recording import Condition
 
 CONDITIONS = st.one_of(

@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
-from bench.friction import FrictionCurve, FrictionSettings
-from bench.rivals import compare, comparison, numbers_of, scoring, section_of
-from bench.rivals.comparison import Comparison
-from bench.rivals.record import record
-from bench.rivals.replay import search_of, truth_of
-from bench.rivals.scoring import REGIMES, Score
+from bench.config.configuration import default_configuration
+from bench.config.friction_curves import FrictionCurve, FrictionSettings
+from bench.evaluation.rivals import compare, comparison, numbers_of, scoring, section_of
+from bench.evaluation.rivals.comparison import Comparison
+from bench.evaluation.rivals.record import record
+from bench.evaluation.rivals.replay import search_of, truth_of
+from bench.evaluation.rivals.scoring import REGIMES, Score
 from compensator.rivals import RIVALS
 
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
@@ -25,7 +25,7 @@ SMALL = {
 
 
 def curve(load_kg):
-    """What the preset says of itself; see `tests/bench/test_speed_sweep.py`."""
+    """What the preset says of itself; see `tests/experiments/test_speed_sweep.py`."""
     growth = 1.0 + 1.7 * 9.80665 * load_kg
     coulomb_a, static_a = 0.06 * growth + 0.00625, 0.1 * growth + 0.0075
     return FrictionCurve(

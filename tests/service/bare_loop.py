@@ -11,7 +11,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-from bench.scheduling import PRIORITY
+from bench.control.scheduling import PRIORITY
 from tests.service.timed_process import FOLDER, Cycles, TimedClock, read
 
 ROOT = Path(__file__).parents[2]

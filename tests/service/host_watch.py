@@ -20,7 +20,7 @@ from time import perf_counter
 
 import numpy as np
 
-from bench.scheduling import PRIORITY
+from bench.control.scheduling import PRIORITY
 
 ROOT = Path(__file__).parents[2]
 PERIOD_S = 0.0005

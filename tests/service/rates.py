@@ -32,7 +32,7 @@ from typing import Any
 import httpx
 import tomli_w
 
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
 from tests.service import bare_loop, timed_process
 from tests.service.host_watch import watched
 from tests.service.lateness import Measured, Stretch, report

@@ -11,16 +11,16 @@ from typing import Any
 
 import httpx
 
-from bench.bench_control import BenchControl
-from bench.bench_process import RemoteRunner
-from bench.configuration import BenchConfiguration, default_configuration
-from bench.runner import Runner
-from bench.service.access import LOOPBACK_NAMES, Access
+from bench.config.configuration import BenchConfiguration, default_configuration
+from bench.runs.bench_control import BenchControl
+from bench.runs.bench_process import RemoteRunner
+from bench.runs.runner import Runner
 from bench.service.app import create_app
+from bench.service.auth.access import LOOPBACK_NAMES, Access
+from bench.service.auth.tls import Certificate
+from bench.service.auth.token_register import TokenRegister
+from bench.service.auth.tokens import ENVIRONMENT, digest_of, make_token
 from bench.service.server import Address, BenchServer, listen
-from bench.service.tls import Certificate
-from bench.service.token_register import TokenRegister
-from bench.service.tokens import ENVIRONMENT, digest_of, make_token
 from bench.store import Store
 
 TOKEN = "test-token-0123456789"

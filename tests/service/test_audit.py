@@ -9,10 +9,10 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from bench.service.audit_trail import AuditWriter
+from bench.service.auth.audit_trail import AuditWriter
 from bench.store import Store
-from bench.store.audit import AuditEntry
 from bench.store.errors import StoreLockedError
+from bench.store.tables.audit import AuditEntry
 from tests.service.running_service import TOKEN
 
 

@@ -12,10 +12,11 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
-from bench.bench_control import BenchControl
-from bench.live import LiveRows
-from bench.service import live_events, turns
-from bench.service.live_rows import Rows, rows_of
+from bench.runs.bench_control import BenchControl
+from bench.runs.live import LiveRows
+from bench.service.http import turns
+from bench.service.live import live_events
+from bench.service.live.live_rows import Rows, rows_of
 from tests.service import running_service as service_of_tests
 from tests.service.running_service import TOKEN, RunningService, running_service
 

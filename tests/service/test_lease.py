@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from bench.lease import Lease, LeaseHeldError, NoLeaseError
+from bench.runs.lease import Lease, LeaseHeldError, NoLeaseError
 
 
 class Bench:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.live import LiveBuffer
-from bench.service.replay import MOST_REPLAYED, GapError, Mark, missed
+from bench.runs.live import LiveBuffer
+from bench.service.live.replay import MOST_REPLAYED, GapError, Mark, missed
 from bench.store import Store
 from tests.service.listening import hear, left_at, listen, of_run, recorded, rows_of, times, until
 

@@ -5,9 +5,10 @@ from datetime import timedelta
 
 import pytest
 
-from bench.service.repeated_start import KeyInUseError, KeyReusedError, once
-from bench.store import Store, start_keys
-from bench.store.experiments import now
+from bench.service.http.repeated_start import KeyInUseError, KeyReusedError, once
+from bench.store import Store
+from bench.store.tables import start_keys
+from bench.store.tables.experiments import now
 
 BODY = {"kind": "steps", "parameters": {"repeats": 1}, "pace": "fast"}
 

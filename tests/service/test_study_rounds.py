@@ -5,15 +5,15 @@ import time
 
 import pytest
 
-from bench.store.queue import RUNNING, WAITING
+from bench.store.tables.queue import RUNNING, WAITING
 
-SUGGEST = importlib.import_module("bench.study.suggest")
+SUGGEST = importlib.import_module("bench.study.suggestion.suggest")
 MOTIONS = {"loads_kg": [0.0, 0.05], "waveforms": ["slow-sine", "multisine"], "duration_s": 4.0, "repeats": 1}
 
 
 @pytest.fixture
 def path(service, monkeypatch):
-    from bench.study.next_trial.options import choices
+    from bench.study.suggestion.options import choices
 
     monkeypatch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::12])  # the whole lot takes seconds
     recorded = service.run("excitation", **MOTIONS)["experiment_id"]

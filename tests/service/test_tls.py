@@ -10,7 +10,7 @@ import httpx
 import pytest
 
 from bench.errors import ConfigurationError
-from bench.service.tls import Certificate, certificate
+from bench.service.auth.tls import Certificate, certificate
 from tests.service.running_service import running_service
 
 OPENSSL = shutil.which("openssl")

@@ -10,12 +10,12 @@ import httpx
 import pytest
 
 from bench.errors import ConfigurationError
-from bench.service import token_register
-from bench.service.attempts import BURST, MOST_ADDRESSES, REFILL_S, Attempts
-from bench.service.first_token import first_token, has_valid_token
-from bench.service.roles import Role
-from bench.service.token_register import TokenRegister
-from bench.service.tokens import (
+from bench.service.auth import token_register
+from bench.service.auth.attempts import BURST, MOST_ADDRESSES, REFILL_S, Attempts
+from bench.service.auth.first_token import first_token, has_valid_token
+from bench.service.auth.roles import Role
+from bench.service.auth.token_register import TokenRegister
+from bench.service.auth.tokens import (
     check_name,
     chosen_token,
     digest_of,
@@ -26,7 +26,7 @@ from bench.service.tokens import (
     token_file,
 )
 from bench.store import Store
-from bench.store.experiments import now
+from bench.store.tables.experiments import now
 from tests.service.running_service import TOKEN
 
 

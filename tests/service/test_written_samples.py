@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from bench.service import written_samples
-from bench.service.json_numbers import column
-from bench.service.trials import Samples
-from bench.service.written_samples import samples_json
+from bench.service.http import written_samples
+from bench.service.http.json_numbers import column
+from bench.service.http.written_samples import samples_json
+from bench.service.routes.trials import Samples
 
 
 def test_the_text_is_that_of_the_description(monkeypatch):

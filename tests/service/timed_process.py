@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.clock import WallClock
+from bench.control.clock import WallClock
 
 FOLDER = "FRICTION_BENCH_TIMED_FOLDER"
 MOST_CYCLES = 200_000
@@ -63,8 +63,8 @@ def read(folder: Path) -> list[Cycles]:
 
 def main() -> None:
     """The bench process."""
-    from bench import runner
-    from bench.bench_process import process
+    from bench.runs import runner
+    from bench.runs.bench_process import process
 
     runner.WallClock = TimedClock  # type: ignore[misc]
     process.main()
@@ -72,8 +72,8 @@ def main() -> None:
 
 def serve() -> None:
     """The command, with such a bench process."""
-    from bench.bench_process import RemoteRunner
     from bench.cli import main as command
+    from bench.runs.bench_process import RemoteRunner
     from bench.service import server
 
     server.RemoteRunner = partial(RemoteRunner, module="tests.service.timed_process")  # type: ignore[misc, assignment]

@@ -3,9 +3,9 @@
 from math import pi
 from typing import Any
 
-from sim_backend.motor import VOLTAGE
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import VOLTAGE
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import Plant
 
 RATIO = 10.0
 K = 0.04  # torque constant [N m/A]

@@ -19,16 +19,16 @@ from typing import Any
 import numba
 import numpy as np
 
-from bench.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.store import Store
 from drivers.contract import Command, Mode
-from sim_backend import presets
-from sim_backend.batch import Course, run_batch
-from sim_backend.drive import SimulatedDrive
-from sim_backend.gravity import Load
-from sim_backend.motor import VOLTAGE
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import Plant
+from sim_backend.drive.simulated_drive import SimulatedDrive
+from sim_backend.mechanisms.joint.gravity import Load
+from sim_backend.mechanisms.motor.motor import VOLTAGE
+from sim_backend.plant import presets
+from sim_backend.plant.batch import Course, run_batch
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.cycle_cost import at_1_khz
 from tests.sim_backend.mujoco_hinge import hinge, swing
 
@@ -45,8 +45,8 @@ FIRST_CALL = """
 from time import perf_counter
 began = perf_counter()
 from drivers.contract import Command, Mode
-from sim_backend import presets
-from sim_backend.drive import SimulatedDrive
+from sim_backend.plant import presets
+from sim_backend.drive.simulated_drive import SimulatedDrive
 drive = SimulatedDrive(presets.paper())
 drive.open(0.005)
 drive.enable(Mode.DUTY)
@@ -201,4 +201,4 @@ def report() -> Iterator[str]:
 
 if __name__ == "__main__":
     for line in report():
-        print(line, flush=True)  # noqa: T201
+        print(line, flush=True)

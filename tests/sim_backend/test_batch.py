@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from sim_backend import presets
-from sim_backend.batch import Course, run_batch, run_course
 from sim_backend.errors import ParameterError
-from sim_backend.kernel import advance
-from sim_backend.motor import VOLTAGE
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import VOLTAGE
+from sim_backend.plant import presets
+from sim_backend.plant.batch import Course, run_batch, run_course
+from sim_backend.plant.kernel import advance
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import parameters
 
 DEMANDS = 0.4 * np.sin(0.1 * np.arange(200.0))

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim_backend.motor import OPEN, VOLTAGE
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import RATIO, RESISTANCE, ROTOR, G, K, duty_for_torque, plant
 from tests.sim_backend.reference import BristledRotor
 

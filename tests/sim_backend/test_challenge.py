@@ -6,11 +6,11 @@ import pytest
 from sim_backend.challenge.draw import DrawnPlant, Wanted, draw_plant, hide
 from sim_backend.challenge.joint import draw_joint
 from sim_backend.challenge.mechanisms import MECHANISMS
-from sim_backend.gravity import Load
-from sim_backend.motor import VOLTAGE
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import Plant
-from sim_backend.presets import paper
+from sim_backend.mechanisms.joint.gravity import Load
+from sim_backend.mechanisms.motor.motor import VOLTAGE
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import Plant
+from sim_backend.plant.presets import paper
 
 OF_THE_JOINT = {
     "motor", "supply", "gear", "arm", "load", "encoder", "friction", "arm_friction", "heat", "scatter",

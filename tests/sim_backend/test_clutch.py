@@ -1,6 +1,6 @@
 import pytest
 
-from sim_backend.motor import OPEN
+from sim_backend.mechanisms.motor.motor import OPEN
 from tests.sim_backend.plants import ARM, RATIO, RESISTANCE, SUPPLY, G, K, duty_for_torque, plant, run
 
 HELD = {"coulomb_n_m": 9.0, "static_n_m": 9.0}

@@ -3,7 +3,7 @@ from math import asin, exp, pi, sqrt, tan
 
 import pytest
 
-from sim_backend.motor import OPEN, VOLTAGE
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
 from tests.sim_backend.plants import ARM, RATIO, ROTOR, duty_for_torque, plant, run
 
 GAP = 0.02

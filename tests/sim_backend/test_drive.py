@@ -5,9 +5,9 @@ import pytest
 
 from drivers.contract import Command, Drive, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveFault, DriveStateError
-from sim_backend import presets
-from sim_backend.drive import SimulatedDrive
-from sim_backend.parameters import PlantParameters
+from sim_backend.drive.simulated_drive import SimulatedDrive
+from sim_backend.plant import presets
+from sim_backend.plant.parameters import PlantParameters
 
 OFF = Command(Mode.OFF)
 PERIOD_S = 0.005

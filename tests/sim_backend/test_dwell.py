@@ -2,8 +2,8 @@ from math import exp
 
 import pytest
 
-from sim_backend.motor import OPEN
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import OPEN
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import RATIO, duty_for_torque, plant, run
 
 STATIC = 8e-3

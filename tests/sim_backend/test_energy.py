@@ -2,10 +2,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_backend import presets
-from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import BRAKE, CURRENT, OPEN, VOLTAGE
+from sim_backend.plant import presets
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import parameters
 
 EVERYTHING = {

@@ -8,10 +8,9 @@ import pytest
 
 from drivers.contract import Command, Mode, Sample, Status
 from drivers.errors import DriveConnectionError, DriveFault, DriveStateError
-from sim_backend import presets
-from sim_backend.drive import SimulatedDrive
+from sim_backend.drive.simulated_drive import SimulatedDrive
 from sim_backend.errors import ParameterError
-from sim_backend.faults import (
+from sim_backend.faults.script import (
     ClutchSlips,
     DriveFailed,
     EncoderJump,
@@ -25,7 +24,8 @@ from sim_backend.faults import (
     SupplyLost,
     TorqueDisabled,
 )
-from sim_backend.parameters import PlantParameters
+from sim_backend.plant import presets
+from sim_backend.plant.parameters import PlantParameters
 
 OFF = Command(Mode.OFF)
 PERIOD_S = 0.005

@@ -2,9 +2,9 @@ from math import exp, sin
 
 import pytest
 
-from sim_backend.friction import Friction, dry_friction
-from sim_backend.motor import OPEN
-from sim_backend.record import pack
+from sim_backend.mechanisms.friction.friction import Friction, dry_friction
+from sim_backend.mechanisms.motor.motor import OPEN
+from sim_backend.plant.jit import pack
 from tests.sim_backend.compiled import callable_from_python
 from tests.sim_backend.plants import RATIO, RESISTANCE, SUPPLY, G, K, duty_for_torque, plant, run, settled_speed
 

@@ -3,7 +3,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from sim_backend.motor import OPEN, VOLTAGE
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
 from tests.sim_backend.plants import RATIO, duty_for_torque, plant
 
 COULOMB = 5e-3

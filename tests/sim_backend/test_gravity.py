@@ -2,7 +2,7 @@ from math import pi, sin, sqrt
 
 import pytest
 
-from sim_backend.motor import OPEN
+from sim_backend.mechanisms.motor.motor import OPEN
 from tests.sim_backend.plants import ARM, G, plant
 
 LOAD_KG, LENGTH_M = 0.2, 0.3

@@ -2,7 +2,7 @@ from math import exp, isnan
 
 import pytest
 
-from sim_backend.motor import OPEN, VOLTAGE
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
 from tests.sim_backend.plants import RATIO, RESISTANCE, SUPPLY, K, plant, run, settled_speed
 
 QUICK = {"present": True, "ambient_c": 20.0, "start_c": 20.0, "winding_j_k": 0.5, "housing_j_k": 1.0}

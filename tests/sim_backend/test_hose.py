@@ -3,8 +3,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from sim_backend.motor import OPEN
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import OPEN
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import ARM, RATIO, ROTOR, parameters, plant
 
 STIFFNESS, REACH = 0.9, 0.3

@@ -2,7 +2,7 @@ from math import exp, sin
 
 import pytest
 
-from sim_backend.motor import BRAKE, CURRENT, OPEN, VOLTAGE
+from sim_backend.mechanisms.motor.motor import BRAKE, CURRENT, OPEN, VOLTAGE
 from tests.sim_backend.plants import ARM, RATIO, RESISTANCE, ROTOR, SUPPLY, K, plant, run, settled_speed
 
 INERTIA = RATIO**2 * ROTOR + ARM

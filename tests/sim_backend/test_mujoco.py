@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim_backend.motor import OPEN
+from sim_backend.mechanisms.motor.motor import OPEN
 from tests.sim_backend.mujoco_hinge import hinge, swing
 from tests.sim_backend.plants import ARM, RATIO, ROTOR, plant
 

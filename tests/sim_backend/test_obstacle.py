@@ -3,7 +3,7 @@ from typing import Any
 
 import pytest
 
-from sim_backend.motor import OPEN, VOLTAGE
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
 from tests.sim_backend.plants import ARM, duty_for_torque, plant, run
 
 STIFFNESS = 1000.0

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_backend.motor import OPEN, VOLTAGE
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import ARM, G, duty_for_torque, plant, run
 
 LEVER, MASS, DAMPING, STIFFNESS = 0.3, 0.5, 4.0, 120.0

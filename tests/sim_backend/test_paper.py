@@ -5,8 +5,8 @@ from math import pi
 import pytest
 
 from drivers.contract import Command, Mode, Sample
-from sim_backend import presets
-from sim_backend.drive import SimulatedDrive
+from sim_backend.drive.simulated_drive import SimulatedDrive
+from sim_backend.plant import presets
 
 PERIOD_S = 0.005
 RESISTANCE, K, RATIO, SUPPLY = 8.0, 0.05, 20.0, 24.0

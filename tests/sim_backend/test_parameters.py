@@ -2,10 +2,10 @@ from typing import Any
 
 import pytest
 
-from sim_backend import presets
 from sim_backend.errors import ParameterError
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import Plant
+from sim_backend.plant import presets
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import parameters, plant
 
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from sim_backend import presets
-from sim_backend.motor import OPEN, VOLTAGE
-from sim_backend.parameters import PlantParameters
-from sim_backend.plant import Plant, Truth
-from sim_backend.randomness import uniform
+from sim_backend.mechanisms.motor.motor import OPEN, VOLTAGE
+from sim_backend.plant import presets
+from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.plant import Plant, Truth
+from sim_backend.plant.randomness import uniform
 from tests.sim_backend.compiled import callable_from_python
 
 NOISY = {"current_sensor": {"present": True, "noise_a": 0.01}, "load": {"mass_kg": 0.1}}

@@ -2,7 +2,7 @@ from math import exp
 
 import pytest
 
-from sim_backend.motor import OPEN
+from sim_backend.mechanisms.motor.motor import OPEN
 from tests.sim_backend.plants import RATIO, RESISTANCE, SUPPLY, K, duty_for_torque, plant, run
 
 COULOMB = 5e-3

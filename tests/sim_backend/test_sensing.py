@@ -3,7 +3,7 @@ from math import floor, isnan, pi
 import numpy as np
 import pytest
 
-from sim_backend.motor import VOLTAGE
+from sim_backend.mechanisms.motor.motor import VOLTAGE
 from tests.sim_backend.plants import RATIO, RESISTANCE, SUPPLY, K, plant, run
 
 COUNT_RAD = 2.0 * pi / 4096 / RATIO

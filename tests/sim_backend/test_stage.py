@@ -7,10 +7,10 @@ import pytest
 
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveFault
-from sim_backend import presets
-from sim_backend.drive import SimulatedDrive
-from sim_backend.motor import CURRENT, OPEN, VOLTAGE
-from sim_backend.parameters import PlantParameters
+from sim_backend.drive.simulated_drive import SimulatedDrive
+from sim_backend.mechanisms.motor.motor import CURRENT, OPEN, VOLTAGE
+from sim_backend.plant import presets
+from sim_backend.plant.parameters import PlantParameters
 from tests.sim_backend.plants import RATIO, RESISTANCE, ROTOR, SUPPLY, K, duty_for_torque, plant, run, settled_speed
 
 HELD = {"coulomb_n_m": 9.0, "static_n_m": 9.0}

@@ -1,8 +1,8 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_backend import stick_slip
-from sim_backend.stick_slip import Body
+from sim_backend.plant import stick_slip
+from sim_backend.plant.stick_slip import Body
 from tests.sim_backend.compiled import callable_from_python
 
 coupled_speeds = callable_from_python(stick_slip.coupled_speeds)

@@ -3,8 +3,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from sim_backend.motor import CURRENT, VOLTAGE
-from sim_backend.plant import Plant
+from sim_backend.mechanisms.motor.motor import CURRENT, VOLTAGE
+from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import RESISTANCE, SUPPLY, plant
 
 RIPPLE = {"fraction": 0.1, "frequency_hz": 5.0}

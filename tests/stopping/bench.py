@@ -16,9 +16,9 @@ from typing import Any
 import httpx
 import tomli_w
 
-from bench.commissioned import KIND
-from bench.configuration import BenchConfiguration
-from bench.drive_factory import make_equipment
+from bench.config.configuration import BenchConfiguration
+from bench.control.commissioned import KIND
+from bench.control.drive_factory import make_equipment
 from bench.provenance import provenance
 from bench.store import Store
 from tests.devices.device_process import DeviceProcess, device_process

@@ -30,8 +30,8 @@ class RaisingDrive:
 
 def install(file: Path) -> None:
     """Give every runner of this process such drives."""
-    from bench import station
-    from bench.drive_factory import Equipment, make_equipment
+    from bench.control import station
+    from bench.control.drive_factory import Equipment, make_equipment
 
     def raising(*words: Any) -> Equipment:
         found = make_equipment(*words)

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 
-from bench.late_cycles import BRAKING_S
-from bench.recorder import Recorder
-from bench.store.custody import LEFT_RUNNING
+from bench.control.late_cycles import BRAKING_S
+from bench.control.recorder import Recorder
+from bench.store.upkeep.custody import LEFT_RUNNING
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S
 from tests.stopping.bench import PATIENCE_S, WATCHDOG_S, Bench, Service, busy, wait_for
 

@@ -7,7 +7,7 @@ import pytest
 
 from bench.store import Event, Store
 from bench.store.errors import NotFoundError, StoreValueError
-from bench.store.importing import Import
+from bench.store.upkeep.importing import Import
 from compensator.lab.recordings.recording import Recording
 from tests.store.examples import begin, begin_trial, rows
 
@@ -97,7 +97,7 @@ def test_an_import_of_a_living_process_is_left_alone(store: Store, store_url: st
 
 
 def test_a_long_trial_comes_in_by_several_transactions(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("bench.store.importing.TRANSACTION_BYTES", 16 * 700)
+    monkeypatch.setattr("bench.store.upkeep.importing.TRANSACTION_BYTES", 16 * 700)
     store.add_imported("import", {}, {}, {}, [(recording("a", 20_000), "completed", "")])
     (trial,) = store.trials()
     assert trial.rows == 20_000

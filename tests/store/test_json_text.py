@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from bench.store.json_text import to_json
+from bench.store.tables.json_text import to_json
 from drivers.contract import Mode, Status
 
 

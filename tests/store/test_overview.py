@@ -5,9 +5,9 @@ import pytest
 from sqlalchemy import delete
 
 from bench.store import Store
-from bench.store.blocks import columns_of
-from bench.store.overview import GROUP_ROWS, overview_of
 from bench.store.schema import SAMPLE_OVERVIEW
+from bench.store.tables.overview import GROUP_ROWS, overview_of
+from bench.store.tables.samples import columns_of
 from tests.store.examples import CHANNELS, begin, begin_trial
 
 
@@ -77,7 +77,7 @@ def test_the_overview_is_what_is_read(store: Store) -> None:
     writer = begin_trial(store, begin(store))
     writer.append(rows)
     trial = store.trial(writer.trial_id)
-    from bench.store import samples
+    from bench.store.tables import samples
 
     with store._database.reading() as connection:
         found, asked = samples.read_overview(connection, trial, ["time_s", "position_rad"])
@@ -101,7 +101,7 @@ def test_an_append_that_failed_leaves_the_overview_as_it_was(store: Store, monke
     writer = begin_trial(store, begin(store))
     writer.append(rows[:700])
     with monkeypatch.context() as broken:
-        broken.setattr("bench.store.samples._COUNT", None)
+        broken.setattr("bench.store.tables.samples._COUNT", None)
         with pytest.raises(Exception, match="executable"):
             writer.append(rows[700:])
     writer.append(rows[700:])

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-import bench.provenance
+from bench import provenance as provenance_module
 from bench.provenance import provenance, software
 from drivers.contract import Description, Mode
 
@@ -58,10 +58,10 @@ def test_nothing_about_the_user_of_the_machine_is_told() -> None:
 
 
 def test_the_commit_is_named_in_a_checkout_only(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(bench.provenance, "_ROOT", tmp_path)
-    assert bench.provenance._commit() == {}
+    monkeypatch.setattr(provenance_module, "_ROOT", tmp_path)
+    assert provenance_module._commit() == {}
     (tmp_path / ".git").mkdir()  # a folder that git does not take for a checkout of its own
-    assert bench.provenance._commit() == {}
+    assert provenance_module._commit() == {}
 
 
 def test_the_caller_may_change_what_it_got() -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from bench.store import Store
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
-from bench.store.queue import NewItem
+from bench.store.tables.queue import NewItem
 
 
 def items(count):

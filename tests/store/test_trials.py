@@ -5,7 +5,7 @@ import pytest
 
 from bench.store import Event, Store
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
-from bench.store.samples import BLOCK_ROWS
+from bench.store.tables.samples import BLOCK_ROWS
 from tests.store.examples import CHANNELS, begin, begin_trial, rows
 
 

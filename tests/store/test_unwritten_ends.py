@@ -22,7 +22,7 @@ def break_finish(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise StoreFullError("store: the disk is full")
 
-    monkeypatch.setattr("bench.store.experiments.finish", full)
+    monkeypatch.setattr("bench.store.tables.experiments.finish", full)
 
 
 def test_an_end_on_a_full_disk_is_known_at_once_and_written_later(

@@ -9,9 +9,9 @@ from sqlalchemy import text, update
 
 from bench.store import Store
 from bench.store.errors import StoreFileError, StoreFullError, StoreStateError
-from bench.store.retention import Policy
 from bench.store.schema import EXPERIMENT
-from bench.store.space import SpaceNeed
+from bench.store.upkeep.retention import Policy
+from bench.store.upkeep.space import SpaceNeed
 from tests.databases import PostgresqlServer
 from tests.store.examples import begin, begin_trial, rows
 from tests.store.freeze import fill
@@ -138,7 +138,7 @@ def test_what_is_removed_leaves_no_row(store: Store) -> None:
 
 
 def test_a_trial_that_does_not_fit_on_the_disk_is_refused_with_numbers() -> None:
-    need = SpaceNeed.of(trial_s=600.0, period_s=0.001, reserve_mb=200.0)
+    need = SpaceNeed.of(trial_s=600.0, period_s=0.001, reserve_mb=200.0, channels=14)
     need.check(10**9, 3, "bench.sqlite")
     need.check(None, 10**6, "a server's disk is not known")
     with pytest.raises(

@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
+from bench.config.rig import Rig
 from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
-from bench.rig import Rig
 from bench.store import Store
 from tests.lab.synthetic import Bench, Joint, Plan, plans, recordings
 

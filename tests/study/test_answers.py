@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bench.cli.output import print_json
-from bench.service.json_numbers import plain
-from bench.service.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Study
+from bench.service.http.json_numbers import plain
+from bench.service.models.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Study
 from bench.store.errors import NotFoundError
 from bench.study import (
     add_effect,

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from bench.challenge.session import record
 from bench.cli.app import app
 from bench.cli.exit_codes import ExitCode
-from bench.configuration import default_configuration
+from bench.config.configuration import default_configuration
+from bench.config.rig import Rig
+from bench.evaluation.challenge.session import record
 from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
-from bench.rig import Rig
 from bench.store import Store
 from bench.study.material import facts_of
 from compensator.lab.diagnosis.data_checks import data_problems

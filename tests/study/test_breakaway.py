@@ -5,14 +5,14 @@ import json
 import numpy as np
 import pytest
 
+from bench.config.rig import Rig
 from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
-from bench.rig import Rig
-from bench.service.json_numbers import plain
-from bench.service.study_models import Changed, Comparison, Ladder
+from bench.service.http.json_numbers import plain
+from bench.service.models.study_models import Changed, Comparison, Ladder
 from bench.store import Store
 from bench.study import add_effect, compare, create_study, ladder
-from bench.study.report import report_html
+from bench.study.report.report import report_html
 from tests.lab.at_rest.test_breakaways import falling
 from tests.lab.ramps import STATIC, ramp_recordings
 

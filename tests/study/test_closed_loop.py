@@ -78,7 +78,7 @@ def test_the_bench_tells_the_law_of_its_own_servo(store, experiment_id, study_id
 
 
 def closed_loop_drive(per_a, per_rad_s):
-    from bench.study.next_trial.dynamics import Drive
+    from bench.study.suggestion.dynamics import Drive
 
     return Drive(per_a, per_rad_s)
 

@@ -5,14 +5,14 @@ import pytest
 
 from bench import study
 from bench.calibration import in_use, with_friction
-from bench.service.json_numbers import plain
-from bench.service.study_models import Ladder
-from bench.service.suggestion_models import Used
+from bench.service.http.json_numbers import plain
+from bench.service.models.study_models import Ladder
+from bench.service.models.suggestion_models import Used
 from bench.study.errors import StudyError
 from bench.study.use import studied_model
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.online import works_online
-from tests.bench.calibrated import CURVES, REST, calibrated_configuration
+from tests.experiments.calibrated import CURVES, REST, calibrated_configuration
 from tests.study.test_suggest import run
 
 BASE = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction")
@@ -70,7 +70,7 @@ def test_a_model_is_chosen_like_a_calibration(store, number):
 
 def test_the_model_at_work_is_the_model_of_the_study(store, number):
     """Friction by the estimator's own way is what the fitted columns say, at moments of the study's own trials."""
-    from bench.experiments.studied import online_friction
+    from bench.experiments.parts.studied import online_friction
     from bench.study.material import load_model
 
     studied, left = studied_model(store, number, CONFIGURATION)

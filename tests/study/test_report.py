@@ -5,8 +5,8 @@ import re
 import pytest
 
 from bench import study
-from bench.configuration import default_configuration
-from bench.study.report import report
+from bench.config.configuration import default_configuration
+from bench.study.report.report import report
 from tests.lab.synthetic import plans
 from tests.study.conftest import imported
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from bench.study.next_trial.came import in_words, what_came
-from bench.study.next_trial.rounds import MOST_FAILED, Ended, Tried, in_rounds
+from bench.study.suggestion.came import in_words, what_came
+from bench.study.suggestion.rounds import MOST_FAILED, Ended, Tried, in_rounds
 
 
 @dataclass(frozen=True)

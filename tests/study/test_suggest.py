@@ -9,21 +9,21 @@ import numpy as np
 import pytest
 
 from bench import study
-from bench.configuration import default_configuration
-from bench.runner import Runner
-from bench.service.json_numbers import plain
-from bench.service.suggestion_models import Extended, Suggested
+from bench.config.configuration import default_configuration
+from bench.runs.runner import Runner
+from bench.service.http.json_numbers import plain
+from bench.service.models.suggestion_models import Extended, Suggested
 from bench.study import judged
 from bench.study.errors import StudyError
 from bench.study.extend import note_for
 from bench.study.material import load
-from bench.study.next_trial.options import LONGEST_S, choices
-from bench.study.next_trial.predict import predicted
+from bench.study.suggestion.options import LONGEST_S, choices
+from bench.study.suggestion.predict import predicted
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
 from compensator.lab.rows.assembly import more_trials
 
-SUGGEST = importlib.import_module("bench.study.suggest")  # the package has the function of that name
+SUGGEST = importlib.import_module("bench.study.suggestion.suggest")  # the package has the function of that name
 MOTIONS = {
     "loads_kg": [0.0, 0.05], "waveforms": ["slow-sine", "fast-sine"], "duration_s": 5.0, "repeats": 1,
     "speed_rad_s": 2.0,

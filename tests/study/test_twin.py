@@ -5,12 +5,12 @@ from math import nan, pi
 import numpy as np
 import pytest
 
-from bench.configuration import default_configuration
-from bench.drive_factory import Equipment
+from bench.config.configuration import default_configuration
+from bench.control.drive_factory import Equipment
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.in_memory import InMemoryBench
-from bench.study.next_trial.dynamics import Drive, Dynamics
-from bench.study.next_trial.twin import Twin
+from bench.runs.in_memory import InMemoryBench
+from bench.study.suggestion.dynamics import Drive, Dynamics
+from bench.study.suggestion.twin import Twin
 from drivers.contract import Command, Mode
 
 JOINT = Dynamics(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
-from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit, fit_breakaway, held_out_breakaway
+from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit, fit_breakaway, held_out_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
-from compensator.lab.at_rest.breakaway_fit import BreakawayFit, fit_breakaway
+from compensator.lab.at_rest.breakaway_regression import BreakawayFit, fit_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.rests import Windows, limits_of, windows_of
 from compensator.lab.chance import chance_in_words

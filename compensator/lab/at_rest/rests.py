@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit
+from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit
 from compensator.lab.at_rest.breakaway_rows import at_rest_motion, measured_position
 from compensator.lab.at_rest.breakaways import resolution_of, rests_of
 from compensator.lab.effects.catalogue import effect_named

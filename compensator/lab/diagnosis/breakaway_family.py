@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
-from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit, fit_breakaway, held_out_breakaway, lag_column
+from compensator.lab.at_rest.breakaway_regression import (
+    LAG,
+    BreakawayFit,
+    fit_breakaway,
+    held_out_breakaway,
+    lag_column,
+)
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis.breakaway_picture import picture_of_breakaway

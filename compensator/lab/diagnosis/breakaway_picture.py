@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_fit import BreakawayFit
+from compensator.lab.at_rest.breakaway_regression import BreakawayFit
 from compensator.lab.diagnosis.diagnosis import Picture
 from compensator.lab.effects.effect import Effect
 from compensator.lab.recordings.recording import FloatArray

@@ -7,44 +7,48 @@ from contextvars import ContextVar
 from functools import cache
 from importlib.metadata import entry_points
 
-from compensator.lab.effects import (
-    back_driving_friction,
+from compensator.lab.effects import free_curve
+from compensator.lab.effects.effect import Effect
+from compensator.lab.effects.electrical import (
     back_emf_error,
-    backlash,
-    centre_of_mass_angle,
     cogging,
+    current_gain_asymmetry,
+    dead_time,
+    encoder_eccentricity,
+    measurement_delay,
+    supply_sag,
+    torque_constant_saturation,
+    winding_temperature,
+)
+from compensator.lab.effects.friction import (
+    back_driving_friction,
     coulomb,
     coulomb_asymmetry,
     coulomb_temperature,
-    current_gain_asymmetry,
-    dead_time,
     dwell_strengthening,
-    elasticity,
-    encoder_eccentricity,
-    free_curve,
     frictional_lag,
-    gravity,
-    inertia,
     load_friction,
     load_friction_quadratic,
-    measurement_delay,
-    offset,
     position_periodic_friction,
     pre_sliding,
     rate_dependent_breakaway,
-    spring,
     stribeck,
-    supply_sag,
-    torque_constant_saturation,
     viscous,
     viscous_asymmetry,
     viscous_quadratic,
     viscous_temperature,
     warm_up,
     weight_friction,
-    winding_temperature,
 )
-from compensator.lab.effects.effect import Effect
+from compensator.lab.effects.mechanics import (
+    backlash,
+    centre_of_mass_angle,
+    elasticity,
+    gravity,
+    inertia,
+    offset,
+    spring,
+)
 from compensator.lab.errors import UnknownEffectError
 from compensator.lab.recordings.facts import Facts
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_fit import LAG, BreakawayFit, fit_breakaway, lag_column
+from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit, fit_breakaway, lag_column
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, breakaway_rows, shares_of
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named

@@ -10,8 +10,8 @@ from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.next_trial.breakaway_separation import BreakawaySeparation
 from compensator.lab.next_trial.choice import Choice
+from compensator.lab.next_trial.confounded import rivals_of, several
 from compensator.lab.next_trial.rivalry import Rivalry
-from compensator.lab.next_trial.rivals import rivals_of, several
 from compensator.lab.next_trial.separation import Separation
 from compensator.lab.next_trial.suggestion import Option, Suggestion
 from compensator.lab.screening.candidates import gather

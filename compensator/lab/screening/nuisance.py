@@ -8,8 +8,9 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from compensator.lab.effects import backlash, elasticity, measurement_delay
 from compensator.lab.effects.effect import Motion, MotionRows
+from compensator.lab.effects.electrical import measurement_delay
+from compensator.lab.effects.mechanics import backlash, elasticity
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.far_side import ABOUT_KNOWN
 from compensator.lab.recordings.recording import FloatArray

@@ -20,8 +20,8 @@ from sim_backend.devices.canopen.node import Node
 from sim_backend.devices.canopen.objects.drive_profile import NO_WINDOW
 from sim_backend.devices.canopen.objects.family import Family, Rating
 from sim_backend.devices.canopen.state_machine import Ending, State, StateMachine, is_quick_stop_code
-from sim_backend.faults import OverCurrent, OverTemperature, SupplyLost, Trip
-from sim_backend.parameters import PlantParameters
+from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.plant.parameters import PlantParameters
 
 _REMOTE, _LIMITED, _WARNING, _VOLTAGE = 1 << 9, 1 << 11, 1 << 7, 1 << 4
 _FOLLOWING_ERROR = 1 << 13

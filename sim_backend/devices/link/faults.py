@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
-from sim_backend.component import Component, quantity
 from sim_backend.errors import ParameterError
-from sim_backend.faults import FOR_GOOD_S
+from sim_backend.faults.script import FOR_GOOD_S
+from sim_backend.plant.component import Component, quantity
 
 
 class Direction(Enum):

@@ -11,8 +11,8 @@ from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.modbus.own_map import COMMAND_BLOCK, DEFAULTS, REGISTERS, identity
 from sim_backend.devices.modbus.refusal import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused
 from sim_backend.devices.modbus.register_file import RegisterFile
-from sim_backend.faults import OverCurrent, OverTemperature, SupplyLost, Trip
-from sim_backend.parameters import PlantParameters
+from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.plant.parameters import PlantParameters
 
 READS, WRITES = frozenset({3, 4, 23}), frozenset({6, 16, 23})
 _DEFAULT_TEMPERATURE_C = 25.0

@@ -9,8 +9,8 @@ from drivers.contract import Sample
 from sim_backend.devices.axis import OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.modbus.refusal import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused, Unanswered
 from sim_backend.devices.modbus.registers import Kind, from_words, to_words
-from sim_backend.faults import OverTemperature, SupplyLost
-from sim_backend.parameters import PlantParameters
+from sim_backend.faults.script import OverTemperature, SupplyLost
+from sim_backend.plant.parameters import PlantParameters
 
 WATCHDOG_S = 1.0  # RWD of the controller's configuration, as delivered
 _READ, _WRITE = 4, 16

@@ -16,7 +16,7 @@ from sim_backend.devices.roboclaw.handlers import handlers_of
 from sim_backend.devices.roboclaw.packets import ADDRESSES, PacketReader, Request
 from sim_backend.devices.roboclaw.settings import Settings
 from sim_backend.devices.roboclaw.status import WARM_C, Flag, flag_of
-from sim_backend.parameters import PlantParameters
+from sim_backend.plant.parameters import PlantParameters
 
 VERSION = b"USB Roboclaw 2x15a v4.1.34 simulated\n\0"  # so that no record of it is taken for one of hardware
 SPEED_WINDOW_S = 1.0 / 300.0  # of commands 30, 31

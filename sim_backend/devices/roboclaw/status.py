@@ -2,7 +2,7 @@
 
 from enum import IntFlag
 
-from sim_backend.faults import OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import OverTemperature, SupplyLost, Trip
 
 
 class Flag(IntFlag):

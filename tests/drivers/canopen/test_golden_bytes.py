@@ -2,9 +2,9 @@
 
 import pytest
 
-from drivers.canopen.emergency import Emergency, error_name
-from drivers.canopen.heartbeat import DriveMonitor, HostHeartbeat, NmtState
-from drivers.canopen.objects import (
+from drivers.canopen.cia301.emergency import Emergency, error_name
+from drivers.canopen.cia301.heartbeat import DriveMonitor, HostHeartbeat, NmtState
+from drivers.canopen.cia301.objects import (
     CONTROLWORD,
     POSITION,
     STATUSWORD,
@@ -15,8 +15,8 @@ from drivers.canopen.objects import (
     DataType,
     DriveObject,
 )
-from drivers.canopen.pdo import Pdo, PdoLayout, same
-from drivers.canopen.profiles import CIA402, EPOS4
+from drivers.canopen.cia301.pdo import Pdo, PdoLayout, same
+from drivers.canopen.cia402.profiles import CIA402, EPOS4
 from drivers.canopen.slow_poll import SlowPoll
 
 

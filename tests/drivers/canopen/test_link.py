@@ -7,8 +7,8 @@ import time
 import can
 import pytest
 
-from drivers.canopen.bounded import bounded
-from drivers.canopen.link import CanLink
+from drivers.canopen.cia301.bounded import bounded
+from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.settings import BusSettings
 from drivers.errors import DriveConnectionError
 

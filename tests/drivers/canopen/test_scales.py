@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers.canopen.bus_load import cycle_s
-from drivers.canopen.profiles import CIA402, EPOS4
-from drivers.canopen.scale import DriveScale
-from drivers.canopen.units import (
+from drivers.canopen.cia301.bus_load import cycle_s
+from drivers.canopen.cia402.profiles import CIA402, EPOS4
+from drivers.canopen.cia402.scale import DriveScale
+from drivers.canopen.cia402.units import (
     VELOCITY_UNITS,
     interpolation_period,
     velocity_unit_code,

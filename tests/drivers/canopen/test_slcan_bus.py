@@ -8,8 +8,8 @@ from contextlib import suppress
 import can
 import pytest
 
-from drivers.canopen.bus import close_bus, open_bus
-from drivers.canopen.link import CanLink
+from drivers.canopen.cia301.bus import close_bus, open_bus
+from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.settings import BusSettings
 from drivers.errors import DriveConnectionError
 

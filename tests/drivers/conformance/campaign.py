@@ -6,7 +6,7 @@ import threading
 from math import pi
 
 from bench.errors import NotCommissionedError
-from bench.runner import Runner
+from bench.runs.runner import Runner
 from bench.store import Store
 from tests.drivers.conformance.paced import paced_drives
 

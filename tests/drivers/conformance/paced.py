@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from typing import Any
 from unittest import mock
 
-from bench import station
-from bench.drive_factory import Equipment
+from bench.control import station
+from bench.control.drive_factory import Equipment
 from drivers.contract import Command, Drive, Sample
 
 make_equipment = station.make_equipment

@@ -15,11 +15,10 @@ from contextlib import suppress
 import pytest
 import tomli_w
 
-from bench.cycle import OFF, Action
-from bench.drive_factory import make_equipment
-from bench.loop import Outcome
-from bench.runner import Runner
-from bench.stop_request import StopRequest
+from bench.control.cycle import OFF, Action
+from bench.control.drive_factory import make_equipment
+from bench.control.ending import Outcome, StopRequest
+from bench.runs.runner import Runner
 from bench.store import Store
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError, DriveError

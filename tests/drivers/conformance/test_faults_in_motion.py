@@ -8,10 +8,10 @@ import time
 
 import pytest
 
-from bench.cycle import OFF, Action
-from bench.drive_factory import make_equipment
-from bench.experiments.commissioning import CommissioningParameters, commission
-from bench.stop_request import StopRequest
+from bench.control.cycle import OFF, Action
+from bench.control.drive_factory import make_equipment
+from bench.control.ending import StopRequest
+from bench.experiments.kinds.commissioning import CommissioningParameters, commission
 from drivers.contract import Command, Mode
 from drivers.errors import DriveConfigurationError, DriveError
 from tests.drivers.conformance.benches import PERIOD_S, configured, run

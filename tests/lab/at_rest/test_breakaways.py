@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.at_rest.breakaway_fit import LAG, fit_breakaway, held_out_breakaway
+from compensator.lab.at_rest.breakaway_regression import LAG, fit_breakaway, held_out_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
 from compensator.lab.diagnosis.breakaway_family import FEWEST_STARTS, breakaway_answer

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from compensator.lab.effects import elasticity
+from compensator.lab.effects.mechanics import elasticity
 from compensator.lab.recordings.far_side import TOLD
 from tests.lab.synthetic import FACTS
 

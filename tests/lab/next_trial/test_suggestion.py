@@ -10,7 +10,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_model
-from compensator.lab.next_trial.rivals import shows_from_rest
+from compensator.lab.next_trial.confounded import shows_from_rest
 from compensator.lab.next_trial.separation import Separation
 from compensator.lab.next_trial.suggest import SURE, suggest
 from compensator.lab.next_trial.suggestion import Option

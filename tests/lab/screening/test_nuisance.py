@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.effects import elasticity
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.mechanics import elasticity
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction

@@ -5,7 +5,7 @@ from math import pi
 
 from sim_backend.devices.axis import TICK_S
 from sim_backend.devices.canopen.modes.mode import Seen
-from sim_backend.parameters import PlantParameters
+from sim_backend.plant.parameters import PlantParameters
 
 _BANDWIDTH_RAD_S = 40.0
 _DAMPING = 0.6

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from math import pi
 
 from sim_backend.devices.canopen.objects.entry import Object
-from sim_backend.parameters import PlantParameters
+from sim_backend.plant.parameters import PlantParameters
 
 Place = tuple[int, int]
 

@@ -1,0 +1,141 @@
+"""`friction-bench challenge` and `reveal`: recordings that hide something, and the answer."""
+
+import secrets
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from bench.cli.bench_session import session_of
+from bench.cli.output import Json, percent, print_json, say, table
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.evaluation.challenge.answer import Answer
+    from bench.evaluation.challenge.guess import Guess, Score
+
+
+class Level(Enum):
+    """How hard."""
+
+    EASY = "easy"
+    MEDIUM = "medium"
+    HARD = "hard"
+
+
+def challenge(
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="The same seed makes the same challenge; without it one that nobody knows."),
+    ] = None,
+    difficulty: Annotated[Level, typer.Option(help="How much is hidden, how large, how good the data.")] = Level.EASY,
+    output: Annotated[Path, typer.Option(help="A folder to make, or a file that ends in .zip.")] = Path("challenge"),
+    ranges: Annotated[bool, typer.Option("--ranges", help="Print what is drawn from which range, and why.")] = False,
+) -> None:
+    """Draw a joint at random, hide nothing, one or two mechanisms in it, record it, and seal the answer.
+
+    The recordings tell nothing of the answer; whoever knows the seed can draw it again.
+    """
+    if ranges:
+        _print_ranges()
+        return
+    from bench.evaluation.challenge.make import write_challenge
+
+    sealed = write_challenge(secrets.randbits(64) if seed is None else seed, difficulty.value, output)
+    say(f"recordings: {output}")
+    say(f"sealed answer: {sealed}")
+    say(f"next: friction-bench import {output}, make a study of it, then friction-bench reveal {sealed} --study STUDY")
+
+
+def reveal(
+    context: typer.Context,
+    answer: Annotated[Path, typer.Argument(help="The sealed answer.")],
+    guess: Annotated[
+        str | None,
+        typer.Option(
+            help="What is hidden: effects (spring,viscous_asymmetry), a class (spring/gravity), nothing, none-of-these."
+        ),
+    ] = None,
+    study: Annotated[int | None, typer.Option(help="Take the guess from what a study added and last found.")] = None,
+    recordings: Annotated[
+        Path | None, typer.Option(help="The recordings; checks that they are those of the answer.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Open the sealed answer of a challenge, and score a guess."""
+    from bench.errors import ParameterError
+    from bench.evaluation.challenge.guess import Guess, score
+    from bench.evaluation.challenge.names import ABSORBED
+    from bench.evaluation.challenge.seal import read_sealed
+
+    if guess is not None and study is not None:
+        raise ParameterError("--guess and --study are both given; wanted is one of them")
+    guessed = None if guess is None else Guess.parse(guess)
+    if study is not None:
+        guessed = _guess_of(context, study)
+    opened = read_sealed(answer, recordings)
+    found = None if guessed is None else score([truth.name for truth in opened.truths], guessed, ABSORBED)
+    if as_json:
+        print_json(_as_json(opened, guessed, found))
+    else:
+        _print(opened, guessed, found)
+
+
+def _guess_of(context: typer.Context, study: int) -> "Guess":
+    from bench.service.models.study_guess import guess_of_study
+
+    with session_of(context).open_store() as store:
+        return guess_of_study(store, study)
+
+
+def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, Any]:
+    from dataclasses import asdict
+
+    found: dict[str, Any] = {"answer": answer.to_json()}
+    if guess is not None and score is not None:
+        found |= {"guess": asdict(guess), "score": {**asdict(score), "perfect": score.perfect, "points": score.points}}
+    return found
+
+
+def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> None:
+    from bench.evaluation.challenge.names import accepted
+
+    if answer.truths:
+        rows = [
+            (
+                truth.title,
+                " or ".join(accepted(truth.name)) or "none of these",
+                f"{truth.size:.3g}{'' if truth.unit == '1' else f' {truth.unit}'} ({truth.measure})",
+                percent(truth.share),
+            )
+            for truth in answer.truths
+        ]
+        table("Hidden", ["mechanism", "in the catalogue", "size", "share of the effort#"], rows)
+    else:
+        say("Hidden: nothing.")
+    if score is not None and guess is not None:
+        _print_score(score)
+
+
+def _print_score(score: "Score") -> None:
+    from bench.evaluation.challenge.names import RECORDED
+
+    sizes = ", ".join(map(str, score.class_sizes))
+    lines = [
+        ("right", score.right, f" (class of {sizes})" if any(size > 1 for size in score.class_sizes) else ""),
+        ("missed", score.missed, ""),
+        ("not to be told from what every model has", score.untold, ""),
+        ("in every recording", score.recorded, f" ({'; '.join(RECORDED[one] for one in score.recorded)})"),
+        ("false", score.wrong, ""),
+    ]
+    for word, names, note in lines:
+        if names:
+            say(f"{word}: {', '.join(names)}{note}")
+    say("All of it, and nothing else." if score.perfect else "Not all of it, or more than it.")
+
+
+def _print_ranges() -> None:
+    from bench.evaluation.challenge.hidden_plant import range_tables
+
+    for one in range_tables():
+        table(one.title, ["quantity", "from#", "to#", "unit", "why"], one.rows)

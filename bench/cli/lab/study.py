@@ -1,0 +1,243 @@
+"""`friction-bench study ...`: compare, simulate, diagnose, suggest, add, drop, search, ladder, report."""
+
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from bench.cli.bench_session import session_of
+from bench.cli.evaluation.cores import Cluster, Workers
+from bench.cli.lab import study_tables as tables
+from bench.cli.operation.service import DEFAULT_URL, Url
+from bench.cli.output import Json, print_json, say, table, write_whole
+
+app = typer.Typer(no_args_is_help=True)
+StudyId = Annotated[int, typer.Argument(metavar="STUDY", help="Number of the study.")]
+Effect = Annotated[str, typer.Argument(help="Name of the effect; list them with: friction-bench effects")]
+Model = Annotated[int | None, typer.Option(help="Which model; without it, the newest of the study.")]
+
+_HOLD_OUT = (
+    "Trials that judge the model instead of being fitted; KEY is a condition, `trial` or `kind`; repeatable. "
+    "Without it, each trial is left out in turn."
+)
+_WHERE = "Use only trials of which this holds; repeatable."
+_START = (
+    "Run them: the joint moves. After each round add what completed to the study, diagnose, and suggest anew; what "
+    "trips or is refused is replaced by the next best."
+)
+_AT_ONCE = "Trials of a round, with --start."
+_QUEUE = "Put them into the queue of the service that runs, on the same store; then `study extend` adds what completed."
+_BENCH = "Move the joint once with each model not tried yet: the error of the reflected load, in grams."
+_MOTION = "Simulate each model not simulated yet in closed loop: the error of the motion."
+_REFINE = "Refine the coefficients by it, too: the effort regressed along the simulated motion; nothing is kept."
+_EXTEND = "Experiment whose trials are added; repeatable. Without it, those that were run for the study."
+_BASE = "Effect of the first model; repeatable. Without it, the rigid joint with General Kinetic Friction."
+
+
+class Rows(Enum):
+    """Which rows count."""
+
+    SLIDING = "sliding"
+    MOVING = "moving"
+    ALL = "all"
+
+
+@app.callback()
+def _study() -> None:
+    """Compare measured with predicted, name the missing effect, add it, watch the error fall."""
+
+
+@app.command("new")
+def new(
+    context: typer.Context,
+    name: Annotated[str, typer.Argument(help="Name of the study.")],
+    experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are used; repeatable.")],
+    hold_out: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_HOLD_OUT)] = None,
+    where: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_WHERE)] = None,
+    base: Annotated[list[str] | None, typer.Option(help=_BASE)] = None,
+    rows: Annotated[Rows, typer.Option(help="Which rows count in fit and error.")] = Rows.SLIDING,
+    cutoff_hz: Annotated[float | None, typer.Option(help="Low-pass [Hz]; without it, chosen from the data.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Create a study: which trials are fitted, and which judge the fit."""
+    chosen = {"hold_out": hold_out or [], "where": where or [], "base": base or None, "rows": rows.value}
+    _show(context, as_json, tables.study, "create_study", name, experiment, **chosen, cutoff_hz=cutoff_hz)
+
+
+@app.command("list")
+def list_(context: typer.Context, as_json: Json = False) -> None:
+    """List the studies."""
+    with session_of(context).open_store() as store:
+        found = store.studies()
+    if as_json:
+        print_json([{"study_id": one.id, "name": one.name, "created_utc": one.created_utc} for one in found])
+    else:
+        table("Studies", ["id#", "name", "created"], [(one.id, one.name, one.created_utc) for one in found])
+
+
+@app.command("compare")
+def compare(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """Measured against predicted: error per trial and regime, parameters, the floor."""
+    _show(context, as_json, tables.comparison, "compare", study, model_id=model)
+
+
+@app.command("simulate")
+def simulate(
+    context: typer.Context,
+    study: StudyId,
+    model: Model = None,
+    refine: Annotated[bool, typer.Option("--refine", help=_REFINE)] = False,
+    as_json: Json = False,
+) -> None:
+    """The model under the servo that the trials ran under: does it go where the joint went."""
+    _show(context, as_json, tables.simulation, "simulate", study, model_id=model, refined=refine)
+
+
+@app.command("diagnose")
+def diagnose(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """Which physical effect is missing, how sure is that, and what would adding it bring."""
+    _show(context, as_json, tables.diagnosis, "diagnose", study, model_id=model)
+
+
+@app.command("diagnose-many")
+def diagnose_many(
+    context: typer.Context,
+    studies: Annotated[list[int] | None, typer.Argument(metavar="[STUDY]...", help="Without any, all.")] = None,
+    workers: Workers = None,
+    cluster: Cluster = None,
+    as_json: Json = False,
+) -> None:
+    """Diagnose the newest models of many studies, on all cores or on a cluster."""
+    from bench.cli.lab.study_many import diagnose_studies, show
+
+    found = diagnose_studies(session_of(context), studies or [], workers, cluster)
+    print_json(found) if as_json else show(found)
+
+
+@app.command("add")
+def add(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
+    """Add an effect to a model and refit: the error before and after."""
+    _show(context, as_json, tables.change, "add_effect", study, effect, model_id=model)
+
+
+@app.command("drop")
+def drop(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
+    """Drop an effect from a model and refit: the error before and after."""
+    _show(context, as_json, tables.change, "drop_effect", study, effect, model_id=model)
+
+
+@app.command("search")
+def search(
+    context: typer.Context,
+    study: StudyId,
+    model: Model = None,
+    most: Annotated[int, typer.Option(min=1, max=10, help="Effects that are added at most.")] = 4,
+    as_json: Json = False,
+) -> None:
+    """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
+    _show(context, as_json, tables.search, "search", study, model_id=model, most=most)
+
+
+@app.command("suggest")
+def suggest(
+    context: typer.Context,
+    study: StudyId,
+    model: Model = None,
+    trials: Annotated[int, typer.Option(min=1, max=50, help="Trials at most.")] = 6,
+    start: Annotated[bool, typer.Option("--start", help=_START)] = False,
+    at_once: Annotated[int, typer.Option(min=1, max=50, help=_AT_ONCE)] = 2,
+    queue: Annotated[bool, typer.Option("--queue", help=_QUEUE)] = False,
+    url: Url = DEFAULT_URL,
+    as_json: Json = False,
+) -> None:
+    """Which trials would tell the rivals apart: of the bench's own kinds, inside its limits, by d' per minute."""
+    from bench.cli.lab.study_trials import carry_out_all, queue_all, suggested
+
+    if start and queue:
+        raise typer.BadParameter("--start runs the trials here, --queue on the service: give one of them")
+    if start:
+        carry_out_all(session_of(context), study, model, trials, at_once, as_json)
+        return
+    found = suggested(session_of(context), study, model, trials)
+    if queue:
+        queue_all(session_of(context), found, url, as_json)
+    else:
+        print_json(found) if as_json else tables.suggestion(found)
+
+
+@app.command("extend")
+def extend(
+    context: typer.Context,
+    study: StudyId,
+    experiment: Annotated[list[int] | None, typer.Option(help=_EXTEND)] = None,
+    as_json: Json = False,
+) -> None:
+    """Add trials to a study and refit its newest model to all of them."""
+    _show(context, as_json, tables.extended, "extend_study", study, experiment or [])
+
+
+@app.command("refit")
+def refit(
+    context: typer.Context,
+    study: StudyId,
+    experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are read; repeatable.")],
+    model: Model = None,
+    as_json: Json = False,
+) -> None:
+    """Fit a model anew to all trials of experiments, however many rows they have; nothing is kept."""
+    _show(context, as_json, tables.refitted, "refit", study, experiment, model_id=model)
+
+
+@app.command("use")
+def use(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """Hand a model to the online compensator: the load in motion is estimated with it from now on."""
+    from bench.cli.lab.study_bench import use_model
+
+    found = use_model(session_of(context), study, model)
+    print_json(found) if as_json else say(found["sentence"])
+
+
+@app.command("report")
+def report(
+    context: typer.Context,
+    study: StudyId,
+    html: Annotated[Path, typer.Option(help="File to write.")],
+    suggest: Annotated[bool, typer.Option(help="Say which trials to record next; takes longer.")] = True,
+) -> None:
+    """One HTML file to be filed: trials, ladder, model, pictures, diagnosis, what to record next, provenance."""
+    from bench.study import report_html
+
+    session = session_of(context)
+    with session.open_store() as store:
+        page = report_html(store, study, session.configuration() if suggest else None)
+    write_whole(html, [page.encode()])
+    say(f"written: {html}")
+
+
+@app.command("ladder")
+def ladder(
+    context: typer.Context,
+    study: StudyId,
+    bench: Annotated[bool, typer.Option("--bench", help=_BENCH)] = False,
+    motion: Annotated[bool, typer.Option("--motion", help=_MOTION)] = False,
+    as_json: Json = False,
+) -> None:
+    """The error from model to model, training and held-out, down towards the floor; in motion; in grams."""
+    if motion:
+        from bench.cli.lab.study_motion import simulate_models
+
+        simulate_models(session_of(context), study, quiet=as_json)
+    if bench:
+        from bench.cli.lab.study_bench import measure_models
+
+        measure_models(session_of(context), study, quiet=as_json)
+    _show(context, as_json, tables.ladder, "ladder", study)
+
+
+def _show(context: typer.Context, as_json: bool, show: Any, name: str, *args: Any, **kwargs: Any) -> None:
+    from bench import study
+
+    with session_of(context).open_store() as store:
+        found = getattr(study, name)(store, *args, **kwargs)
+    print_json(found) if as_json else show(found)

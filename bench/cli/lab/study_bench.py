@@ -1,0 +1,54 @@
+"""`friction-bench study use` and `study ladder --bench`: a study's model back on the bench, and its worth there."""
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from bench.cli.bench_session import BenchSession
+from bench.cli.exit_codes import ExitCode
+from bench.cli.operation.signals import stopping_on_signals
+from bench.cli.operation.watch import watch
+from bench.cli.output import complain, say
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.config.configuration import BenchConfiguration
+    from bench.store import Store
+
+KIND = "sinusoid"  # accelerated motion and reversals: what a study is good for
+
+
+def use_model(session: BenchSession, study_id: int, model_id: int | None) -> dict[str, Any]:
+    """Keep a model as a calibration, and choose it."""
+    from bench.study import use
+
+    with session.open_store() as store:
+        return use(store, study_id, session.configuration(), model_id)
+
+
+def measure_models(session: BenchSession, study_id: int, quiet: bool) -> None:
+    """Move the joint once with each model of a study that has not been tried on the bench, and keep the error."""
+    from bench.study import bench_configurations, keep_bench_error
+
+    with session.open_store() as store:
+        for model_id, configuration in bench_configurations(store, study_id, session.configuration()):
+            if not quiet:
+                say(f"model {model_id} on the bench")
+            experiment_id = _carry_out(store, configuration, quiet)
+            keep_bench_error(store, model_id, experiment_id)
+
+
+def _carry_out(store: "Store", configuration: "BenchConfiguration", quiet: bool) -> int:
+    from bench.runs.runner import Runner
+
+    runner = Runner(configuration, store)
+    try:
+        with stopping_on_signals(runner) as received:
+            experiment_id = runner.start(KIND, {}, note="reflected load by a study's model")
+            watch(runner, quiet)
+    finally:
+        runner.close()
+    found = store.experiment(experiment_id)
+    if found.outcome != "completed":
+        complain(f"experiment {experiment_id}: {found.outcome}: {found.reason}")
+        raise typer.Exit(received.exit_code or ExitCode.NOT_COMPLETED)
+    return experiment_id

@@ -1,0 +1,162 @@
+"""`friction-bench study suggest`: with --start runs what is suggested, adds it to the study, and diagnoses, in rounds;
+with --queue has a service run it."""
+
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from bench.cli.bench_session import BenchSession
+from bench.cli.exit_codes import ExitCode
+from bench.cli.lab import study_tables as tables
+from bench.cli.operation.run import carry_out
+from bench.cli.operation.service import ask
+from bench.cli.output import print_json, say
+from bench.errors import LimitError, ParameterError
+from bench.study.errors import StudyError
+from bench.study.suggestion.came import in_words, what_came
+from bench.study.suggestion.rounds import Ended, in_rounds
+from drivers.errors import DriveError
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.store import Experiment
+
+REPLACED = ("tripped", "failed", "refused")  # outcomes after which the next best trial is run
+
+
+def suggested(
+    session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] = ()
+) -> dict[str, Any]:
+    """What to record next."""
+    from bench.study import suggest
+
+    with session.open_store() as store:
+        return suggest(store, study_id, session.configuration(), model_id, trials, refused)
+
+
+def carry_out_all(
+    session: BenchSession, study_id: int, model_id: int | None, trials: int, at_once: int, as_json: bool
+) -> None:
+    """Suggest, run, add and diagnose in rounds; what completed is added, also where a later one did not."""
+    running = _Running(session, study_id, model_id, as_json)
+    tried = in_rounds(running.ask, running.run, running.learn, trials, at_once)
+    running.tell_last()
+    if as_json:
+        print_json(running.told())
+    elif running.rounds[-1].get("diagnosis"):
+        tables.diagnosis(running.rounds[-1]["diagnosis"])
+    if running.signal_code is not None:
+        raise typer.Exit(running.signal_code)
+    if tried and tried[-1].reason:  # the end of it: what was replaced has others after it
+        raise typer.Exit(ExitCode.NOT_COMPLETED)
+
+
+class _Suggested:
+    """A suggested trial, by the name that it has among the options."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        self.values, self.name = values, str(values["name"])
+
+
+class _Running:
+    """Rounds on this bench.
+
+    Attributes:
+        rounds: what was suggested in each, which experiments came of it, and what the study says then.
+        signal_code: exit code where a signal ended a trial.
+    """
+
+    def __init__(self, session: BenchSession, study_id: int, model_id: int | None, quiet: bool) -> None:
+        self._session, self._study_id, self._model_id, self._quiet = session, study_id, model_id, quiet
+        self.rounds: list[dict[str, Any]] = []
+        self.signal_code: int | None = None
+
+    def told(self) -> dict[str, Any]:
+        """Every round; and what was suggested first, and what the study says at last."""
+        last: dict[str, Any] = {}
+        for one in self.rounds:
+            last.update({name: one[name] for name in ("extended", "diagnosis") if name in one})
+        return {"suggested": self.rounds[0]["suggested"], "rounds": self.rounds, **last}
+
+    def ask(self, most: int, kept_out: Collection[str]) -> Sequence[_Suggested]:
+        """What is suggested now."""
+        found = self._next(most, kept_out)
+        if found is None:
+            return []
+        self.rounds.append({"suggested": found, "experiments": []})
+        if not self._quiet:
+            tables.suggestion(found)
+        return [_Suggested(one) for one in found["trials"]]
+
+    def tell_last(self) -> None:
+        """What came of the last round, where nothing was suggested after it."""
+        if self.signal_code is None and self.rounds[-1].get("diagnosis") and "end" not in self.rounds[-1]:
+            self._next(1, ())
+
+    def _next(self, most: int, kept_out: Collection[str]) -> dict[str, Any] | None:
+        """What is suggested now, with what came of the last round; None where the rounds end."""
+        try:
+            found = suggested(self._session, self._study_id, self._model_id, most, kept_out)
+        except StudyError as error:
+            if not self.rounds:
+                raise
+            self.rounds[-1]["end"] = str(error)  # what was recorded since is in the study all the same
+            if not self._quiet:
+                say(str(error))
+            return None
+        if self.rounds and "diagnosis" in self.rounds[-1]:
+            self.rounds[-1]["came"] = what_came(self.rounds[-1]["suggested"], found)
+            if not self._quiet and self.rounds[-1]["came"]:
+                say(in_words(self.rounds[-1]["came"]))
+        return found
+
+    def run(self, trial: _Suggested) -> str:
+        """One trial; however it ends, the joint is powered off."""
+        one, note = trial.values, self.rounds[-1]["suggested"]["note"]
+        try:
+            found, signal_code = carry_out(
+                self._session, one["kind"], one["parameters"], "", note, None, quiet=self._quiet
+            )
+        except (LimitError, ParameterError) as error:
+            self._note(None, "refused", str(error))
+            return f"refused: {error}"
+        except DriveError as error:
+            self._note(None, "failed", str(error))
+            raise Ended(f"failed: {error}") from error
+        self._note(found, found.outcome, found.reason)
+        self.signal_code = signal_code
+        if found.outcome != "completed" and found.outcome not in REPLACED:
+            raise Ended(f"{found.outcome}: {found.reason}")
+        return "" if found.outcome == "completed" else f"{found.outcome}: {found.reason}"
+
+    def learn(self) -> None:
+        """Add what completed in this round, and diagnose."""
+        from bench.study import diagnose, extend_study
+
+        completed = [one["experiment_id"] for one in self.rounds[-1]["experiments"] if one["outcome"] == "completed"]
+        with self._session.open_store() as store:
+            extended = extend_study(store, self._study_id, completed)
+            self.rounds[-1].update(extended=extended, diagnosis=diagnose(store, self._study_id))
+        self._model_id = None  # the newest, from now on
+        if not self._quiet:
+            tables.extended(extended)  # what it says comes with the next suggestion, or at the end
+
+    def _note(self, found: "Experiment | None", outcome: str, reason: str) -> None:
+        number = None if found is None else found.id
+        self.rounds[-1]["experiments"].append({"experiment_id": number, "outcome": outcome, "reason": reason})
+        if not self._quiet:
+            name = "a trial" if number is None else f"experiment {number}"
+            say(f"{name}: {outcome}{f': {reason}' if reason else ''}")
+
+
+def queue_all(session: BenchSession, found: dict[str, Any], url: str, as_json: bool) -> None:
+    """Put every suggested trial into the queue of a service: all or none."""
+    names = ("kind", "parameters")
+    items = [{**{name: one[name] for name in names}, "note": found["note"]} for one in found["trials"]]
+    queued = ask(session, "POST", url, "/queue", {"items": items}) if items else {"item_ids": []}
+    if as_json:
+        print_json({"suggested": found, **queued})
+        return
+    tables.suggestion(found)
+    if items:
+        say(f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found['study_id']}")

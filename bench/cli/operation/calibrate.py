@@ -1,0 +1,167 @@
+"""`friction-bench calibrate ...`: friction curves of the joint: measured, fitted, kept, shown, chosen."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from bench.cli.bench_session import BenchSession, session_of
+from bench.cli.exit_codes import ExitCode
+from bench.cli.operation.run import Pace, carry_out
+from bench.cli.output import Json, print_json, say, table
+
+if TYPE_CHECKING:
+    from bench.store import CalibrationRow
+
+app = typer.Typer(no_args_is_help=True)
+Calibration = Annotated[int, typer.Argument(metavar="CALIBRATION", min=1, help="Number of the calibration.")]
+Note = Annotated[str, typer.Option(help="Kept with the calibration.")]
+NoStribeck = Annotated[bool, typer.Option("--no-stribeck", help="Coulomb and viscous friction alone.")]
+LOADS = ",".join(f"{0.01 * step:g}" for step in range(11))
+DUTIES = "0.1,0.2,0.3"
+STROKES = 4  # what has not saturated by then still counts: its inertia is taken off
+SEARCHES = 3
+
+
+@app.callback()
+def _calibrate() -> None:
+    """Friction curves of the joint, one per load, and what they are used for."""
+
+
+@app.command("run")
+def run(
+    context: typer.Context,
+    loads_kg: Annotated[str, typer.Option(metavar="A,B,...", help="Loads [kg].")] = LOADS,
+    duties: Annotated[str, typer.Option(metavar="A,B,...", help="Constant duties, beside constant currents.")] = DUTIES,
+    pace: Annotated[Pace | None, typer.Option(help="As for `friction-bench run`.")] = None,
+    note: Note = "",
+    as_json: Json = False,
+) -> None:
+    """Sweep the balanced arm over speeds and loads, search F_load under each, fit, and keep. The joint moves."""
+    session, loads, levels = session_of(context), _numbers(loads_kg), _numbers(duties)
+    sweep = {"loads_kg": loads, "duties": levels, "strokes": STROKES}
+    search = {"loads_kg": loads, "angles_rad": [0.0, 1.5708], "searches": SEARCHES}
+    ids = []
+    for kind, parameters in (("speed-sweep", sweep), ("load-sweep", search)):
+        found, signal_code = carry_out(session, kind, parameters, "", note, pace, quiet=as_json)
+        if found.outcome != "completed":
+            say(f"experiment {found.id} ({kind}): {found.outcome}: {found.reason}. Nothing was calibrated")
+            raise typer.Exit(signal_code or ExitCode.NOT_COMPLETED)
+        ids.append(found.id)
+    _fit_and_show(session, ids, True, note, as_json)
+
+
+@app.command("fit")
+def fit(
+    context: typer.Context,
+    experiment: Annotated[list[int], typer.Option(help="Speed sweep, load sweep or import; repeatable.")],
+    no_stribeck: NoStribeck = False,
+    note: Note = "",
+    as_json: Json = False,
+) -> None:
+    """Fit and keep a calibration from what was recorded before, or imported."""
+    _fit_and_show(session_of(context), experiment, not no_stribeck, note, as_json)
+
+
+@app.command("list")
+def list_(context: typer.Context, as_json: Json = False) -> None:
+    """List the calibrations, newest first; the one in use is marked."""
+    from bench.calibration import in_use
+    from bench.service.routes.calibrations import represent
+
+    session = session_of(context)
+    with session.open_store() as store:
+        found, used = store.calibrations.find(), in_use(store, session.configuration())
+    used_id = used.id if used else None
+    if as_json:
+        print_json([represent(one, used_id).model_dump(mode="json") for one in found])
+        return
+    rows = [
+        (one.id, "in use" if one.id == used_id else "", one.rig.get("name"), one.source, len(one.result["curves"]),
+         ", ".join(map(str, one.experiment_ids)), one.created_utc, one.note)
+        for one in found
+    ]  # fmt: skip
+    table("Calibrations", ["id#", "", "rig", "source", "curves#", "experiments", "made", "note"], rows)
+
+
+@app.command("show")
+def show(context: typer.Context, calibration: Calibration, as_json: Json = False) -> None:
+    """Curves with their intervals, motor constants, and where they come from."""
+    with session_of(context).open_store() as store:
+        _show(store.calibrations.get(calibration), as_json)
+
+
+@app.command("use")
+def use(
+    context: typer.Context,
+    calibration: Annotated[int | None, typer.Argument(metavar="CALIBRATION", min=1)] = None,
+    latest: Annotated[bool, typer.Option("--latest", help="The newest that fits, from now on.")] = False,
+) -> None:
+    """Choose the calibration that the bench compensates with; without a choice it is the newest that fits."""
+    from bench import calibration as calibrations
+
+    if (calibration is None) != latest:
+        raise typer.BadParameter("give a calibration's number, or --latest")
+    session = session_of(context)
+    with session.open_store() as store:
+        calibrations.use(store, session.configuration(), calibration)
+        used = calibrations.in_use(store, session.configuration())
+    say("No calibration fits this bench." if used is None else f"In use: calibration {used.id}.")
+
+
+def _fit_and_show(session: BenchSession, experiment_ids: list[int], stribeck: bool, note: str, as_json: bool) -> None:
+    from bench.calibration import calibrate
+
+    with session.open_store() as store:
+        _show(store.calibrations.get(calibrate(store, experiment_ids, stribeck, note)), as_json)
+
+
+def _show(row: "CalibrationRow", as_json: bool) -> None:
+    if as_json:
+        from bench.service.routes.calibrations import represent
+
+        print_json(represent(row, None).model_dump(mode="json", exclude={"in_use"}))
+        return
+    experiments = ", ".join(map(str, row.experiment_ids))
+    say(f"calibration {row.id} of rig '{row.rig.get('name')}', from experiments {experiments} ({row.source})")
+    table(
+        "Friction of the balanced joint; 95 % intervals",
+        ["load [g]#", "F_load [mA]#", "Coulomb [mA]#", "static [mA]#", "Stribeck [rad/s]#", "shape#",
+         "viscous [mA s/rad]#", "scatter [mA]#", "points#"],
+        [_curve_cells(one) for one in row.result["curves"]],
+    )  # fmt: skip
+    constants = [
+        (name, _interval(row.result["motor"].get(name), 1.0)) for name in ("resistance_ohm", "back_emf_v_s_rad")
+    ]
+    table("Motor, as the sweep tells it", ["", "value"], constants)
+    for sentence in dict.fromkeys(row.result["motor"]["unidentified"].values()):
+        say(sentence)
+
+
+def _curve_cells(curve: dict[str, Any]) -> tuple[object, ...]:
+    found = curve["parameters"]
+    intervals = [
+        _interval(found[name], scale)
+        for name, scale in (
+            ("coulomb_a", 1e3), ("static_a", 1e3), ("stribeck_speed_rad_s", 1.0), ("shape", 1.0),
+            ("viscous_a_s_rad", 1e3),
+        )
+    ]  # fmt: skip
+    return (
+        1e3 * curve["load_kg"], 1e3 * curve["f_load_a"], *intervals, 1e3 * curve["scatter_a"], curve["points"],
+    )  # fmt: skip
+
+
+def _interval(one: dict[str, Any] | None, scale: float) -> str:
+    """Value, and its interval where there is one."""
+    if one is None or one["value"] is None:
+        return "not told"
+    if one["low"] is None:
+        return f"{scale * one['value']:.4g} (no interval)"
+    return f"{scale * one['value']:.4g} ({scale * one['low']:.4g} .. {scale * one['high']:.4g})"
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",") if part.strip()]
+    except ValueError as error:
+        raise typer.BadParameter(f"'{text}' is no list of numbers, such as 0,0.05,0.1") from error

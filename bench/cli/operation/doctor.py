@@ -1,0 +1,126 @@
+"""`friction-bench doctor`: is this drive wired, scaled and watched as bench.toml says?"""
+
+from dataclasses import asdict
+from math import degrees, isnan
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from bench.cli.bench_session import BenchSession, session_of
+from bench.cli.exit_codes import ExitCode
+from bench.cli.output import Json, print_json, say, table, text
+from bench.config.quantities import unit_of
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.doctor.connection import Connection
+    from bench.store import Experiment
+
+QUANTITIES = ("position_rad", "velocity_rad_s", "duty", "current_a", "supply_v", "temperature_c")
+
+
+def doctor(
+    context: typer.Context,
+    move: Annotated[bool, typer.Option("--move", help="Power the drive and push the joint a few degrees.")] = False,
+    operator: Annotated[str, typer.Option(help="Who stands at the bench; kept with the record.")] = "",
+    as_json: Json = False,
+) -> None:
+    """Connect to the drive and say what it is, what it measures and how fast; with --move, whether it is right.
+
+    A real drive has to pass `doctor --move` before experiments are run on it, and again after a change of its section
+    of bench.toml or of gear, sensor or motor of the rig.
+    """
+    from bench.doctor.connection import connect
+
+    session = session_of(context)
+    found = connect(session.configuration())
+    if not as_json:
+        _show(found)
+    answer: dict[str, Any] = {"connection": _represent(found)}
+    passed = True
+    if move:
+        passed = _move(session, operator, answer, as_json)
+    elif not as_json:
+        say("Nothing was powered. 'friction-bench doctor --move' checks signs and scales with a small move.")
+    if as_json:
+        print_json(answer)
+    if not passed:
+        raise typer.Exit(ExitCode.NOT_COMPLETED)
+
+
+def _move(session: BenchSession, operator: str, answer: dict[str, Any], quiet: bool) -> bool:
+    """The silence and the commissioning move. Returns whether both are as wanted."""
+    from bench.cli.operation.run import carry_out
+    from bench.control.commissioned import KIND
+    from bench.control.drive_factory import is_simulated
+    from bench.doctor.silence import keep_silent
+
+    configuration = session.configuration()
+    if not is_simulated(configuration):  # nobody is silent in virtual time
+        silence = keep_silent(configuration)
+        answer["silence"] = asdict(silence)
+        if not quiet:
+            say(f"watchdog: {'noticed' if silence.noticed else 'NOT NOTICED'}: {silence.sentence}")
+        if not silence.noticed:
+            return False
+    ended, _ = carry_out(session, KIND, {}, operator, "friction-bench doctor --move", None, quiet)
+    answer["commissioning"] = {"outcome": ended.outcome, "reason": ended.reason, "results": ended.results}
+    if not quiet:
+        _show_move(ended)
+    return ended.outcome == "completed"
+
+
+def _show(found: "Connection") -> None:
+    description = found.description
+    table("Drive", ["what", "value"], [
+        ("device", description.device),
+        ("identity", " ".join(filter(None, (description.vendor, description.product))) or "not told"),
+        ("firmware, serial", f"{description.firmware or 'not told'}, {description.serial or 'not told'}"),
+        ("simulated", "yes, by what it says of itself" if description.simulated else "no"),
+        ("modes", ", ".join(sorted(mode.value for mode in description.modes))),
+        ("highest rate", f"{description.max_rate_hz:.0f} cycles/s"),
+        ("rate now", f"{found.rate_hz:.1f} cycles/s at a period of {1e3 * found.period_s:g} ms"),
+        ("one exchange", f"{1e3 * found.exchange_s:.2f} ms, the slowest {1e3 * found.slowest_s:.2f} ms"),
+        ("lost cycles", found.lost_cycles),
+        ("watchdog", f"stops after {description.watchdog_s:g} s of silence; set and read back"),
+    ])  # fmt: skip
+    table("Measured now, with the power off", ["quantity", "unit", "value#", "smallest step#", "age in ms#"], [
+        (name, unit_of(name), _value(found, name), description.resolution.get(name), _age_ms(found, name))
+        for name in QUANTITIES
+    ])  # fmt: skip
+    say(
+        f"The joint stands at {degrees(found.sample.position_rad):.2f} degrees. Where the arm hangs straight down now, "
+        f"add {found.sample.position_rad:.5f} to drive.zero_rad."
+    )
+
+
+def _value(found: "Connection", name: str) -> object:
+    value = getattr(found.sample, name)
+    return "not measured" if isnan(value) else value
+
+
+def _age_ms(found: "Connection", name: str) -> float | None:
+    if isnan(getattr(found.sample, name)):
+        return None
+    short = name.split("_")[0]
+    return 1e3 * float(getattr(found.sample.ages, f"{short}_s"))
+
+
+def _show_move(ended: "Experiment") -> None:
+    for sentence in ended.results.get("sentences", []):
+        say(sentence)
+    say(f"commissioning move: {ended.outcome}{f': {ended.reason}' if ended.reason else ''}")
+    if ended.outcome == "completed":
+        first, second = (degrees(way_rad) for way_rad in ended.results["travel_rad"])
+        say(
+            f"By the drive's count the joint turned {text(first)} degrees, then {text(second)} degrees. If you saw the "
+            "arm turn otherwise, correct gear.ratio or sensor.counts_per_turn before you go on: no drive can see that."
+        )
+
+
+def _represent(found: "Connection") -> dict[str, Any]:
+    values = asdict(found)
+    values["description"]["modes"] = sorted(mode.value for mode in found.description.modes)
+    values["description"]["measured"] = sorted(found.description.measured)
+    sample = found.sample._asdict()
+    values["sample"] = sample | {"status": found.sample.status.name, "ages": found.sample.ages._asdict()}
+    return values

@@ -1,0 +1,82 @@
+"""`friction-bench status` and `stop`: a service that is running, by its address."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+from urllib.parse import urlsplit
+
+import typer
+
+from bench.cli.bench_session import BenchSession, session_of
+from bench.cli.exit_codes import ServiceError
+from bench.cli.output import Json, print_json, say, table
+
+if TYPE_CHECKING:
+    import httpx
+
+TIMEOUT_S = 5.0
+Url = Annotated[str, typer.Option(envvar="FRICTION_BENCH_URL", help="Address of the service.")]
+DEFAULT_URL = "http://127.0.0.1:8000"
+
+
+def status(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
+    """Show what a running service's bench is doing."""
+    found = ask(session_of(context), "GET", url, "/bench")
+    if as_json:
+        print_json(found)
+        return
+    run = found["run"] or {}
+    facts = {"bench": found["name"], "drive": "simulated" if found["simulated"] else "real", "state": found["state"]}
+    facts |= {
+        name: run[name]
+        for name in ("kind", "experiment_id", "outcome", "reason", "progress", "left_s", "pausing")
+        if name in run
+    }
+    table(url, ["what", "value"], facts.items())
+
+
+def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
+    """Stop the joint of a running service and power it off."""
+    found = ask(session_of(context), "POST", url, "/stop", {"reason": "friction-bench stop"})
+    print_json(found) if as_json else say(found["detail"])
+
+
+def ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
+    """What a service answers; None where it answers nothing.
+
+    Raises:
+        ServiceError: it cannot be reached, refuses, or says no.
+    """
+    import httpx  # here: its import takes longer than most commands
+
+    token = token_for(session, url)
+    headers = {} if token is None else {"Authorization": f"Bearer {token}"}
+    try:
+        answer = httpx.request(method, f"{url}/api/v1{path}", json=body, headers=headers, timeout=TIMEOUT_S)
+    except (httpx.HTTPError, httpx.InvalidURL) as error:
+        raise ServiceError(f"{url} does not answer ({error}); is 'friction-bench serve' running there?") from error
+    if answer.is_error:
+        raise ServiceError(f"{url} answered {answer.status_code}: {_detail(answer)}")
+    return answer.json() if answer.content else None
+
+
+def token_for(session: BenchSession, url: str) -> str | None:
+    """The token for a service: one that was chosen, else that of the same user's service on this machine."""
+    from bench.service.auth.access import is_loopback
+    from bench.service.auth.tokens import chosen_token, read_token, session_file, token_file
+
+    chosen = chosen_token(token_file(session.store_url()))
+    if chosen is not None:
+        return chosen[1]
+    try:
+        parts = urlsplit(url)
+        host, port = parts.hostname or "", parts.port or (443 if parts.scheme == "https" else 80)
+    except ValueError as error:
+        raise ServiceError(f"'{url}' is no address of a service ({error}); wanted is {DEFAULT_URL}") from error
+    # only this machine may be sent it: what answers elsewhere is not the service that made the file
+    return read_token(session_file(session.store_url(), port)) if is_loopback(host) else None
+
+
+def _detail(answer: "httpx.Response") -> str:
+    try:
+        return str(answer.json()["detail"])
+    except (ValueError, KeyError, TypeError):
+        return answer.reason_phrase

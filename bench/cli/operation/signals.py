@@ -1,0 +1,51 @@
+"""Ctrl-C, SIGTERM and SIGHUP during a run: the joint is stopped, the record is closed, then the program ends."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from bench.cli.exit_codes import ExitCode
+
+if TYPE_CHECKING:
+    from bench.runs.runner import Runner
+
+_CODES = {
+    signal.SIGINT: ExitCode.INTERRUPTED,
+    signal.SIGTERM: ExitCode.TERMINATED,
+    signal.SIGHUP: ExitCode.TERMINATED,
+}
+_NAMES = {
+    signal.SIGINT: "Ctrl-C at the terminal",
+    signal.SIGTERM: "SIGTERM at the terminal",
+    signal.SIGHUP: "the terminal was closed",
+}
+
+
+@dataclass
+class Received:
+    """The exit code of the first signal that came; None without one."""
+
+    exit_code: int | None = None
+
+
+@contextmanager
+def stopping_on_signals(runner: "Runner") -> Iterator[Received]:
+    """While it lasts a signal stops the joint and raises nothing, so a second Ctrl-C cannot cut off the power-off."""
+    received = Received()
+
+    def stop(number: int, _frame: FrameType | None) -> None:
+        if received.exit_code is None:
+            received.exit_code = _CODES[signal.Signals(number)]
+        runner.stop(_NAMES[signal.Signals(number)])
+
+    # `nohup` has SIGHUP ignored, and means it
+    wanted = [number for number in _CODES if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, stop) for number in wanted}
+    try:
+        yield received
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

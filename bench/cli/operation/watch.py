@@ -1,0 +1,72 @@
+"""Watching a run: a progress bar on a terminal, plain lines elsewhere."""
+
+from typing import TYPE_CHECKING
+
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from bench.cli.operation.prompt import attend
+from bench.cli.output import console, say
+
+if TYPE_CHECKING:
+    from bench.runs.runner import Runner, RunnerStatus
+
+_POLL_S = 0.1
+_SOON_S = 0.01
+
+
+def watch(runner: "Runner", quiet: bool) -> None:
+    """Return when the experiment has ended.
+
+    Args:
+        runner: has been started.
+        quiet: show nothing.
+    """
+    if not quiet:
+        _announce(runner)
+    if quiet:
+        while not runner.wait(_POLL_S):
+            attend(runner)
+    elif console().is_terminal:
+        _bar(runner)
+    else:
+        _lines(runner)
+
+
+def _announce(runner: "Runner") -> None:
+    """How many trials are to come, and how long they take."""
+    while not runner.status().trial_count and not runner.wait(_SOON_S):
+        continue
+    found = runner.status()
+    say(f"{found.kind}: {found.trial_count} trials, about {found.duration_s:.0f} s of the joint's time")
+
+
+def _bar(runner: "Runner") -> None:
+    times = (TimeElapsedColumn(), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), *times)
+    with Progress(*columns, console=console()) as progress:
+        task = progress.add_task("starting", total=1.0)
+        ended = False
+        while not ended:
+            ended = runner.wait(_POLL_S)
+            status = runner.status()
+            if status.prompt is not None:
+                progress.stop()  # it draws over what is asked
+                attend(runner)
+                progress.start()
+            progress.update(task, description=_sentence(status), completed=status.progress)
+
+
+def _lines(runner: "Runner") -> None:
+    shown = ""
+    ended = False
+    while not ended:
+        ended = runner.wait(_POLL_S)
+        sentence = _sentence(runner.status())
+        if sentence != shown:
+            say(sentence)
+        shown = sentence
+        attend(runner)
+
+
+def _sentence(status: "RunnerStatus") -> str:
+    return f"{status.kind}: trial {status.trial_index + 1} of {status.trial_count}"

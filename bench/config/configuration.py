@@ -1,0 +1,129 @@
+"""The bench configuration (`bench.toml`): rig, drive, limits, servo, search, store."""
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, ValidationError
+
+from bench.config.drives.real import RealDriveSettings
+from bench.config.drives.registry import AnyDriveSettings, default_drive_settings
+from bench.config.friction_curves import FrictionSettings
+from bench.config.limits import Limits
+from bench.config.rig import Rig, Section
+from bench.config.sections import (
+    ControlSettings,
+    MasterSettings,
+    MotionSettings,
+    RestSettings,
+    SearchSettings,
+    ServoSettings,
+    StoreSettings,
+)
+from bench.config.validation import problems
+from bench.errors import ConfigurationError
+
+PRESETS = resources.files("bench.config") / "presets"
+DEFAULT_PRESET = "paper"
+
+
+class BenchConfiguration(Section):
+    """One bench."""
+
+    name: str = Field(description="Name of the bench")
+    rig: Rig
+    drive: AnyDriveSettings = Field(default_factory=default_drive_settings)
+    control: ControlSettings = ControlSettings()
+    limits: Limits = Limits()
+    motion: MotionSettings = MotionSettings()
+    servo: ServoSettings = ServoSettings()
+    search: SearchSettings = SearchSettings()
+    rest: RestSettings | None = Field(default=None, description="What known loads told of the joint at rest")
+    store: StoreSettings = StoreSettings()
+    friction: FrictionSettings | None = Field(
+        default=None, description="Friction curves; without them those of the calibration in use"
+    )
+    master: MasterSettings | None = Field(
+        default=None, description="A second joint with the operator's hand on it, whose slave the joint is"
+    )
+
+    def require_master(self) -> MasterSettings:
+        """The master.
+
+        Raises:
+            ConfigurationError: there is none, or one joint is real and the other is not.
+        """
+        if self.master is None:
+            raise ConfigurationError(
+                f"bench '{self.name}' has one joint, and a master is needed too: add [master.drive] to bench.toml, and "
+                "[master.rig] where the master is not built as the slave is"
+            )
+        if isinstance(self.master.drive, RealDriveSettings) != isinstance(self.drive, RealDriveSettings):
+            raise ConfigurationError(
+                f"master.drive.kind is '{self.master.drive.kind}' and drive.kind is '{self.drive.kind}'; a simulated "
+                "joint and a real one have no common time. Choose 'sim' for both or for neither"
+            )
+        return self.master
+
+    def of_master(self) -> "BenchConfiguration":
+        """The master as a bench of its own.
+
+        Raises:
+            ConfigurationError: as `require_master`.
+        """
+        master = self.require_master()
+        return BenchConfiguration(
+            name=f"{self.name}, master",
+            rig=master.rig or self.rig,
+            drive=master.drive,
+            control=self.control,
+            limits=master.limits,
+            store=self.store,
+        )
+
+
+def read_configuration(path: Path) -> BenchConfiguration:
+    """Read `bench.toml`. Its `rig` is a table, or the path of a `rig.toml` beside it.
+
+    Raises:
+        ConfigurationError: naming the file, each key, its value, what is allowed and the unit.
+    """
+    values = _read_toml(path)
+    for table in (values, values.get("master")):
+        if isinstance(table, dict) and isinstance(table.get("rig"), str):
+            table["rig"] = _read_toml(path.parent / table["rig"])
+    return parse_configuration(values, str(path))
+
+
+def default_configuration() -> BenchConfiguration:
+    """The simulated bench of the paper, which needs no file."""
+    return preset_configuration(DEFAULT_PRESET)
+
+
+def preset_configuration(name: str) -> BenchConfiguration:
+    """A configuration that comes with the package."""
+    file = PRESETS / f"{name}.toml"
+    if not file.is_file():
+        known = ", ".join(sorted(item.name.removesuffix(".toml") for item in PRESETS.iterdir()))
+        raise ConfigurationError(f"there is no preset '{name}'; known are {known}")
+    return parse_configuration(tomllib.loads(file.read_text(encoding="utf-8")), f"preset {name}")
+
+
+def parse_configuration(values: dict[str, Any], source: str) -> BenchConfiguration:
+    """A configuration from nested tables; `source` is named in errors."""
+    try:
+        return BenchConfiguration.model_validate(values)
+    except ValidationError as error:
+        raise ConfigurationError(
+            "\n".join(f"{source}: {problem}" for problem in problems(error, model=BenchConfiguration))
+        ) from error
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"{path}: is no TOML: {error}") from error

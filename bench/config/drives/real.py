@@ -1,0 +1,47 @@
+"""What every real drive's settings share: signs and zero, and the joint that comes of them and the rig."""
+
+from typing import Any, Literal
+
+from bench.config.drives.kind import DriveSettings
+from bench.config.quantities import quantity
+from bench.config.rig import Rig
+from bench.errors import ConfigurationError
+from drivers.joint import JointScale
+
+Sign = Literal[1, -1]
+
+
+class RealDriveSettings(DriveSettings):
+    """Signs, zero, loads. `friction-bench doctor` prints what stands now, and checks it with a small move."""
+
+    motor_sign: Sign = quantity(1, "", "-1 where a positive demand turns the joint to negative angles")
+    encoder_sign: Sign = quantity(1, "", "-1 where the count falls while the joint turns to positive angles")
+    zero_rad: float = quantity(0.0, "rad", "Joint angle by the drive's count while the arm hangs straight down")
+    side_channel: str = quantity(
+        "", "", "Only of a simulated device: where its loads are hung, as host:port; left out: a person is asked"
+    )
+
+
+def driver_values(settings: RealDriveSettings) -> dict[str, Any]:
+    """What the driver's own settings take: all but the kind, and what the joint's scale takes."""
+    return settings.model_dump(exclude=set(RealDriveSettings.model_fields))
+
+
+def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:
+    """The joint as a drive has to know it.
+
+    Raises:
+        ConfigurationError: the rig leaves out the encoder's counts or the gear ratio.
+    """
+    if rig.sensor.counts_per_turn is None or rig.gear.ratio is None:
+        raise ConfigurationError(
+            f"rig '{rig.name}': a real drive needs sensor.counts_per_turn and gear.ratio to turn counts into joint "
+            "angles; add them to the rig"
+        )
+    return JointScale(
+        counts_per_turn=rig.sensor.counts_per_turn,
+        gear_ratio=rig.gear.ratio,
+        motor_sign=settings.motor_sign,
+        encoder_sign=settings.encoder_sign,
+        zero_rad=settings.zero_rad,
+    )

@@ -1,0 +1,88 @@
+"""The rig: motor, gear, arm, sensor and supply as their owner knows them (`rig.toml`).
+
+Every value is optional: what is unknown is left out, and whoever needs it says so.
+"""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from bench.config.quantities import quantity
+
+
+class Section(BaseModel):
+    """A table of a TOML file: unknown keys are refused, values are finite."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Motor(Section):
+    """PM DC motor, values at the motor shaft."""
+
+    name: str | None = Field(None, description="Make and type")
+    resistance_ohm: float | None = quantity(None, "ohm", "Resistance of the winding", gt=0)
+    inductance_h: float | None = quantity(None, "H", "Inductance of the winding", gt=0)
+    torque_constant_n_m_a: float | None = quantity(None, "N m/A", "Torque constant", gt=0)
+    back_emf_v_s_rad: float | None = quantity(None, "V s/rad", "Back-EMF constant", gt=0)
+    rotor_inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia of the rotor", gt=0)
+    constants_at_c: float | None = quantity(
+        None, "degC", "Temperature at which resistance and back-EMF constant hold, as the drive measures it"
+    )
+    copper_per_k: float | None = quantity(None, "1/K", "Growth of the resistance with that temperature", ge=0)
+    magnet_per_k: float | None = quantity(None, "1/K", "Fall of the back-EMF constant with that temperature", ge=0)
+
+
+class Gear(Section):
+    """Gear between motor and joint."""
+
+    ratio: float | None = quantity(None, "", "Motor turns per joint turn", gt=0)
+    backlash_rad: float | None = quantity(None, "rad", "Total free play at the joint", ge=0)
+    stiffness_n_m_rad: float | None = quantity(
+        None, "N m/rad", "Torsional stiffness of gear and shaft at the joint, the motor held", gt=0
+    )
+
+
+class Arm(Section):
+    """Arm in a vertical plane; angle 0 is vertically down."""
+
+    length_m: float | None = quantity(None, "m", "Axis to the load at the tip", gt=0)
+    mass_kg: float | None = quantity(None, "kg", "Mass of the arm without load", ge=0)
+    centre_of_mass_m: float | None = quantity(None, "m", "Axis to the arm's own centre of mass; 0 is balanced")
+    inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia about the axis, without load", gt=0)
+
+
+class Sensor(Section):
+    """Position sensor on the motor side."""
+
+    counts_per_turn: float | None = quantity(None, "1/turn", "Counts per motor turn", gt=0)
+
+
+class Supply(Section):
+    """Supply of the PWM stage."""
+
+    voltage_v: float | None = quantity(None, "V", "Supply voltage", gt=0)
+    is_nominal: bool | None = Field(
+        None, description="True: nobody measures the supply, and recordings hold this number whatever the load does"
+    )
+
+
+class Effort(Section):
+    """Which channel stands for the effort in a study, where the default is not wanted."""
+
+    quantity: Literal["torque", "force", "current", "current_estimate", "terminal_voltage"] = Field(
+        description="Quantity that the model predicts"
+    )
+
+
+class Rig(Section):
+    """One joint as its owner knows it."""
+
+    name: str = Field(description="Name of the joint")
+    joint: Literal["rotary", "linear"] = Field("rotary", description="A linear joint has positions in m")
+    horizontal: bool = Field(False, description="True: gravity does no work on the joint")
+    motor: Motor = Motor()
+    gear: Gear = Gear()
+    arm: Arm = Arm()
+    sensor: Sensor = Sensor()
+    supply: Supply = Supply()
+    effort: Effort | None = None

@@ -1,0 +1,53 @@
+"""Cycles that a late host loses: what they do to a run that goes on, and to one that is being ended."""
+
+from collections import deque
+from collections.abc import Iterator
+from math import ceil
+
+from bench.control.clock import Clock
+
+BRAKING_S = 0.5  # longest wait for a quick stop to bring the joint to rest
+TOLD_S = 0.5  # how long after a loss a limit that trips is put down to it, too
+LEAST_S = 0.03  # lost within that time: less moves no joint far
+MOST_KEPT = 100
+
+
+class LateCycles:
+    """Remembers when the host was late last.
+
+    Between two cycles the drive goes on with the last command. A position servo whose drive was left with a current has
+    a joint that is elsewhere when the host is back: the limit that trips then is right, but tells half of it.
+
+    Args:
+        clock: of the loop.
+        period_s: control period [s].
+    """
+
+    def __init__(self, clock: Clock, period_s: float) -> None:
+        self._clock = clock
+        self._period_s = period_s
+        self._seen = clock.overruns
+        self._lost: deque[tuple[int, int]] = deque(maxlen=MOST_KEPT)  # at which cycle, how many
+
+    def look(self, cycle: int) -> None:
+        """When a cycle begins."""
+        overruns = self._clock.overruns
+        if overruns != self._seen:
+            self._lost.append((cycle, overruns - self._seen))
+            self._seen = overruns
+
+    def explain(self, cycle: int) -> str:
+        """What the drive did meanwhile, where a good few cycles were lost a moment ago; else ""."""
+        lost = sum(lost for at, lost in self._lost if (cycle - at) * self._period_s <= TOLD_S)
+        if lost * self._period_s < LEAST_S:
+            return ""
+        late = f"the host was late by {lost * self._period_s:.3g} s ({lost} cycles) just before"
+        return f"; {late}, and the drive went on with the last command meanwhile: see what kept the host busy"
+
+
+def braking_cycles(clock: Clock, period_s: float) -> Iterator[None]:
+    """The cycles for which a joint may brake. Those that a late host loses count: a brake is given a time."""
+    done, lost_before = 0, clock.overruns
+    while done + clock.overruns - lost_before < ceil(BRAKING_S / period_s):
+        yield
+        done += 1

@@ -1,0 +1,52 @@
+"""Settings of a CiA 402 drive on a CAN bus."""
+
+from typing import Literal
+
+from bench.config.drives.real import RealDriveSettings
+from bench.config.quantities import quantity
+
+Bitrate = Literal[10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000]
+VelocityUnit = Literal["rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s"]
+
+
+class CanopenDriveSettings(RealDriveSettings):
+    """One drive on a CAN bus, over CANopen with the CiA 402 profile."""
+
+    kind: Literal["canopen"]
+    interface: Literal["socketcan", "slcan", "socketcand", "virtual"] = quantity(
+        ..., "", "How the bus is reached: Linux network interface, serial adapter, TCP server, inside one process"
+    )
+    channel: str = quantity(..., "", "can0, /dev/ttyACM0, or the bus's name at the server", min_length=1)
+    bitrate: Bitrate = quantity(1_000_000, "bit/s", "Bit rate of the bus")
+    host: str = quantity("localhost", "", "Host of the socketcand server")
+    port: int = quantity(29536, "", "Port of the socketcand server", ge=1, le=65535)
+    tty_baudrate: int = quantity(
+        115200, "bit/s", "Baud rate of the serial line of an slcan adapter; ignored on USB", ge=9600
+    )
+    adapter_start_s: float = quantity(0.0, "s", "What an slcan adapter needs after its port is opened", ge=0, le=10)
+    node_id: int = quantity(..., "", "Node ID of the drive", ge=1, le=127)
+    profile: Literal["auto", "cia402", "epos4"] = quantity("auto", "", "Object profile; 'auto': by the vendor ID")
+    position_mode: Literal["cyclic", "profile"] = quantity(
+        "cyclic", "", "How the drive closes a position: 'cyclic' (CSP) or 'profile' (PP)"
+    )
+    velocity_unit: VelocityUnit | None = quantity(
+        None, "", "Unit of the drive's velocities; left out: what 0x60A9 says"
+    )
+    rated_current_a: float | None = quantity(
+        None, "A", "Motor current of 1000 permille torque; left out: what the drive says", gt=0
+    )
+    current_limit_a: float | None = quantity(
+        None, "A", "Highest motor current, set in the drive; left out: the drive's own", gt=0
+    )
+    duty_sign_from_current: bool = quantity(
+        False, "", "The drive tells the duty without sign: take the current's; otherwise the duty is not measured"
+    )
+    watchdog_s: float = quantity(
+        0.1, "s", "Time after the host's last heartbeat at which the drive stops by itself", ge=0.01, le=10
+    )
+    answer_s: float = quantity(0.05, "s", "Longest silence of the drive; less than the watchdog", gt=0, le=5)
+    poll_hz: float = quantity(4.0, "Hz", "How often supply and temperature are each asked for", gt=0, le=20)
+    host_node_id: int = quantity(127, "", "Node ID under which the host's heartbeat is sent", ge=1, le=127)
+    vendor_id: int | None = quantity(None, "", "What 0x1018:01 has to say; left out: anything", ge=0)
+    product_code: int | None = quantity(None, "", "What 0x1018:02 has to say; left out: anything", ge=0)
+    serial_number: int | None = quantity(None, "", "What 0x1018:04 has to say; left out: anything", ge=0)

@@ -1,0 +1,32 @@
+"""Settings of a drive on Modbus."""
+
+from typing import Literal
+
+from bench.config.drives.real import RealDriveSettings
+from bench.config.quantities import quantity
+
+
+class ModbusDriveSettings(RealDriveSettings):
+    """A drive on Modbus RTU or TCP, by its register map."""
+
+    kind: Literal["modbus"]
+    map: str = quantity(..., "", "Register map: a name that comes with the package, or a .toml file", min_length=1)
+    transport: Literal["rtu", "tcp"] = quantity("rtu", "", "'rtu': serial line; 'tcp': network")
+    port: str = quantity(..., "", "Serial port, such as /dev/ttyUSB0; or the TCP port", min_length=1)
+    host: str = quantity("127.0.0.1", "", "Name or address of the drive; 'tcp' only")
+    unit: int = quantity(1, "", "Address of the drive on the line", ge=0, le=247)
+    baud_rate: int = quantity(115200, "", "Baud rate of the line", ge=1200, le=4_000_000)
+    parity: Literal["N", "E", "O"] = quantity("N", "", "Parity of the line")
+    stop_bits: Literal[1, 2] = quantity(1, "", "Stop bits of the line")
+    watchdog_s: float = quantity(0.2, "s", "Silence after which the drive stops by itself", gt=0, le=2.0)
+    watchdog_is_set_in_drive: bool = quantity(
+        False, "", "True where the map has no watchdog register, and it was set and tried with the drive's own tools"
+    )
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.005, le=1.0)
+    slow_every: int = quantity(
+        10,
+        "cycles",
+        "Cycles between requests for what changes slowly, where it takes requests of its own",
+        ge=1,
+        le=100,
+    )

@@ -1,0 +1,122 @@
+"""Faults that the simulated drive is to have: `[[drive.faults]]` in bench.toml, one table each."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Tag
+
+from bench.config.quantities import quantity
+from bench.config.rig import Section
+
+
+class FaultSettings(Section):
+    """Something that goes wrong at a time, for a while or for good."""
+
+    at_s: float = quantity(..., "s", "When it begins, since the drive was made", ge=0)
+    for_s: float | None = quantity(None, "s", "How long it lasts; for good where left out", gt=0)
+    clock: Literal["drive", "wall"] = quantity(
+        "drive", "", "Whose seconds: the drive's own, which a fast simulation runs through at once, or the wall clock's"
+    )
+
+    def values(self) -> dict[str, float | str]:
+        """The quantities of this kind of fault, by name."""
+        return self.model_dump(exclude={"kind", *FaultSettings.model_fields})
+
+
+class EncoderStuck(FaultSettings):
+    """The encoder shows the position of the start, whatever the motor does."""
+
+    kind: Literal["encoder-stuck"]
+
+
+class EncoderJump(FaultSettings):
+    """The encoder has lost counts: every position is off by so much."""
+
+    kind: Literal["encoder-jump"]
+    jump_rad: float = quantity(..., "rad", "What every position is off by")
+
+
+class SamplesLost(FaultSettings):
+    """Neither command nor sample gets through."""
+
+    kind: Literal["samples-lost"]
+
+
+class SamplesLate(FaultSettings):
+    """What the drive measures arrives late, and says so."""
+
+    kind: Literal["samples-late"]
+    age_s: float = quantity(..., "s", "How late", gt=0, le=1)
+
+
+class OverTemperature(FaultSettings):
+    """The drive is too hot and switches itself off."""
+
+    kind: Literal["over-temperature"]
+    temperature_c: float = quantity(95.0, "degC", "How hot it says it is", gt=0)
+
+
+class OverCurrent(FaultSettings):
+    """The stage has seen a current spike and switches itself off."""
+
+    kind: Literal["over-current"]
+    current_a: float = quantity(20.0, "A", "The spike", gt=0)
+
+
+class SupplyLost(FaultSettings):
+    """The supply of the power stage is gone; the drive's logic lives on."""
+
+    kind: Literal["supply-lost"]
+
+
+class DriveFailed(FaultSettings):
+    """Any other fault of the drive's own."""
+
+    kind: Literal["drive-failed"]
+    text: str = quantity("internal fault", "", "What the drive says", min_length=1)
+
+
+class TorqueDisabled(FaultSettings):
+    """Somebody has opened the safe-torque-off circuit."""
+
+    kind: Literal["torque-disabled"]
+
+
+class ClutchSlips(FaultSettings):
+    """The coupling between transmission and arm holds no more than this."""
+
+    kind: Literal["clutch-slips"]
+    limit_n_m: float = quantity(..., "N m", "Torque at which it slips", gt=0)
+
+
+class LoadFalls(FaultSettings):
+    """The load falls off the arm. It does not come back by itself."""
+
+    kind: Literal["load-falls"]
+
+
+KINDS: tuple[type[FaultSettings], ...] = (
+    EncoderStuck, EncoderJump, SamplesLost, SamplesLate, OverTemperature, OverCurrent, SupplyLost, DriveFailed,
+    TorqueDisabled, ClutchSlips, LoadFalls,
+)  # fmt: skip
+NAMES = tuple(kind.model_fields["kind"].annotation.__args__[0] for kind in KINDS)  # type: ignore[union-attr]
+
+
+def _tag(table: Any) -> str:
+    kind = table.get("kind", "") if isinstance(table, dict) else getattr(table, "kind", "")
+    return f"tagged-{kind}"  # so that messages name the key without the tag
+
+
+AnyFault = Annotated[
+    Annotated[EncoderStuck, Tag("tagged-encoder-stuck")]
+    | Annotated[EncoderJump, Tag("tagged-encoder-jump")]
+    | Annotated[SamplesLost, Tag("tagged-samples-lost")]
+    | Annotated[SamplesLate, Tag("tagged-samples-late")]
+    | Annotated[OverTemperature, Tag("tagged-over-temperature")]
+    | Annotated[OverCurrent, Tag("tagged-over-current")]
+    | Annotated[SupplyLost, Tag("tagged-supply-lost")]
+    | Annotated[DriveFailed, Tag("tagged-drive-failed")]
+    | Annotated[TorqueDisabled, Tag("tagged-torque-disabled")]
+    | Annotated[ClutchSlips, Tag("tagged-clutch-slips")]
+    | Annotated[LoadFalls, Tag("tagged-load-falls")],
+    Discriminator(_tag, custom_error_type="kind", custom_error_message=f"kind should be one of {', '.join(NAMES)}"),
+]

@@ -1,0 +1,165 @@
+"""One item from draw to result: record, ask the lab, ask the rivals, ask the oracle."""
+
+import time
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from bench.evaluation.blind.baseline_methods import RIVALS
+from bench.evaluation.blind.items import FAMILIES, Item
+from bench.evaluation.blind.lab_answer import LabAnswer, ask_lab, base_fit
+from bench.evaluation.blind.oracle import Standing, standing, standing_at_breakaway
+from bench.evaluation.blind.recorded import bench_for, recorded, unexplained
+from bench.evaluation.blind.settling import Settled, settle
+from bench.evaluation.challenge.names import accepted
+from bench.evaluation.challenge.owner import rig_of
+from compensator.lab.effects.catalogue import effect_named, withheld
+from compensator.lab.effects.effect import MotionRows
+from compensator.lab.errors import LabError, NotApplicableError
+from compensator.lab.model.fit import fit_effects, widened
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.validation import held_out
+from compensator.lab.screening.candidates import Candidates, gather
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of an item.
+
+    Attributes:
+        key, family: of the item.
+        truths: mechanisms hidden; names: what the catalogue calls each, "" where it does not.
+        sizes: of the mechanisms.
+        answer: of the lab; None where it refused the data, and `refusal` says why.
+        standings: of the truths, by the oracle; None where it cannot say.
+        unexplained: rms that the base model leaves with the mechanisms over that without them, where that was measured.
+        oracle_error: held-out, of the model with the truth in it.
+        rivals: rival -> what it names.
+        seconds: that the lab took.
+        withheld: answer of the lab to the same data where the catalogue has no name for the truth; None: not asked.
+        withheld_left: standing of the truth beside what was named in its place; None where the oracle cannot say.
+        settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
+    """
+
+    key: str
+    family: str
+    truths: tuple[str, ...]
+    names: tuple[str, ...]
+    sizes: tuple[float, ...]
+    answer: LabAnswer | None
+    standings: tuple[Standing | None, ...]
+    unexplained: float | None
+    oracle_error: float
+    rivals: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    seconds: float = 0.0
+    refusal: str = ""
+    settled: Settled | None = None
+    withheld: LabAnswer | None = None
+    withheld_left: Standing | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """Nested dicts."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> "Result":
+        """From nested dicts."""
+        made: dict[str, Any] = {
+            key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
+        }
+        for which in ("answer", "withheld"):
+            made[which] = None if values.get(which) is None else LabAnswer.from_json(values[which])
+        made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
+        left = values.get("withheld_left")
+        made["withheld_left"] = None if left is None else Standing(**left)
+        made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
+        made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
+        return cls(**made)
+
+
+def judge(item: Item) -> Result:
+    """Draw, record, ask.
+
+    Raises:
+        ExperimentError: no joint of the item completes the protocol.
+    """
+    found = recorded(item)
+    drawn, recordings = found.drawn, found.recordings
+    rig = rig_of(drawn)
+    truths = tuple(hidden.name for hidden in drawn.hidden)
+    names = tuple(next(iter(accepted(truth)), "") for truth in truths)
+    sizes = tuple(hidden.size for hidden in drawn.hidden)
+    try:
+        fit = base_fit(recordings, rig)
+        began = time.process_time()
+        answer = ask_lab(fit, several=FAMILIES[item.family].count > 1)
+        seconds = time.process_time() - began
+        gathered = gather(fit)
+        standings, error = _oracle(fit, gathered, names)
+        rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
+        more_left = unexplained(item, found) if names == ("",) else None
+        unlisted = _unlisted(fit, truths) if FAMILIES[item.family].withheld else None
+        left = None if unlisted is None else _left(fit, gathered, names[0], unlisted.first[:1])
+        settled = settle(bench_for(item, drawn), recordings, fit, names[0]) if FAMILIES[item.family].settled else None
+    except LabError as refusal:
+        empty = (None,) * len(truths)
+        return Result(
+            item.key, item.family, truths, names, sizes, None, empty, None, float("nan"), refusal=str(refusal)
+        )
+    return Result(
+        item.key, item.family, truths, names, sizes, answer, standings, more_left, error, rivals, seconds,
+        settled=settled, withheld=unlisted, withheld_left=left,
+    )  # fmt: skip
+
+
+def _unlisted(fit: Fit, truths: tuple[str, ...]) -> LabAnswer | None:
+    """What the lab says of a mechanism that it knows, as if nobody had written it yet."""
+    names = [name for truth in truths for name in accepted(truth)]
+    if not names:
+        return None
+    with withheld(names):
+        return ask_lab(fit, several=False)
+
+
+def _left(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -> Standing | None:
+    """How far a truth stands out of the model with what was named in its place: all that is left to be flagged."""
+    if not _can_be_seen(fit, name):
+        return None
+    return standing(_judged(fit, base, list(named), name), name)
+
+
+def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:
+    """How far each truth stands out of the model with all the others, and the error of the model with all of them."""
+    known = [name for name in names if name and _can_be_seen(fit, name)]
+    whole = fit_effects(fit.dataset, [*fit.names, *known], fit.training) if known else fit
+    standings = []
+    for name in names:
+        others = [other for other in known if other != name]
+        standings.append(_best_standing(fit, base, others, name) if name in known else None)
+    return tuple(standings), held_out(whole).relative
+
+
+def _best_standing(fit: Fit, base: Candidates, others: list[str], name: str) -> Standing | None:
+    """Where it stands out most: in motion, or, of what memory leaves for the starts from rest, there."""
+    found = [standing(_judged(fit, base, others, name), name)]
+    if not others and effect_named(name).rows != "sliding":
+        found.append(standing_at_breakaway(fit, name))
+    known = [one for one in found if one is not None]
+    return max(known, key=lambda one: one.detectability, default=None)
+
+
+def _judged(fit: Fit, base: Candidates, others: list[str], name: str) -> Candidates:
+    """What a model with the others may be missing, on the rows where the effect shows."""
+    show_in: MotionRows = "sliding" if effect_named(name).rows == "sliding" else "moving"
+    if not others and show_in == base.show_in:
+        return base
+    rest = fit_effects(fit.dataset, [*fit.names, *others], fit.training)
+    return gather(widened(rest, "moving") if show_in == "moving" else rest, show_in)
+
+
+def _can_be_seen(fit: Fit, name: str) -> bool:
+    """Whether these trials have what the effect needs: a temperature that differs, loads that differ."""
+    try:
+        fit.dataset.check_applicable(effect_named(name))
+    except NotApplicableError:
+        return False
+    return True

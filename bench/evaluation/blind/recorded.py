@@ -1,0 +1,186 @@
+"""The joint of an item, recorded; where its family asks for an r, with so much of what it hides as makes that r."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bench.config.configuration import BenchConfiguration
+from bench.errors import ExperimentError, LimitError
+from bench.evaluation.blind.imperfections import DELAY_S, worn
+from bench.evaluation.blind.items import FAMILIES, PERIOD_S, Item, draw_item, protocol_of, wanted_ratio
+from bench.evaluation.blind.lab_answer import base_fit
+from bench.evaluation.challenge.hidden_plant import MECHANISMS, DrawnPlant
+from bench.evaluation.challenge.owner import bench_of, rig_of
+from bench.evaluation.challenge.session import record
+from compensator.lab.errors import LabError
+from compensator.lab.model.validation import rms
+from compensator.lab.recordings.recording import Recording
+
+ATTEMPTS = 10
+SCALINGS = 7  # sizes that are tried for the r that is wanted
+NEAR = 1.25  # factor: an r so near to the wanted one will do
+LARGEST_STEP = 2.0  # of the logarithm of a size at once
+LEAST_RATIO = 0.01  # a smaller r is none
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What was recorded of an item.
+
+    Attributes:
+        drawn: the joint and what it hides.
+        recordings: of it.
+        attempt: how many joints were drawn before it.
+    """
+
+    drawn: DrawnPlant
+    recordings: list[Recording]
+    attempt: int
+
+
+def recorded(item: Item) -> Recorded:
+    """Draw and record the first joint that completes the protocol.
+
+    Raises:
+        ExperimentError: none does.
+    """
+    reason = ""
+    for attempt in range(ATTEMPTS):
+        try:
+            return _scaled(item, attempt)
+        except (ExperimentError, LimitError) as error:
+            reason = str(error)
+    raise ExperimentError(f"item {item.key}: no joint completes the protocol: {reason}")
+
+
+def bench_for(item: Item, drawn: DrawnPlant, without: str | None = None) -> BenchConfiguration:
+    """The bench that the joint is on; with one of its mechanisms left out where it is named."""
+    configuration = bench_of(drawn, item.seed, without)
+    control = configuration.control.model_copy(update={"period_s": PERIOD_S})
+    return configuration.model_copy(update={"control": control})
+
+
+def unexplained(item: Item, found: Recorded) -> float | None:
+    """What the base model leaves with the mechanism over what it leaves of the same joint without (`Scale`)."""
+    try:
+        return float(np.hypot(1.0, Scale.of(item, found.drawn, found.attempt).ratio(found.drawn)))
+    except (ExperimentError, LimitError):
+        return None
+
+
+def ratio_of(left: float) -> float:
+    """The r of what no effect stands for, from what the base model leaves with it over that without."""
+    return float(np.sqrt(max(left**2 - 1.0, 0.0)))
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What an r is measured by: what the base model leaves of the joint without what it hides, in the effort's unit.
+
+    Friction that scatters differs from recording to recording by as much as a small mechanism makes: its own part is
+    taken from two recordings of the joint with neither scatter nor noise, with it and without.
+
+    Attributes:
+        item, attempt: whose joint.
+        noisy: as it is recorded; quiet: with neither scatter nor noise.
+    """
+
+    item: Item
+    attempt: int
+    noisy: float
+    quiet: float
+
+    @classmethod
+    def of(cls, item: Item, drawn: DrawnPlant, attempt: int) -> "Scale":
+        """Record the joint without what it hides, as it is and quiet."""
+        noisy, quiet = (_left(_plain(item, drawn, attempt, quiet=quiet)) for quiet in (False, True))
+        return cls(item, attempt, noisy, quiet)
+
+    def ratio(self, drawn: DrawnPlant) -> float:
+        """r of what is hidden: its part of what the base model leaves, over what it leaves without."""
+        left = _left(Recorded(drawn, _record(self.item, drawn, self.attempt, None, quiet=True), self.attempt))
+        return float(np.sqrt(max(left**2 - self.quiet**2, 0.0))) / self.noisy
+
+
+def _scaled(item: Item, attempt: int) -> Recorded:
+    """The joint of an attempt, its size scaled until r is near the wanted one; the nearest where none is."""
+    wanted, scale = wanted_ratio(item, attempt), 1.0
+    drawn = draw_item(item, attempt)
+    if wanted is None:
+        return _recorded(item, drawn, attempt)
+    measure = Scale.of(item, drawn, attempt)
+    tried: list[tuple[float, float, DrawnPlant]] = []
+    for _ in range(SCALINGS):
+        ratio = max(measure.ratio(drawn), LEAST_RATIO)
+        tried.append((float(np.log(scale)), float(np.log(ratio / wanted)), drawn))
+        if abs(tried[-1][1]) <= np.log(NEAR):
+            break
+        scale = _bounded(drawn, scale, float(np.exp(_next([(at, off) for at, off, _ in tried]))))
+        drawn = draw_item(item, attempt, scale)
+    return _recorded(item, min(tried, key=lambda one: abs(one[1]))[2], attempt)
+
+
+def _next(tried: list[tuple[float, float]]) -> float:
+    """Where to look for a rising function's zero after (place, value), ...: between the nearest ones of either sign."""
+    below = max((one for one in tried if one[1] < 0.0), default=None)
+    above = min((one for one in tried if one[1] >= 0.0), default=None)
+    if below is None or above is None:
+        place, value = tried[-1]
+        return place - float(np.clip(value, -LARGEST_STEP, LARGEST_STEP))  # r goes with the size, roughly
+    share = float(np.clip(-below[1] / (above[1] - below[1]), 0.2, 0.8))
+    return below[0] + share * (above[0] - below[0])
+
+
+def _bounded(drawn: DrawnPlant, scale: float, wanted: float) -> float:
+    """The wanted scale, or that which brings the mechanism to the upper end of its range."""
+    hidden = drawn.hidden[0]
+    return min(wanted, scale * MECHANISMS[hidden.name].size.high / hidden.size)
+
+
+def _recorded(item: Item, drawn: DrawnPlant, attempt: int) -> Recorded:
+    return Recorded(drawn, _record(item, drawn, attempt, None), attempt)
+
+
+def _plain(item: Item, drawn: DrawnPlant, attempt: int, *, quiet: bool) -> Recorded:
+    """The same joint without what it hides."""
+    return Recorded(drawn, _record(item, drawn, attempt, drawn.hidden[0].name, quiet=quiet), attempt)
+
+
+def _left(found: Recorded) -> float:
+    """What the base model leaves, root mean square, in the effort's unit."""
+    try:
+        fit = base_fit(found.recordings, rig_of(found.drawn))
+    except LabError as error:
+        raise ExperimentError(f"no model can be fitted: {error}") from error
+    return rms(fit.residual[fit.training])
+
+
+def _record(
+    item: Item, drawn: DrawnPlant, attempt: int, without: str | None, *, quiet: bool = False
+) -> list[Recording]:
+    configuration = bench_for(item, drawn, without)
+    if quiet:
+        configuration = _quiet(configuration)
+    random = np.random.default_rng((item.seed, attempt, 1))
+    protocol = protocol_of(item, drawn.joint.heaviest_kg, drawn.joint.top_rad_s, configuration)
+    if not FAMILIES[item.family].imperfect:
+        return record(configuration, protocol)
+    return worn(record(_late(configuration, float(random.uniform(*DELAY_S))), protocol), random)
+
+
+def _late(configuration: BenchConfiguration, delay_s: float) -> BenchConfiguration:
+    return _with_plant(configuration, {"latency": {"delay_s": delay_s}})
+
+
+def _quiet(configuration: BenchConfiguration) -> BenchConfiguration:
+    """The same joint, whose friction does not scatter and whose current is measured without noise."""
+    plant = configuration.model_dump()["drive"]["plant"]
+    still = {**plant["scatter"], "static_fraction": 0.0, "coulomb_fraction": 0.0}
+    return _with_plant(configuration, {"scatter": still, "current_sensor": {**plant["current_sensor"], "noise_a": 0.0}})
+
+
+def _with_plant(configuration: BenchConfiguration, tables: dict[str, Any]) -> BenchConfiguration:
+    values = configuration.model_dump()
+    values["drive"]["plant"] = {**values["drive"]["plant"], **tables}
+    return BenchConfiguration.model_validate(values)

@@ -1,0 +1,107 @@
+"""A guess at what is hidden: names of effects, classes of names, "nothing" or "none-of-these"."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from bench.errors import ParameterError
+from bench.evaluation.challenge.names import RECORDED, accepted
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.errors import UnknownEffectError
+
+NOTHING = "nothing"
+UNKNOWN = "none-of-these"
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """What somebody says is hidden.
+
+    Attributes:
+        classes: effects that are said to be there. A class of several names says: one of these.
+        unknown: something is said to be there that no effect of the catalogue stands for.
+    """
+
+    classes: tuple[tuple[str, ...], ...] = ()
+    unknown: bool = False
+
+    @classmethod
+    def parse(cls, text: str) -> "Guess":
+        """Read `name[,name]`; `name/name` is a class; `nothing`; `none-of-these`.
+
+        Raises:
+            ParameterError: an unknown name, or `nothing` beside something.
+        """
+        parts = [part.strip() for part in text.split(",") if part.strip()]
+        if not parts or (NOTHING in parts and len(parts) > 1):
+            raise ParameterError(
+                f"guess is '{text}'; wanted effects such as spring,viscous_asymmetry, a class of effects such as "
+                f"spring/gravity, {NOTHING} or {UNKNOWN}"
+            )
+        named = [tuple(part.split("/")) for part in parts if part not in (NOTHING, UNKNOWN)]
+        return cls(tuple(_known(names) for names in named), UNKNOWN in parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """How good a guess is.
+
+    Attributes:
+        right: hidden mechanisms that were named, alone or in a class; "none-of-these" for one outside the catalogue.
+        missed: hidden mechanisms that were not.
+        untold: hidden mechanisms that no recording of motion can tell from what every model has; they do not count.
+        recorded: names that hold for every recording, whatever is hidden; they do not count.
+        wrong: classes said to be there that are not.
+        class_sizes: of the classes that hold a right name.
+    """
+
+    right: tuple[str, ...]
+    missed: tuple[str, ...]
+    untold: tuple[str, ...]
+    recorded: tuple[str, ...]
+    wrong: tuple[str, ...]
+    class_sizes: tuple[int, ...]
+
+    @property
+    def perfect(self) -> bool:
+        """Whether everything was named and nothing else."""
+        return not (self.missed or self.wrong)
+
+    @property
+    def points(self) -> float:
+        """One for each mechanism named, shared by the class it was named in; less one for each false name."""
+        outside = len(self.right) - len(self.class_sizes)
+        return sum(1.0 / size for size in self.class_sizes) + outside - len(self.wrong)
+
+
+def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> Score:
+    """Hold a guess against the names of the hidden mechanisms; those in `absorbed` need not be named."""
+    left = list(guess.classes)
+    right: list[str] = []
+    missed: list[str] = []
+    untold: list[str] = []
+    sizes: list[int] = []
+    unknown_used = False
+    for truth in truths:
+        names = accepted(truth)
+        found = next((one for one in left if set(one) & set(names)), None)
+        if found is not None:
+            left.remove(found)
+            right.append(truth)
+            sizes.append(len(found))
+        elif not names and guess.unknown:
+            unknown_used = True
+            right.append(truth)
+        else:
+            (untold if truth in absorbed else missed).append(truth)
+    recorded = ["/".join(one) for one in left if set(one) <= set(RECORDED)]
+    wrong = ["/".join(one) for one in left if not set(one) <= set(RECORDED)]
+    if guess.unknown and not unknown_used:
+        wrong.append(UNKNOWN)
+    return Score(tuple(right), tuple(missed), tuple(untold), tuple(recorded), tuple(wrong), tuple(sizes))
+
+
+def _known(names: tuple[str, ...]) -> tuple[str, ...]:
+    try:
+        return tuple(effect_named(name.strip()).name for name in names)
+    except UnknownEffectError as error:
+        raise ParameterError(f"guess: {error}; list them with: friction-bench effects") from error

@@ -1,0 +1,137 @@
+"""Third part: a plant with one more mechanism than the model knows of. The lab finds it from the recordings alone."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bench import study
+from bench.config.configuration import BenchConfiguration
+from bench.evaluation.paper.measurements import run_experiment
+from bench.report import Bars, Figure, Line, Points, Section, Table
+from bench.store import Store
+
+BASE = (
+    "inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction",
+)  # fmt: skip
+"""What the paper knows of its joint: General Kinetic Friction that grows with the load."""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """A mechanism of the plant, and what the catalogue calls it."""
+
+    plant: dict[str, Any]
+    name: str
+
+
+def draw(seed: int) -> Hidden:
+    """One of several mechanisms, of a size drawn at random."""
+    generator = np.random.default_rng(seed)
+    size = float(generator.uniform(0.7, 1.3))
+    heat = {"present": True, "winding_j_k": 5.0, "housing_j_k": 20.0}
+    choices = [
+        Hidden({"viscous_asymmetry": {"fraction": 0.5 * size}}, "viscous_asymmetry"),
+        Hidden({"spring": {"stiffness_n_m_rad": 0.06 * size}}, "spring"),
+        Hidden({"periodic_friction": {"fraction": 0.3 * size, "cycles_per_turn": 5.0}}, "position_periodic_friction"),
+        Hidden({"centre_of_mass": {"angle_rad": 0.12 * size}}, "centre_of_mass_angle"),
+        Hidden({"lubricant": {"vogel_k": 800.0 * size}, "heat": heat}, "viscous_temperature"),
+    ]
+    return choices[int(generator.integers(len(choices)))]
+
+
+def hidden_effect(configuration: BenchConfiguration, store: Store, seed: int) -> Section:
+    """Record, compare, diagnose, add, compare again; then say what was hidden."""
+    hidden = draw(seed)
+    drive = configuration.drive.model_copy(update={"plant": hidden.plant, "seed": seed})
+    experiment_id = run_experiment(configuration.model_copy(update={"drive": drive}), store, "excitation", {})
+    made = study.create_study(
+        store, f"hidden effect, seed {seed}", [experiment_id], hold_out=["load_kg=0.05"], base=BASE
+    )
+    study_id = made["study_id"]
+    before = study.compare(store, study_id)
+    diagnosis = study.diagnose(store, study_id)
+    first = diagnosis["ranking"][0]
+    change = study.add_effect(store, study_id, first["effect"])
+    ladder = study.ladder(store, study_id)
+    right = "It was." if first["effect"] == hidden.name else f"It was not: hidden was {hidden.name}."
+    return Section(
+        title="A hidden effect: compare, learn what is missing, add it",
+        sentences=[
+            f"{len(made['trials'])} recordings of a plant with one more mechanism than the model. The trials with "
+            f"50 g are held out. The model's error on them is {before['error']['held_out']['relative']:.2%} of the "
+            f"effort; repeated trials differ by {before['error']['floor']['relative']:.2%}: no model can beat that.",
+            diagnosis["sentence"],
+            change["sentence"],
+            f"Named: {first['title'].lower()}. {right}",
+        ],
+        tables=[_ranking(diagnosis), _ladder(ladder)],
+        figures=[*_picture(first), _errors(ladder)],
+    )
+
+
+def _ranking(diagnosis: dict[str, Any]) -> Table:
+    rows = [
+        (
+            one["title"],
+            one["score"],
+            100 * one["held_out_before"],
+            100 * one["held_out_after"],
+            f"{one['gain']:.1%} ({one['gain_low']:.1%} .. {one['gain_high']:.1%})",
+            ", ".join(one["confused_with"]) or "-",
+        )
+        for one in diagnosis["ranking"]
+    ]
+    columns = ["effect", "score#", "held out before [%]#", "then [%]#", "gain, 90 % interval", "rivals"]
+    return Table("Effects by evidence", columns, rows)
+
+
+def _ladder(ladder: dict[str, Any]) -> Table:
+    rows = [
+        (
+            f"+ {rung['added']}" if rung["added"] else "base",
+            100 * rung["training"],
+            100 * rung["held_out"],
+            f"{rung['held_out_low']:.2%} .. {rung['held_out_high']:.2%}",
+        )
+        for rung in ladder["rungs"]
+    ]
+    rows.append(("repeatability floor", None, 100 * ladder["floor"], ""))
+    return Table(
+        "The ladder: error as a share of the effort", ["model", "training [%]#", "held out [%]#", "90 %"], rows
+    )
+
+
+def _errors(ladder: dict[str, Any]) -> Figure:
+    names = [f"+ {rung['added']}" if rung["added"] else "base" for rung in ladder["rungs"]]
+
+    def percent(key: str) -> list[float]:
+        return [100 * rung[key] for rung in ladder["rungs"]]
+
+    return Figure(
+        "Error from model to model",
+        "",
+        "error [% of the effort]",
+        [
+            Bars("training", names, percent("training")),
+            Bars("held out", names, percent("held_out"), percent("held_out_low"), percent("held_out_high")),
+        ],
+    )
+
+
+def _picture(first: dict[str, Any]) -> list[Figure]:
+    picture = first["picture"]
+    if picture is None:
+        return []
+    against = ", against the motion" if picture["against_motion"] else ""
+    return [
+        Figure(
+            f"Why: what the model leaves{against}, and {first['title'].lower()} laid over it",
+            f"{picture['driver']} [{picture['unit']}]",
+            "residual [N m]",
+            [
+                Points("residual", picture["x"], picture["residual"], picture["low"], picture["high"]),
+                Line(first["title"], picture["curve_x"], picture["curve"]),
+            ],
+        )
+    ]

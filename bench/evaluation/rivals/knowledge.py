@@ -1,0 +1,70 @@
+"""What all rivals know: one calibration of the joint that they are compared on."""
+
+import tempfile
+from math import pi
+from pathlib import Path
+
+from bench.calibration import calibrate, with_friction
+from bench.config.configuration import BenchConfiguration
+from bench.errors import ConfigurationError, ExperimentError
+from bench.experiments.parts.load_follower import estimator_settings, joint_model
+from bench.runs.runner import Runner
+from bench.store import Store
+from compensator.rivals import Knowledge
+
+LOADS_KG = (0.0, 0.05, 0.1)
+SWEEPS = (
+    ("speed-sweep", {"loads_kg": LOADS_KG, "strokes": 4}),
+    ("load-sweep", {"loads_kg": LOADS_KG, "angles_rad": (0.0, pi / 2), "searches": 2}),
+)
+
+
+def calibrated(configuration: BenchConfiguration) -> BenchConfiguration:
+    """The configuration with friction curves, of a calibration made now where it has none. Nothing of it is kept.
+
+    Raises:
+        ExperimentError: a sweep did not complete.
+    """
+    if configuration.friction is not None:
+        return configuration
+    with (
+        tempfile.TemporaryDirectory(prefix="friction-bench-") as folder,
+        Store.open(f"sqlite:///{Path(folder) / 'rivals.sqlite'}") as store,
+    ):
+        calibrate(store, [_run(configuration, store, kind, parameters) for kind, parameters in SWEEPS])
+        return with_friction(store, configuration)
+
+
+def knowledge_of(configuration: BenchConfiguration) -> Knowledge:
+    """From the friction curves of a configuration.
+
+    Raises:
+        ConfigurationError: it has none, or its rig leaves out what is needed.
+    """
+    model, settings = joint_model(configuration), estimator_settings(configuration)
+    friction = configuration.friction
+    if friction is None:
+        raise ConfigurationError("there are no friction curves to compare with; calibrate first")
+    middle = sorted(friction.curves, key=lambda one: one.load_kg)[len(friction.curves) // 2]
+    return Knowledge(
+        lookup=friction.over_friction(),
+        fixed=middle.curve(),
+        ratio=model.ratio,
+        inertia_a_s2_rad=middle.inertia_a_s2_rad * model.ratio,
+        breakaway_rad=configuration.search.onset_counts * settings.count_rad,
+        settings=settings,
+        model=model,
+    )
+
+
+def _run(configuration: BenchConfiguration, store: Store, kind: str, parameters: dict[str, object]) -> int:
+    runner = Runner(configuration, store)
+    try:
+        started = runner.start(kind, parameters, pace="fast")
+        runner.wait()
+    finally:
+        runner.close()
+    found = store.experiment(started)
+    if found.outcome != "completed":
+        raise ExperimentError(f"{kind}: {found.outcome}: {found.reason}")
+    return started

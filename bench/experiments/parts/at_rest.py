@@ -1,0 +1,101 @@
+"""One trial at rest: go to an angle, settle, note the uncompensated current, search, note the compensated one."""
+
+from math import isnan, pi
+from typing import Any
+
+from bench.config.configuration import BenchConfiguration
+from bench.config.reflected_load import arm_angle_rad, reflected_load_kg
+from bench.control.cycle import Procedure
+from bench.experiments.analysis.rest_estimate import RestFinding, finding
+from bench.experiments.parts.joint import Joint
+from bench.experiments.parts.search import Found
+
+SEARCH_S = {"paper": 6.0, "improved": 2.5}  # of one search, roughly
+MOVES_S = 3.0  # to the angle and back, roughly
+RIGHT_ANGLE_RAD = pi / 2
+_NAMES = (
+    "min_current_a", "max_current_a", "load_current_a", "friction_current_a", "load_currents_a", "load_interval_a",
+    "friction_interval_a", "arm_angle_rad", "reflected_load_kg", "reflected_interval_kg", "breakaways", "search_s",
+    "search_travel_rad",
+)  # fmt: skip
+
+
+def duration_s(configuration: BenchConfiguration, searches: int) -> float:
+    """Of one trial, roughly [s]."""
+    return MOVES_S + SEARCH_S[configuration.search.method] * searches
+
+
+def measure_at_rest(
+    configuration: BenchConfiguration, angle_rad: float, searches: int, approach_rad_s: float | None = None
+) -> Procedure:
+    """The procedure. It starts and ends at angle 0, where the joint may be left without power.
+
+    Args:
+        configuration: of the bench.
+        angle_rad: where to measure.
+        searches: zero-speed searches, one after the other. Friction is a little different each time that the joint
+            comes to rest; the mean is not.
+        approach_rad_s: speed of the way there; that of the configuration where None.
+
+    Results:
+        steady_current_a: uncompensated, as the position servo happened to leave it (Fig. 4).
+        min_current_a, max_current_a: at which the joint just moved, mean of all searches.
+        load_current_a, friction_current_a: eqs (9), (10), from all searches; corrected where known loads have told how.
+        load_currents_a: eq. (9) of each search.
+        load_interval_a, friction_interval_a: 95 %, [low, high]; None where the searches do not tell.
+        arm_angle_rad: of the arm behind the free play during the searches, as far as the sensor before it tells.
+        reflected_load_kg: what the load current amounts to at that angle; None near angle 0. With its interval.
+        breakaways: [direction, current_a, rate_a_s, position_rad] of each.
+        search_s, search_travel_rad: time and motion of one search, mean.
+        search_failure: why there is no estimate; "" where there is. Without one all but the first two are None.
+    """
+    joint = Joint(configuration)
+    yield from joint.wake()
+    yield from joint.move(0.0)
+    yield from joint.settle(0.0)
+    yield from joint.move(angle_rad, approach_rad_s)
+    steady = yield from joint.settle(angle_rad)
+    results: dict[str, Any] = {"steady_current_a": steady.current_a, "steady_position_rad": steady.position_rad}
+    found: list[Found] = []
+    for _ in range(searches):
+        one = yield from joint.search(angle_rad)
+        found.append(one)
+        if one.failure:
+            yield from joint.move(0.0)
+            return results | _no_estimate(one.failure)
+        told = finding(found, configuration)
+        yield from joint.reflect(angle_rad, told.load_current_a, told.half_width_a)
+    yield from joint.move(0.0)
+    return results | _estimate(found, steady.position_rad, configuration)
+
+
+def _no_estimate(failure: str) -> dict[str, Any]:
+    return {**dict.fromkeys(_NAMES), "search_failure": failure}
+
+
+def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfiguration) -> dict[str, Any]:
+    whole = finding(found, configuration)
+    stood_rad = steady_rad if isnan(whole.position_rad) else whole.position_rad
+    angle_rad = arm_angle_rad(stood_rad, whole.load_current_a, configuration.rig)
+    values = (
+        whole.min_current_a,
+        whole.max_current_a,
+        whole.load_current_a,
+        whole.friction_current_a,
+        [finding([one], configuration).load_current_a for one in found],
+        whole.load_interval_a,
+        whole.friction_interval_a,
+        angle_rad,
+        reflected_load_kg(whole.load_current_a, angle_rad, configuration.rig),
+        _reflected_interval(whole, angle_rad, configuration),
+        [list(breakaway) for one in found for breakaway in one.breakaways],
+        sum(one.seconds for one in found) / len(found),
+        sum(one.travel_rad for one in found) / len(found),
+    )
+    return {**dict(zip(_NAMES, values, strict=True)), "search_failure": ""}
+
+
+def _reflected_interval(whole: RestFinding, angle_rad: float, configuration: BenchConfiguration) -> list[float] | None:
+    ends_a = whole.load_interval_a or []
+    ends_kg = [reflected_load_kg(end_a, angle_rad, configuration.rig) for end_a in ends_a]
+    return sorted(end_kg for end_kg in ends_kg if end_kg is not None) or None

@@ -1,0 +1,85 @@
+"""Checks of what is asked against the limits of the bench, before anything moves."""
+
+from collections.abc import Iterable
+from math import pi, radians
+
+from bench.config.configuration import BenchConfiguration
+from bench.errors import LimitError, quantity_message
+from bench.experiments.parts.profile import Trapezoid
+from drivers.contract import Description, Mode
+
+LONGEST_MOVE_S = 600.0
+
+
+def refuse_load(name: str, load_kg: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for a load heavier than the bench carries."""
+    limit_kg = configuration.limits.load_kg
+    if load_kg > limit_kg:
+        step = "Hang a lighter load"
+        if load_kg >= 1.0 and load_kg * 1e-3 <= limit_kg:
+            step = f"Are grams meant? {load_kg:g} g are {load_kg * 1e-3:g} kg"
+        raise LimitError(quantity_message(name, load_kg, f"at most {limit_kg:g}", "kg", step))
+
+
+def refuse_angles(name: str, angles_rad: Iterable[float], margin_rad: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for angles that, with a margin for what the motion may overshoot, leave the allowed range."""
+    limits = configuration.limits
+    low_rad, high_rad = limits.position_min_rad + margin_rad, limits.position_max_rad - margin_rad
+    for angle_rad in angles_rad:
+        if not low_rad <= angle_rad <= high_rad:
+            allowed = f"{low_rad:.4g} .. {high_rad:.4g} (the limits less a margin of {margin_rad:.4g} rad)"
+            meant_rad = radians(angle_rad)
+            degrees_meant = abs(angle_rad) > 2.0 * pi and low_rad <= meant_rad <= high_rad
+            step = f"Are degrees meant? {angle_rad:g} degrees are {meant_rad:.4g} rad" if degrees_meant else ""
+            raise LimitError(quantity_message(name, angle_rad, allowed, "rad", step))
+
+
+def refuse_speed(name: str, speed_rad_s: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for a speed above the limit."""
+    limit_rad_s = configuration.limits.speed_rad_s
+    if speed_rad_s > limit_rad_s:
+        raise LimitError(quantity_message(name, speed_rad_s, f"at most {limit_rad_s:g}", "rad/s"))
+
+
+def refuse_slow_move(name: str, speed_rad_s: float, way_rad: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for a speed at which a move would seem to have no end."""
+    duration_s = Trapezoid(0.0, way_rad, speed_rad_s, configuration.motion.acceleration_rad_s2).duration_s
+    if duration_s > LONGEST_MOVE_S:
+        raise LimitError(
+            f"{name} is {speed_rad_s:g} rad/s: a move of {way_rad:.4g} rad would take {duration_s:.4g} s; "
+            f"allowed is at most {LONGEST_MOVE_S:g} s. Choose a higher speed or acceleration"
+        )
+
+
+def refuse_currents(configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` where the servo or the search may ask for more current than the limit."""
+    limit_a = configuration.limits.current_a
+    for name, asked_a in (
+        ("servo.current_a", configuration.servo.current_a),
+        ("search.ceiling_a", configuration.search.ceiling_a),
+    ):
+        if asked_a > limit_a:
+            step = "Correct the bench configuration"
+            raise LimitError(quantity_message(name, asked_a, f"at most limits.current_a, {limit_a:g}", "A", step))
+
+
+def refuse_duty(name: str, duty: float, configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` for a duty that drives more current than the limit through a joint that stands."""
+    limit_a, rig = configuration.limits.current_a, configuration.rig
+    if rig.supply.voltage_v is None or rig.motor.resistance_ohm is None:
+        return
+    limit = limit_a * rig.motor.resistance_ohm / rig.supply.voltage_v
+    if duty > limit:
+        allowed = f"at most {limit:.4g}, which is limits.current_a, {limit_a:g} A, while the joint stands"
+        raise LimitError(quantity_message(name, duty, allowed, ""))
+
+
+def refuse_modes(kind: str, wanted: frozenset[Mode], drive: Description) -> None:
+    """Raise `LimitError` where a drive lacks a mode that an experiment needs of the drive itself."""
+    missing = sorted(mode.value for mode in wanted - drive.modes)
+    if missing:
+        there = ", ".join(sorted(mode.value for mode in drive.modes))
+        raise LimitError(
+            f"{kind} needs the mode {' and '.join(missing)} of the drive, and drive '{drive.device}' has {there}; "
+            "ask for a current or a position, which every drive can do"
+        )

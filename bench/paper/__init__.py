@@ -1,6 +1,0 @@
-"""Every figure and table of the paper, from trials of this bench, beside the paper's numbers."""
-
-from bench.paper.reproduction import reproduce, summary
-from bench.paper.row import Row
-
-__all__ = ["Row", "reproduce", "summary"]

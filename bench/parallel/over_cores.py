@@ -1,0 +1,105 @@
+"""The same work on many items: on all cores of this machine, or on a Dask cluster at an address that is told.
+
+One interface, two executors. Whole benches and diagnoses are Python, and need a process each.
+"""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from contextlib import contextmanager
+from multiprocessing import get_context
+from typing import Any, TypeVar
+
+from bench.parallel.cluster import cluster_executor
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+IN_HAND = 3  # items under way or waiting, for each core: so many are in memory, however many there are
+
+
+def over_cores(
+    work: Callable[[Item], Result], items: Iterable[Item], workers: int | None = None, cluster: str | None = None
+) -> Iterator[Result]:
+    """Do the work on every item; the results come in the order of the items.
+
+    An item carries all that its result depends on, its seed too: then the results are the same bytes with any number
+    of workers, here or elsewhere.
+
+    Args:
+        work: a function of a module, so that another process finds it by its name.
+        items: picklable; taken as they are needed.
+        workers: processes, each of which takes a second or two to start; one for each core where left out. 1 works in
+            this process.
+        cluster: address of a Dask scheduler, whose workers are used instead.
+
+    Raises:
+        ClusterError: the cluster cannot be used.
+        Exception: what the work raised on an item, when its turn comes.
+    """
+    early: dict[int, Future[Result]] = {}
+    turn = 0
+    for index, future in _ended(work, items, workers, cluster):
+        early[index] = future
+        while turn in early:
+            yield early.pop(turn).result()
+            turn += 1
+
+
+def as_they_end(
+    work: Callable[[Item], Result], items: Iterable[Item], workers: int | None = None, cluster: str | None = None
+) -> Iterator[Result]:
+    """As `over_cores`; results come as they are had."""
+    for _, future in _ended(work, items, workers, cluster):
+        yield future.result()
+
+
+def _ended(
+    work: Callable[[Item], Result], items: Iterable[Item], workers: int | None, cluster: str | None
+) -> Iterator[tuple[int, Future[Result]]]:
+    numbered = enumerate(items)
+    with _executor(workers, cluster) as (executor, cores):
+        open_items: dict[Future[Result], int] = {}
+        for index, item in numbered:
+            open_items[executor.submit(work, item)] = index
+            if len(open_items) >= IN_HAND * cores:
+                yield from _next(open_items)
+        while open_items:
+            yield from _next(open_items)
+
+
+def _next(open_items: dict[Future[Result], int]) -> Iterator[tuple[int, Future[Result]]]:
+    """Those that ended meanwhile, at least one."""
+    for future in wait(open_items, return_when=FIRST_COMPLETED).done:
+        yield open_items.pop(future), future
+
+
+@contextmanager
+def _executor(workers: int | None, cluster: str | None) -> Iterator[tuple[Executor, int]]:
+    """Who does the work, and on how many cores."""
+    if cluster is not None:
+        with cluster_executor(cluster) as found:
+            yield found
+        return
+    count = workers or os.cpu_count() or 1
+    if count == 1:
+        yield _Here(), 1
+        return
+    # started afresh, not forked: threads and compiled code do not survive a fork
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        yield pool, count
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+class _Here(Executor):
+    """Works in this process, at once."""
+
+    def submit(self, work: Callable[..., Result], /, *arguments: Any, **named: Any) -> Future[Result]:
+        future: Future[Result] = Future()
+        try:
+            future.set_result(work(*arguments, **named))
+        except Exception as error:
+            future.set_exception(error)
+        return future

@@ -1,0 +1,69 @@
+"""TOML files as pydantic models; errors name the file, the line and the key."""
+
+import re
+import tomllib
+from collections import Counter
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from bench.config.validation import problems
+from bench.recording_set.errors import RecordingSetError
+
+MOST_BYTES = 2**20
+Model = TypeVar("Model", bound=BaseModel)
+_TABLE = re.compile(r"\s*\[+(?P<name>[^\[\]]+)\]")
+_KEY = re.compile(r"\s*(?P<name>[^=#\[\]]+?)\s*=")
+
+
+def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
+    """The content of a TOML file.
+
+    Args:
+        data: the file.
+        model: what it holds.
+        file: its name, for errors.
+
+    Raises:
+        RecordingSetError: no TOML, an unknown key, a value of the wrong type or out of range.
+    """
+    if len(data) > MOST_BYTES:
+        raise RecordingSetError(file, f"is larger than {MOST_BYTES} bytes; that is no {model.__name__.lower()} file")
+    try:
+        text = data.decode("utf-8-sig")
+        return model.model_validate(tomllib.loads(text))
+    except UnicodeDecodeError as error:
+        message = f"found byte 0x{data[error.start]:02X}, which is not UTF-8; save the file as UTF-8"
+        raise RecordingSetError(file, message, data.count(b"\n", 0, error.start) + 1) from error
+    except tomllib.TOMLDecodeError as error:
+        raise RecordingSetError(file, f"is no TOML: {error}") from error
+    except ValidationError as error:
+        lines = [line_of(text, detail["loc"]) for detail in error.errors(include_url=False)]
+        first, *others = problems(error, model=model)
+        more = "".join(f"\n{file}, line {line}: {problem}" for line, problem in zip(lines[1:], others, strict=True))
+        raise RecordingSetError(file, first + more, lines[0]) from error
+
+
+def line_of(text: str, location: tuple[int | str, ...]) -> int:
+    """The line of a key, from 1; where the key is missing the line of what holds it."""
+    table: tuple[int | str, ...] = ()
+    counts: Counter[str] = Counter()
+    best, depth = 1, 0
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := _TABLE.match(line):
+            table = _keys(header["name"])
+            if line.lstrip().startswith("[["):
+                table += (counts[header["name"]],)
+                counts[header["name"]] += 1
+            place = table
+        elif key := _KEY.match(line):
+            place = table + _keys(key["name"])
+        else:
+            continue
+        if len(place) > depth and place == location[: len(place)]:
+            best, depth = number, len(place)
+    return best
+
+
+def _keys(dotted: str) -> tuple[str, ...]:
+    return tuple(part.strip().strip("\"'") for part in dotted.split("."))

@@ -1,0 +1,100 @@
+"""What a service and its bench process say to each other, and the version of it.
+
+They are the same software, on one machine, parent and child: messages are pickled, over a socket pair that nobody
+else can reach. STOP is no message: it goes by the stop line, past everything here.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from bench.config.configuration import BenchConfiguration
+from bench.runs.live import LiveRows
+from bench.runs.runner import RunnerStatus
+
+VERSION = b"friction-bench bench process, 1"
+"""First on the line from both ends, as bytes. A service outlives an update of its files: then these differ."""
+
+Method = Literal["start", "answer", "pause", "resume"]
+"""Of the runner, called in the bench process; the others a service answers from what it has seen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hello:
+    """The service, first: what bench it is."""
+
+    configuration: BenchConfiguration
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """The service: call a method of the runner.
+
+    Attributes:
+        number: comes back with the reply.
+        method: of the runner.
+        arguments: by name.
+        stops: how often STOP had been asked for before the call.
+    """
+
+    number: int
+    method: Method
+    arguments: dict[str, Any]
+    stops: int
+
+
+@dataclass(frozen=True, slots=True)
+class Close:
+    """The service, last: stop what runs, close the drive and the store, and end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """The bench process: a call has come, and is made. One that was not accepted was never begun."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The bench process: what a call returned."""
+
+    number: int
+    value: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """The bench process: what a call raised.
+
+    Attributes:
+        number: of the call; 0: the bench process cannot begin, and ends.
+        kind: class of the error.
+        text: what it says.
+        attributes: of the error; those that can be sent.
+        trace: where it was raised, for the log.
+    """
+
+    number: int
+    kind: type[BaseException]
+    text: str
+    attributes: dict[str, Any]
+    trace: str
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """The bench process, many times a second while it runs something.
+
+    Attributes:
+        status: of the runner.
+        busy: whether something runs; it goes on for a moment after the outcome is known.
+        rows: recorded since the message before.
+    """
+
+    status: RunnerStatus
+    busy: bool
+    rows: LiveRows
+
+
+SLOW: tuple[Method, ...] = ("start",)
+"""Methods that wait for a drive or a disk; they take turns, and the others do not wait for them."""

@@ -1,0 +1,132 @@
+"""Starts the bench process when it is wanted, takes in what it says, and sees how it ends."""
+
+import logging
+import threading
+from collections.abc import Callable
+
+from bench.errors import BusyError
+from bench.runs import event_log
+from bench.runs.bench_process.calls import Calls
+from bench.runs.bench_process.child import Child
+from bench.runs.bench_process.errors import BenchProcessError
+from bench.runs.bench_process.failures import error_of
+from bench.runs.bench_process.messages import Accepted, Failure, Reply, Seen
+from bench.runs.bench_process.mirror import Mirror
+
+CLOSING_S = 100.0  # a process that has not ended by then is killed
+
+
+class Supervisor:
+    """One thread, and one process at a time. The first is started at once.
+
+    Args:
+        launch: starts a process.
+        mirror: told what it says.
+        calls: told its replies.
+        lost: called with the reason when an experiment was interrupted, after the process has ended.
+    """
+
+    def __init__(self, launch: Callable[[], Child], mirror: Mirror, calls: Calls, lost: Callable[[str], None]) -> None:
+        self._launch = launch
+        self._mirror = mirror
+        self._calls = calls
+        self._lost = lost
+        self._child: Child | None = None
+        self._wanted = True
+        self._closed = False
+        self._failure: OSError | None = None  # of the last launch
+        self._changed = threading.Condition()
+        self._thread = threading.Thread(target=self._run, name="supervisor of the bench process", daemon=True)
+        self._thread.start()
+
+    def child(self) -> Child:
+        """The process; started where there is none.
+
+        Raises:
+            BusyError: closed.
+            BenchProcessError: it does not start.
+        """
+        with self._changed:
+            if self._child is None:
+                self._wanted, self._failure = True, None
+                self._changed.notify_all()
+            self._changed.wait_for(lambda: self._child or self._failure or self._closed)
+            if self._closed:
+                raise BusyError("the bench is closed; nothing can be started")
+            if self._child is None:
+                raise BenchProcessError(f"the bench process cannot be started: {self._failure}")
+            return self._child
+
+    def close(self) -> None:
+        """End the process, and wait for its end. Safe to call twice."""
+        with self._changed:
+            self._closed, child = True, self._child
+            self._changed.notify_all()
+        if child is not None:
+            child.close()
+        self._thread.join(CLOSING_S)
+        if self._thread.is_alive() and child is not None:
+            child.kill()
+            self._thread.join()
+
+    def _run(self) -> None:
+        while self._is_wanted():
+            try:
+                child = self._launch()
+            except OSError as error:
+                self._change(None, error)
+                continue
+            self._change(child)
+            ending = self._listen(child)
+            self._change(None)
+            self._end(child, ending)
+
+    def _is_wanted(self) -> bool:
+        """Wait until a process is wanted; False: none any more."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._wanted or self._closed)
+            self._wanted = False
+            return not self._closed
+
+    def _change(self, child: Child | None, failure: OSError | None = None) -> None:
+        with self._changed:
+            self._child, self._failure = child, failure
+            closed = self._closed
+            self._changed.notify_all()
+        if closed and child is not None:
+            child.close()  # it was being started meanwhile
+
+    def _listen(self, child: Child) -> BaseException | None:
+        """Until the process hangs up. Returns what it said of that, if anything."""
+        try:
+            child.check_version()
+            while True:
+                message = child.receive()
+                if isinstance(message, Failure) and message.number == 0:
+                    return error_of(message)
+                self._take_in(message)
+        except BenchProcessError as error:
+            return error
+        except (EOFError, OSError):
+            return None
+
+    def _take_in(self, message: object) -> None:
+        if isinstance(message, Seen):
+            self._mirror.take_in(message)
+        elif isinstance(message, Accepted):
+            self._calls.accept(message.number)
+        elif isinstance(message, Reply | Failure):
+            self._calls.close(message)
+
+    def _end(self, child: Child, said: BaseException | None) -> None:
+        how = child.reap()
+        watchdog = self._mirror.status.description
+        within = f" within {watchdog.watchdog_s:g} s" if watchdog is not None else ""
+        reason = f"the bench process {how} while it ran; the drive's own watchdog stops the motor{within}"
+        was_running = self._mirror.lose(reason)
+        level = logging.ERROR if was_running else logging.INFO if self._closed else logging.WARNING
+        event_log.note("bench process ended", level, how=how, while_running=was_running)
+        if was_running:
+            self._lost(reason)
+        self._mirror.release()
+        self._calls.fail(said, f"the bench process {how}; the next start starts it again")

@@ -1,0 +1,54 @@
+"""What the queue is doing, and how long that takes."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from bench.control.drive_factory import has_hardware
+from bench.runs.bench_control import BenchControl
+from bench.runs.queue.conductor import Conductor
+from bench.runs.queue.load_order import HANG_S, load_changes
+from bench.store.tables.queue import WAITING, QueueItem
+
+State = Literal["idle", "running", "pausing", "paused", "held"]
+
+
+@dataclass(frozen=True, slots=True)
+class QueueState:
+    """The queue now.
+
+    Attributes:
+        state: "idle": nothing waits; "running"; "pausing": it stands still after the trial that runs; "paused": it does
+            so, within an experiment; "held": nothing is started until somebody resumes.
+        reason: why it is held or paused.
+        running: the item whose experiment runs.
+        waiting: in order.
+        duration_s: estimate of all of them, in the joint's time, hanging of loads included.
+        left_s: what is left of that.
+        load_changes: how often something has to be hung yet.
+    """
+
+    state: State
+    reason: str
+    running: QueueItem | None
+    waiting: list[QueueItem]
+    duration_s: float
+    left_s: float
+    load_changes: int
+
+
+def queue_state(conductor: Conductor, runner: BenchControl) -> QueueState:
+    """The queue of a bench, now."""
+    running, waiting, status = conductor.running, conductor.table.items(WAITING), runner.status()
+    changes = load_changes([*([running] if running else []), *waiting]) - (len(running.loads[:1]) if running else 0)
+    hanging_s = HANG_S * changes if has_hardware(runner.configuration) else 0.0
+    coming_s = sum(item.duration_s for item in waiting) + hanging_s
+    held = conductor.held
+    if running is not None:
+        state: State = "running" if held is None else "paused" if status.pausing == "paused" else "pausing"
+    elif held is not None:
+        state = "held"
+    else:
+        state = "running" if waiting else "idle"
+    duration_s = coming_s + (running.duration_s if running else 0.0)
+    left_s = coming_s + (status.left_s if running else 0.0)
+    return QueueState(state, held or "", running, waiting, duration_s, left_s, changes)

@@ -1,0 +1,82 @@
+"""The interface's own description, completed with what holds for every route."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from fastapi import FastAPI
+
+from bench.service.http.examples import examples, key
+from bench.service.http.problems import MEANINGS, MEDIA_TYPE, Problem
+
+PROBLEM = {"$ref": "#/components/schemas/Problem"}
+READING = (401, 429)  # where reading takes a token; a wrong Host is 421 everywhere
+DETAILS = {
+    401: "this needs a token, and no token was sent",
+    403: "token 'ada' has the role viewer; this takes the role operator",
+    404: "trial 77 is not in the store; list the trials to see which are",
+    409: "the bench is held by Ada, room 12 (token 'ada') for another 41 s; wait, or ask an admin to take it over",
+    413: "the upload is larger than 2147483648 bytes; split the set, or import its path",
+    415: "Content-Type is 'text/plain'; wanted is application/zip",
+    421: "Host is 'evil.example'; this service answers to 127.0.0.1, ::1, localhost. Add a name with --allow-host",
+    422: "load_kg is 5 kg; allowed is at most 0.1 kg",
+    429: "too many wrong tokens came from 192.0.2.7; wait 6 s",
+    502: "the drive does not answer within 0.1 s; look at its supply and its cable",
+    503: "store 'bench.sqlite' is locked by another process for more than 10 s",
+}
+
+
+def install(app: FastAPI) -> None:
+    """Complete the description when it is asked for the first time."""
+    plain = app.openapi
+
+    def complete() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            document = plain()
+            schemas = document["components"]["schemas"]
+            schemas |= _problem_schemas()
+            for path, method, route in _routes(document):
+                _complete(path, method, route)
+            for unused in ("HTTPValidationError", "ValidationError"):
+                schemas.pop(unused, None)
+        return dict(app.openapi_schema or {})
+
+    app.openapi = complete  # type: ignore[method-assign]
+
+
+def _routes(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    for path, item in document["paths"].items():
+        for method, route in item.items():
+            yield path, method, route
+
+
+def _problem_schemas() -> dict[str, Any]:
+    found = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+    return {**found.pop("$defs", {}), "Problem": found}
+
+
+def _complete(path: str, method: str, route: dict[str, Any]) -> None:
+    """An example of what is answered; every problem as problem+json with one; those that may come from every route."""
+    responses = route["responses"]
+    if (example := examples().get(key(method, path))) is not None:
+        for status, answer in responses.items():
+            if status.startswith("2"):
+                answer["content"]["application/json"]["example"] = example
+    statuses = {int(status) for status in responses if int(status) >= 400}
+    statuses |= {421, 503}
+    if route.get("security"):
+        statuses |= {*READING} if method == "get" else {*READING, 403}
+    for status in sorted(statuses):
+        responses[str(status)] = _problem(status)
+
+
+def _problem(status: int) -> dict[str, Any]:
+    from http import HTTPStatus
+
+    example = Problem(title=HTTPStatus(status).phrase, status=status, detail=DETAILS[status]).model_dump()
+    found: dict[str, Any] = {
+        "description": MEANINGS[status],
+        "content": {MEDIA_TYPE: {"schema": PROBLEM, "example": example}},
+    }
+    if status in (409, 429):
+        found["headers"] = {"Retry-After": {"schema": {"type": "integer"}, "description": "seconds"}}
+    return found

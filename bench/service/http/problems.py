@@ -1,0 +1,196 @@
+"""Errors as problem+json (RFC 9457): what went wrong, where, what is allowed, and what to do next."""
+
+import json
+import math
+from collections.abc import Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.encoders import jsonable_encoder
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.exceptions import HTTPException
+from starlette.responses import JSONResponse
+
+from bench.config.quantities import unit_of
+from bench.errors import BenchError
+from bench.runs.lease import LeaseHeldError
+from compensator.errors import CompensatorError
+from drivers.errors import DriveError
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class ProblemResponse(JSONResponse):
+    """JSON in ASCII alone: a problem quotes what was sent, also what cannot be encoded (a lone surrogate)."""
+
+    media_type = MEDIA_TYPE
+
+    def render(self, content: Any) -> bytes:
+        """The body."""
+        return json.dumps(content, allow_nan=False, separators=(",", ":")).encode("ascii")
+
+
+class FieldProblem(BaseModel):
+    """One field that was not as wanted."""
+
+    field: str = Field(description="path of the field, parts joined with '.'", examples=["parameters.load_kg"])
+    message: str = Field(description="what is wanted", examples=["Input should be less than or equal to 0.1"])
+    found: Any = Field(default=None, description="what was sent")
+    allowed: dict[str, Any] = Field(default={}, description="the bounds that apply", examples=[{"le": 0.1}])
+    unit: str = Field(default="", description="SI unit of the field", examples=["kg"])
+
+
+class Problem(BaseModel):
+    """Problem details (RFC 9457). `detail` is one sentence for a person, `errors` the same field by field."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "type": "about:blank",
+                    "title": "Unprocessable Content",
+                    "status": 422,
+                    "detail": "parameters.load_kg is 5; Input should be less than or equal to 0.1 kg",
+                    "kind": "ParameterError",
+                    "errors": [],
+                }
+            ]
+        }
+    )
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    kind: str = Field(default="", description="name of the error's class in this software, for programs")
+    errors: list[FieldProblem] = []
+
+
+MEANINGS = {
+    401: "the token is missing or wrong",
+    403: "the role of the token does not allow it, or the request comes from another web page",
+    404: "there is no such thing",
+    409: "it does not fit the present state (an experiment is running, somebody else has the bench)",
+    413: "the upload is too large",
+    415: "the body is not of the wanted type",
+    421: "the service does not answer to the name in `Host`",
+    422: "a value is missing, of the wrong type or outside its range; nothing has moved",
+    429: "too many wrong tokens came from this address; `Retry-After` says when the next is looked at",
+    502: "the drive does not answer or reports a fault",
+    503: "the store cannot be written or read now (locked, full, or not reached), or what computed has been killed",
+}
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The `responses` of a route: which problems it may answer with."""
+    return {status: {"model": Problem, "description": MEANINGS[status]} for status in statuses}
+
+
+def problem_response(
+    status: int,
+    detail: str,
+    kind: str = "",
+    errors: Sequence[FieldProblem] = (),
+    headers: dict[str, str] | None = None,
+) -> JSONResponse:
+    """The one way in which this service says no."""
+    title = HTTPStatus(status).phrase
+    body = Problem(title=title, status=status, detail=detail, kind=kind, errors=list(errors))
+    return ProblemResponse(jsonable_encoder(body), status_code=status, headers=headers)
+
+
+def status_of(error: Exception) -> int:
+    """HTTP status of an error of ours, from its class."""
+    if isinstance(error, LookupError):
+        return 404
+    if isinstance(error, ValueError):
+        return 422
+    if isinstance(error, DriveError):
+        return 502
+    # what the machine lacks: a lock that is not released, a full disk
+    return 503 if isinstance(error, OSError) else 409
+
+
+def field_problems(error: ValidationError | RequestValidationError, prefix: str = "") -> list[FieldProblem]:
+    """pydantic's list of errors as ours.
+
+    Args:
+        error: as raised; of a request, the first part of each location ("body", "query") is left out.
+        prefix: put before each field's path.
+    """
+    skip = 1 if isinstance(error, RequestValidationError) else 0
+    return [_field_problem(detail, prefix, detail["loc"][skip:]) for detail in error.errors()]
+
+
+def _field_problem(error: Any, prefix: str, location: tuple[int | str, ...]) -> FieldProblem:
+    name = ".".join(str(part) for part in (*([prefix] if prefix else []), *location))
+    allowed = {key: value for key, value in error.get("ctx", {}).items() if isinstance(value, int | float | str)}
+    found = error.get("input")
+    if not isinstance(found, int | float | str | bool | None):
+        found = type(found).__name__
+    unit = next((unit_of(part) for part in reversed(location) if isinstance(part, str)), "")
+    return FieldProblem(field=name, message=error["msg"], found=found, allowed=allowed, unit=unit)
+
+
+class InvalidFieldsError(BenchError, ValueError):
+    """Raised by a route when values are refused and it is known which fields they came in."""
+
+    def __init__(self, message: str, kind: str, errors: list[FieldProblem]) -> None:
+        super().__init__(message)
+        self.kind = kind
+        self.errors = errors
+
+
+def install(app: FastAPI) -> None:
+    """Make every error of the application a problem."""
+
+    @app.exception_handler(BenchError)
+    @app.exception_handler(DriveError)
+    @app.exception_handler(CompensatorError)
+    async def ours(_request: Request, error: Exception) -> JSONResponse:
+        return problem_response(status_of(error), str(error), kind=type(error).__name__)
+
+    @app.exception_handler(LeaseHeldError)
+    async def held(_request: Request, error: LeaseHeldError) -> JSONResponse:
+        left = {} if error.remaining_s is None else {"Retry-After": str(math.ceil(error.remaining_s))}
+        return problem_response(409, str(error), kind="LeaseHeldError", headers=left)
+
+    @app.exception_handler(InvalidFieldsError)
+    async def invalid_fields(_request: Request, error: InvalidFieldsError) -> JSONResponse:
+        return problem_response(422, str(error), error.kind, error.errors)
+
+    @app.exception_handler(RequestValidationError)
+    async def invalid_request(_request: Request, error: RequestValidationError) -> JSONResponse:
+        if (no_json := _no_json(error)) is not None:
+            return problem_response(422, no_json, kind="ValidationError")
+        return _invalid(field_problems(error))
+
+    @app.exception_handler(ValidationError)
+    async def invalid_value(_request: Request, error: ValidationError) -> JSONResponse:
+        return _invalid(field_problems(error))
+
+    @app.exception_handler(Exception)
+    async def unforeseen(_request: Request, error: Exception) -> JSONResponse:
+        detail = "this is a fault of the software; its log shows where. Nothing was changed on purpose"
+        return problem_response(500, detail, kind=type(error).__name__)
+
+    @app.exception_handler(HTTPException)
+    async def http(_request: Request, error: HTTPException) -> JSONResponse:
+        if error.status_code == 400:  # FastAPI's word for a body that is no text
+            return problem_response(422, "the body is no JSON: it is not in UTF-8", kind="ValidationError")
+        headers = dict(error.headers) if error.headers else None
+        return problem_response(error.status_code, str(error.detail), headers=headers)
+
+
+def _no_json(error: RequestValidationError) -> str | None:
+    """What is wrong with a body that is no JSON; None where it is."""
+    for detail in error.errors():
+        if detail["type"] == "json_invalid":
+            return f"the body is no JSON: {detail['ctx']['error']}, at character {detail['loc'][-1]}"
+    return None
+
+
+def _invalid(errors: list[FieldProblem]) -> JSONResponse:
+    sentences = [f"{error.field or 'body'} is {error.found!r}: {error.message}" for error in errors]
+    return problem_response(422, "; ".join(sentences), kind="ValidationError", errors=errors)

@@ -1,0 +1,4 @@
+"""What routes take and answer with, as pydantic models.
+
+Data only.
+"""

@@ -1,0 +1,194 @@
+"""/calibrations: friction curves from recorded sweeps, their points, and which of them the bench uses."""
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Path, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from bench import calibration
+from bench.service.auth.access import allow_read, require_token
+from bench.service.auth.audit_trail import note
+from bench.service.compute import in_worker
+from bench.service.http.json_numbers import plain
+from bench.service.http.pages import Limit, Offset, Page, cut
+from bench.service.http.problems import problems
+from bench.service.services import RunnerOf, StoreOf
+from bench.store import CalibrationRow
+from bench.store.errors import NotFoundError
+
+router = APIRouter(prefix="/calibrations", tags=["calibrations"], dependencies=[Depends(allow_read)])
+CalibrationId = Annotated[int, Path(ge=1, description="number of the calibration")]
+
+
+class NewCalibration(BaseModel):
+    """What to calibrate from."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"experiment_ids": [1, 2]}]})
+    experiment_ids: list[Annotated[int, Field(ge=1)]] = Field(
+        min_length=1,
+        max_length=100,
+        description="speed sweeps, or imported trials of the balanced joint; load sweeps for the F_load of each load",
+    )
+    stribeck: bool = Field(default=True, description="false: Coulomb and viscous friction alone")
+    note: str = Field(default="", max_length=2000)
+
+
+class Curve(BaseModel):
+    """General Kinetic Friction of the balanced joint under one load, over the speed of the motor shaft."""
+
+    load_kg: float
+    f_load_a: float = Field(description="F_load under this load; it selects the curve")
+    f_load_from: str
+    coulomb_a: float
+    static_a: float
+    stribeck_speed_rad_s: float
+    shape: float
+    viscous_a_s_rad: float
+    offset_a: float = Field(description="half of what friction is more forwards than backwards")
+    rise_offset_a: float = Field(default=0.0, description="what that rises by towards rest")
+    inertia_a_s2_rad: float = Field(description="current per acceleration of the motor shaft: motor, arm and load")
+    parameters: dict[str, Any] = Field(description="value, low, high (95 %) and note of each, by name")
+    scatter_a: float
+    points: int
+
+
+class Calibration(BaseModel):
+    """Friction curves of one rig, and where they come from."""
+
+    calibration_id: int
+    note: str
+    source: str
+    rig: dict[str, Any]
+    drive: dict[str, Any] = Field(description="that it was measured on; {} where it is not known")
+    provenance: dict[str, Any]
+    experiment_ids: list[int]
+    trial_ids: list[int]
+    stribeck: bool
+    curves: list[Curve]
+    motor: dict[str, Any] = Field(description="R and Ke with intervals as far as the sweep tells; why, where not")
+    in_use: bool = Field(description="whether this bench compensates with it")
+    created_utc: datetime
+    chosen_utc: datetime | None
+
+
+class Calibrations(Page):
+    """One page of calibrations, newest first."""
+
+    items: list[Calibration]
+
+
+class Columns(BaseModel):
+    """Points or a curve; speeds of the motor shaft, all folded onto positive ones."""
+
+    motor_speed_rad_s: list[float]
+    friction_a: list[float] = Field(description="current against friction alone (Fig. 2)")
+    friction_duty: list[float] | None = Field(description="the same as duty, back-EMF included (Fig. 3)")
+
+
+class Points(Columns):
+    """Measured points."""
+
+    backward: list[bool]
+    trial_id: list[int | None]
+
+
+class CurvePicture(BaseModel):
+    """One load."""
+
+    load_kg: float
+    points: Points
+    curve: Columns
+
+
+class Picture(BaseModel):
+    """Figs 2 and 3 of the paper as data."""
+
+    calibration_id: int
+    curves: list[CurvePicture]
+
+
+def represent(row: CalibrationRow, used_id: int | None) -> Calibration:
+    """A stored calibration as it is answered."""
+    same = ("note", "source", "rig", "drive", "provenance", "experiment_ids", "trial_ids", "created_utc", "chosen_utc")
+    fields = {name: plain(getattr(row, name)) for name in same}
+    found = {name: plain(row.result[name]) for name in ("stribeck", "curves", "motor")}
+    return Calibration(calibration_id=row.id, in_use=row.id == used_id, **fields, **found)
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Fit and keep a calibration",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 403, 404, 422),
+)
+async def create(
+    request: Request, response: Response, store: StoreOf, runner: RunnerOf, body: NewCalibration
+) -> Calibration:
+    """From experiments that were run or imported; nothing moves. Takes a second or so."""
+    made = await in_worker(request, calibration.calibrate, store, body.experiment_ids, body.stribeck, body.note)
+    response.headers["Location"] = f"{request.url.path}/{made}"
+    note(request, f"made calibration {made} from experiments {', '.join(map(str, body.experiment_ids))}")
+    return represent(store.calibrations.get(made), _used_id(store, runner))
+
+
+@router.get("", summary="What was calibrated", responses=problems(422))
+def calibrations(
+    store: StoreOf,
+    runner: RunnerOf,
+    limit: Limit = 100,
+    offset: Offset = 0,
+) -> Calibrations:
+    """Newest first."""
+    found, used_id = store.calibrations.find(limit + 1, offset), _used_id(store, runner)
+    items, page = cut(found, limit, offset)
+    return Calibrations(items=[represent(one, used_id) for one in items], **page)
+
+
+@router.get("/in-use", summary="The calibration that this bench uses", responses=problems(404))
+def in_use(store: StoreOf, runner: RunnerOf) -> Calibration:
+    """The one that was chosen, else the newest that fits rig and drive."""
+    found = calibration.in_use(store, runner.configuration)
+    if found is None:
+        raise NotFoundError("no calibration fits this bench; run a speed sweep, and calibrate from it")
+    return represent(found, found.id)
+
+
+@router.delete(
+    "/in-use", summary="Use the newest that fits, from now on", dependencies=[Depends(require_token)],
+    responses=problems(401, 403, 404),
+)  # fmt: skip
+def use_latest(store: StoreOf, runner: RunnerOf) -> Calibration:
+    """Takes back what was chosen."""
+    calibration.use(store, runner.configuration, None)
+    return in_use(store, runner)
+
+
+@router.get("/{calibration_id}", summary="One calibration", responses=problems(404))
+def one(store: StoreOf, runner: RunnerOf, calibration_id: CalibrationId) -> Calibration:
+    """Curves with intervals, motor constants, experiments and trials behind them."""
+    return represent(store.calibrations.get(calibration_id), _used_id(store, runner))
+
+
+@router.get("/{calibration_id}/picture", summary="Its points and curves, to be drawn", responses=problems(404))
+def picture(store: StoreOf, calibration_id: CalibrationId) -> Picture:
+    """Speed against current (Fig. 2), friction part of the duty against speed (Fig. 3)."""
+    return Picture.model_validate(calibration.curve_data(store.calibrations.get(calibration_id)))
+
+
+@router.post(
+    "/{calibration_id}/use",
+    summary="Compensate with this one from now on",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 403, 404, 422),
+)
+def use(store: StoreOf, runner: RunnerOf, calibration_id: CalibrationId) -> Calibration:
+    """422 where it is of another rig. An experiment that runs keeps what it began with."""
+    calibration.use(store, runner.configuration, calibration_id)
+    return represent(store.calibrations.get(calibration_id), _used_id(store, runner))
+
+
+def _used_id(store: StoreOf, runner: RunnerOf) -> int | None:
+    found = calibration.in_use(store, runner.configuration)
+    return None if found is None else found.id

@@ -1,0 +1,289 @@
+"""/experiment-kinds and /experiments: what can be started, starting it, and what has been run."""
+
+import tempfile
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path as FilePath
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi.responses import FileResponse, StreamingResponse
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.background import BackgroundTask
+
+from bench.experiments.registry import KINDS, find_kind
+from bench.recording_set import export_experiment, export_parquet
+from bench.runs.bench_control import BenchControl
+from bench.runs.lease import Lease
+from bench.service.auth.access import Operator, allow_read, require_operator
+from bench.service.auth.audit_trail import note
+from bench.service.auth.roles import Caller
+from bench.service.compute import at_bench
+from bench.service.http import conditional
+from bench.service.http.attachment import attachment
+from bench.service.http.json_numbers import plain
+from bench.service.http.pages import Limit, Offset, Page, cut
+from bench.service.http.problems import InvalidFieldsError, field_problems, problems
+from bench.service.http.repeated_start import Key, once
+from bench.service.models.queue_models import Note, Tags
+from bench.service.routes.leases import LeaseOf
+from bench.service.routes.trials import PARQUET, PARQUET_ANSWER
+from bench.service.services import RunnerOf, StoreOf
+from bench.store import Store
+from bench.store.errors import StoreError
+from bench.store.records import Experiment as StoredExperiment
+from bench.store.tables.tags import LONGEST_TAG
+
+router = APIRouter(tags=["experiments"], dependencies=[Depends(allow_read)])
+ExperimentId = Annotated[int, Path(ge=1, description="number of the experiment")]
+
+
+class Kind(BaseModel):
+    """One kind of experiment and the schema of its parameters."""
+
+    name: str = Field(examples=["steps"])
+    title: str
+    summary: str
+    parameters: dict[str, Any] = Field(description="JSON schema; each property has its `unit`, bounds and default")
+
+
+class Kinds(Page):
+    """One page of kinds, by name."""
+
+    items: list[Kind]
+
+
+class NewExperiment(BaseModel):
+    """What to start."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"kind": "steps", "parameters": {"repeats": 3, "load_kg": 0.1}, "operator": "R. Saini"}]
+        },
+    )
+    kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
+    parameters: dict[str, Any] = Field(default={}, description="what differs from the defaults, SI")
+    operator: str = Field(default="", max_length=200)
+    note: str = Field(default="", max_length=2000)
+    tags: Tags = []
+    pace: Literal["real-time", "fast"] | None = Field(
+        default=None, description="fast: as fast as the computer can, simulated drive only, and the default there"
+    )
+
+
+class Annotation(BaseModel):
+    """What is changed of an experiment; what is left out stays."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"tags": ["winter", "new grease"]}]})
+    tags: Tags | None = None
+    note: Note | None = None
+
+
+class Started(BaseModel):
+    """The experiment that has begun."""
+
+    experiment_id: int
+    kind: str
+
+
+class Experiment(BaseModel):
+    """What was started, where it came from, and how it ended."""
+
+    experiment_id: int
+    kind: str
+    parameters: dict[str, Any]
+    source: str = Field(description="simulated, real or imported")
+    operator: str
+    note: str
+    tags: list[str]
+    provenance: dict[str, Any] = Field(description="software version and commit, configuration, drive, seed")
+    rig: dict[str, Any]
+    started_utc: datetime
+    finished_utc: datetime | None
+    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
+    reason: str = Field(description="why it ended")
+    results: dict[str, Any] = Field(description="what came out, units in the names")
+
+
+class Experiments(Page):
+    """One page of experiments, newest first."""
+
+    items: list[Experiment]
+
+
+def represent(found: StoredExperiment) -> Experiment:
+    """A stored experiment as it is answered."""
+    fields = {name: plain(getattr(found, name)) for name in Experiment.model_fields if name != "experiment_id"}
+    return Experiment(experiment_id=found.id, **fields)
+
+
+@router.get("/experiment-kinds", summary="What can be started", responses=problems(422))
+def kinds(limit: Limit = 100, offset: Offset = 0) -> Kinds:
+    """Each kind with the JSON schema of its parameters: units, bounds, defaults."""
+    found, page = cut(list(KINDS.values())[offset : offset + limit + 1], limit, offset)
+    items = [
+        Kind(name=kind.name, title=kind.title, summary=kind.summary, parameters=kind.parameters.model_json_schema())
+        for kind in found
+    ]
+    return Kinds(items=items, **page)
+
+
+@router.post(
+    "/experiments",
+    status_code=201,
+    summary="Start an experiment: the joint moves",
+    responses=problems(401, 403, 404, 409, 422, 502),
+)
+async def start(
+    runner: RunnerOf,
+    store: StoreOf,
+    lease: LeaseOf,
+    caller: Operator,
+    request: Request,
+    response: Response,
+    body: NewExperiment,
+    key: Key = None,
+) -> Started:
+    """Refused before any motion (422, with value, limit and unit) where it would leave the limits.
+
+    409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
+    """
+
+    experiment_id = await at_bench(request, _begun, runner, store, lease, caller, request, body, key)
+    response.headers["Location"] = f"{request.url.path}/{experiment_id}"
+    return Started(experiment_id=experiment_id, kind=body.kind)
+
+
+def _begun(
+    runner: BenchControl,
+    store: Store,
+    lease: Lease,
+    caller: Caller,
+    request: Request,
+    body: NewExperiment,
+    key: str | None,
+) -> int:
+    """The experiment that has begun, now or with the same key before."""
+
+    refuse_mistyped(body)  # a typing error is no failed start: nothing is recorded
+
+    def begin() -> dict[str, Any]:
+        with lease.starting(caller.name):
+            begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
+        note(request, f"started experiment {begun} ({body.kind})")
+        return {"experiment_id": begun}
+
+    answer = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
+    experiment_id = int(answer["experiment_id"])
+    if body.tags:
+        with suppress(StoreError):  # it runs all the same; PATCH can tell them again
+            store.annotate(experiment_id, tags=body.tags)
+    return experiment_id
+
+
+def refuse_mistyped(body: NewExperiment) -> None:
+    """Refuse parameters that the kind's model does not take, before anything is recorded.
+
+    Raises:
+        UnknownKindError: no such kind.
+        InvalidFieldsError: with each field, its value and what is allowed.
+    """
+    kind = find_kind(body.kind)
+    try:
+        kind.parameters.model_validate(body.parameters)
+    except ValidationError as error:
+        fields = field_problems(error, prefix="parameters")
+        words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
+        raise InvalidFieldsError(f"{body.kind}: {words}", "ParameterError", fields) from error
+
+
+@router.get("/experiments", summary="What has been run", responses=problems(422))
+def experiments(
+    store: StoreOf,
+    kind: Annotated[str, Query(max_length=100)] = "",
+    outcome: Annotated[str, Query(max_length=20)] = "",
+    tag: Annotated[str, Query(max_length=LONGEST_TAG, description="only those with this tag")] = "",
+    limit: Limit = 100,
+    offset: Offset = 0,
+) -> Experiments:
+    """Newest first, failed starts included."""
+    found = store.experiments(kind or None, outcome or None, tag=tag or None, limit=limit + 1, offset=offset)
+    items, page = cut(found, limit, offset)
+    return Experiments(items=[represent(one) for one in items], **page)
+
+
+@router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404) | conditional.ANSWER)
+def experiment(store: StoreOf, request: Request, response: Response, experiment_id: ExperimentId) -> Experiment:
+    """Parameters, provenance, outcome and why, results. With an `ETag`, which changes when it does."""
+    found = represent(store.experiment(experiment_id))
+    response.headers.update(conditional.unless_known(request, found.model_dump()))
+    return found
+
+
+@router.patch(
+    "/experiments/{experiment_id}",
+    summary="Change tags and note of an experiment",
+    dependencies=[Depends(require_operator)],
+    responses=problems(401, 403, 404, 422),
+)
+def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body: Annotation) -> Experiment:
+    """Also of one that has ended; what was measured stays as it is."""
+    store.annotate(experiment_id, body.note, body.tags)
+    note(request, f"changed tags or note of experiment {experiment_id}")
+    return represent(store.experiment(experiment_id))
+
+
+@router.get(
+    "/experiments/{experiment_id}/recording-set",
+    summary="All its trials as a recording set (zip)",
+    response_class=FileResponse,
+    responses={
+        200: {
+            "description": "rig.toml, trials.csv and one CSV per trial; importing it gives the same numbers.",
+            "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+            "headers": attachment("experiment-1.zip"),
+        },
+        **problems(404, 409),
+        **conditional.ANSWER,
+    },
+)
+def recording_set(store: StoreOf, request: Request, experiment_id: ExperimentId) -> FileResponse:
+    """Written to a temporary file first, so that an error is an answer and not half a file. With an `ETag`."""
+    headers = _known(store, request, experiment_id)
+    folder = tempfile.TemporaryDirectory(prefix="friction-bench-")
+    path = FilePath(folder.name) / f"experiment-{experiment_id}.zip"
+    try:
+        export_experiment(store, experiment_id, path)
+    except BaseException:
+        folder.cleanup()
+        raise
+    return FileResponse(
+        path,
+        media_type="application/zip",
+        filename=path.name,
+        background=BackgroundTask(folder.cleanup),
+        headers=headers,
+    )
+
+
+@router.get(
+    "/experiments/{experiment_id}/parquet",
+    summary="All its trials as one Parquet table",
+    response_class=StreamingResponse,
+    responses={200: PARQUET_ANSWER, **problems(404, 422), **conditional.ANSWER},
+)
+def parquet(store: StoreOf, request: Request, experiment_id: ExperimentId) -> StreamingResponse:
+    """Columns trial_id, trial, one per channel and condition. 422 where it has no rows, or pyarrow is not installed."""
+    headers = _known(store, request, experiment_id)
+    chunks = export_parquet(store, experiment_id)
+    headers["Content-Disposition"] = f'attachment; filename="experiment-{experiment_id}.parquet"'
+    return StreamingResponse(chunks, media_type=PARQUET, headers=headers)
+
+
+def _known(store: StoreOf, request: Request, experiment_id: int) -> dict[str, str]:
+    """Headers of what is made from a whole experiment: it does not change any more once that has ended."""
+    found = store.experiment(experiment_id)
+    if found.finished_utc is None:
+        return {}
+    return conditional.unless_known(request, found, store.trials(experiment_id))

@@ -1,0 +1,296 @@
+"""/studies: compare measured with predicted, name the missing effect, add it, watch the error fall."""
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from bench.service.auth.access import allow_read, require_token
+from bench.service.auth.audit_trail import note
+from bench.service.compute import in_lab
+from bench.service.http import conditional
+from bench.service.http.attachment import attachment
+from bench.service.http.pages import Limit, Offset, cut
+from bench.service.http.problems import problems
+from bench.service.models.study_models import (
+    Changed,
+    Comparison,
+    Diagnosis,
+    Ladder,
+    Searched,
+    Studies,
+    Study,
+    StudyName,
+)
+from bench.service.models.suggestion_models import Extended, Suggested, Used
+from bench.service.services import RunnerOf, StoreOf
+from bench.store import Store
+from bench.store.errors import NotFoundError
+
+REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
+router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+StudyId = Annotated[int, Path(ge=1, description="number of the study")]
+ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
+
+
+class NewStudy(BaseModel):
+    """Which trials, and which of them judge the model instead of being fitted."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"name": "arm, winter", "experiment_ids": [3, 4], "hold_out": ["load_kg=0.1"]}]
+        },
+    )
+    name: str = Field(min_length=1, max_length=200)
+    experiment_ids: list[int] = Field(min_length=1, max_length=1000, description="experiments whose trials are used")
+    hold_out: list[str] = Field(
+        default=[],
+        max_length=1000,
+        description="conditions that are held out, as key=value; the key is a condition, `trial` or `kind`. "
+        "Without any, each trial is left out in turn",
+        examples=[["load_kg=0.1", "trial=pulses"]],
+    )
+    where: list[str] = Field(
+        default=[],
+        max_length=1000,
+        description="criteria key=value that a trial must meet to be used",
+        examples=[["kind=steps"]],
+    )
+    rows: Literal["sliding", "moving", "all"] = Field(default="sliding", description="which rows count")
+    cutoff_hz: float | None = Field(
+        default=None, gt=0, le=1000, description="low-pass [Hz]; null: chosen from the data"
+    )
+    base: list[str] | None = Field(default=None, description="effects of the first model; null: the default base model")
+
+
+class Change(BaseModel):
+    """One effect more, or one less."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"examples": [{"effect": "viscous_asymmetry", "model_id": 7}]}
+    )
+    effect: str = Field(min_length=1, max_length=100, description="name from GET /effects")
+    model_id: int | None = Field(default=None, ge=1, description="the parent; null: the newest model of the study")
+    action: Literal["add", "drop"] = "add"
+
+
+class SearchFrom(BaseModel):
+    """Where a search begins, and how far it goes."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"most": 3}]})
+    model_id: int | None = Field(default=None, ge=1, description="the first model; null: the newest model of the study")
+    most: int = Field(default=4, ge=1, le=10, description="effects that are added at most")
+
+
+class SuggestFrom(BaseModel):
+    """What is to be told apart, and in how many trials."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"trials": 4}]})
+    model_id: int | None = Field(default=None, ge=1, description="which model; null: the newest of the study")
+    trials: int = Field(default=6, ge=1, le=50, description="trials at most")
+
+
+class MoreTrials(BaseModel):
+    """Experiments whose trials a study is given."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"experiment_ids": [7, 8]}]})
+    experiment_ids: list[int] = Field(
+        default=[], max_length=1000, description="none: every completed one with the note that the suggestion names"
+    )
+
+
+class UseModel(BaseModel):
+    """Which model."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"model_id": 7}]})
+    model_id: int | None = Field(default=None, ge=1, description="null: the newest of the study")
+
+
+def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId) -> None:
+    """Dependency of what is computed from a study: it stays the same as long as no model is added or removed.
+
+    The catalogue of effects is part of it too, which is read at the start of the service.
+    """
+    found = store.study(study_id)
+    # what was kept with a model later, its error on the bench or in closed loop, is part of the ladder, too
+    models = [(model.id, model.created_utc, sorted(model.result)) for model in store.models(study_id)]
+    response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Create a study",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def create(request: Request, response: Response, body: NewStudy) -> Study:
+    """Fixes the trials and fits the base model."""
+    found = await in_lab(request, "create_study", **body.model_dump())
+    response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
+    note(request, f"made study {found['study_id']} ({body.name})")
+    return Study.model_validate(found)
+
+
+@router.get("", summary="The studies", responses=problems(422))
+def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
+    """Newest first."""
+    rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
+    found, page = cut(rows[offset : offset + limit + 1], limit, offset)
+    items = [StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in found]
+    return Studies(items=items, **page)
+
+
+@router.get(
+    "/{study_id}",
+    summary="One study",
+    dependencies=[Depends(kept)],
+    responses=problems(404) | conditional.ANSWER,
+)
+async def study(request: Request, study_id: StudyId) -> Study:
+    """Its trials, their roles, and the newest model."""
+    return Study.model_validate(await in_lab(request, "describe", study_id))
+
+
+@router.get(
+    "/{study_id}/compare",
+    summary="Measured against predicted",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
+async def compare(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
+    """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
+    return Comparison.model_validate(await in_lab(request, "compare", study_id, model_id=model_id))
+
+
+@router.get(
+    "/{study_id}/diagnose",
+    summary="Which effect is missing",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
+async def diagnose(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
+    """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
+    return Diagnosis.model_validate(await in_lab(request, "diagnose", study_id, model_id=model_id))
+
+
+@router.get(
+    "/{study_id}/ladder",
+    summary="The error from model to model",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
+async def ladder(request: Request, study_id: StudyId) -> Ladder:
+    """Training and held-out error of every model of the study."""
+    return Ladder.model_validate(await in_lab(request, "ladder", study_id))
+
+
+@router.get(
+    "/{study_id}/report",
+    summary="One HTML file to be filed",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "Needs no network.",
+            "content": {"text/html": REPORT},
+            "headers": attachment("study-1.html"),
+        },
+        **problems(404, 422),
+    },
+)
+async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
+    """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
+    page: str = await in_lab(request, "report_html", study_id, runner.configuration)
+    headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
+    return Response(page, media_type="text/html", headers=headers)
+
+
+@router.post(
+    "/{study_id}/models",
+    status_code=201,
+    summary="Add an effect to a model, or drop one",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
+    """Refits and keeps the child model; answers with the error before and after."""
+    name = "add_effect" if body.action == "add" else "drop_effect"
+    found = await in_lab(request, name, study_id, body.effect, model_id=body.model_id)
+    note(request, f"made model {found['model_id']}: {body.action} {body.effect}")
+    return Changed.model_validate(found)
+
+
+@router.post(
+    "/{study_id}/search",
+    status_code=201,
+    summary="Add effects until nothing is missing",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def search(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
+    """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
+    found = await in_lab(request, "search", study_id, **body.model_dump())
+    note(request, f"made {len(found['steps'])} models, the last of them {found['model_id']}")
+    return Searched.model_validate(found)
+
+
+@router.post(
+    "/{study_id}/suggest",
+    summary="Which trials to record next",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def suggest(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
+    """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
+    found = await in_lab(request, "suggest", study_id, runner.configuration, **body.model_dump())
+    return Suggested.model_validate(found)
+
+
+@router.post(
+    "/{study_id}/trials",
+    status_code=201,
+    summary="Add trials to a study",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def extend(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
+    """Refits the newest model to all trials; earlier models stay what they were."""
+    return Extended.model_validate(await in_lab(request, "extend_study", study_id, body.experiment_ids))
+
+
+@router.post(
+    "/{study_id}/use",
+    status_code=201,
+    summary="Hand a model to the online compensator",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 422),
+)
+async def use(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
+    """Kept as a calibration, which the bench uses from the next experiment on."""
+    return Used.model_validate(await in_lab(request, "use", study_id, runner.configuration, body.model_id))
+
+
+@router.delete(
+    "/{study_id}/models/{model_id}",
+    status_code=204,
+    summary="Remove a model",
+    dependencies=[Depends(require_token)],
+    responses=problems(401, 404, 409),
+)
+def remove(store: StoreOf, study_id: StudyId, model_id: Annotated[int, Path(ge=1)]) -> None:
+    """Only a model that no other was made from."""
+    model_of_study(store, study_id, model_id)
+    store.remove_model(model_id)
+
+
+def model_of_study(store: Store, study_id: int, model_id: int) -> None:
+    """Check that the model belongs to the study.
+
+    Raises:
+        NotFoundError: it does not, or there is no such study.
+    """
+    store.study(study_id)
+    found = [model.id for model in store.models(study_id)]
+    if model_id not in found:
+        raise NotFoundError(f"study {study_id} has no model {model_id}; it has {', '.join(map(str, found)) or 'none'}")

@@ -1,0 +1,216 @@
+"""/trials: what was recorded, down-sampled for a plot or whole as CSV."""
+
+import math
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi.responses import StreamingResponse
+from pydantic import BaseModel, Field
+
+from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
+from bench.service.auth.access import allow_read
+from bench.service.http import conditional
+from bench.service.http.attachment import attachment
+from bench.service.http.json_numbers import plain
+from bench.service.http.pages import Limit, Offset, Page, cut
+from bench.service.http.problems import problems
+from bench.service.http.written_samples import samples_json
+from bench.service.services import StoreOf
+from bench.store.records import Trial as StoredTrial
+from bench.store.tables.trial_search import TrialQuery
+
+router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
+LEAST_PER_CHANNEL = 10
+PARQUET = "application/vnd.apache.parquet"
+PARQUET_ANSWER = {
+    "description": "SI, the unit in the column's name; numbers are exact.",
+    "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
+    "headers": attachment("trial-1.parquet"),
+}
+Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
+TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
+
+
+class Trial(BaseModel):
+    """One recording under constant conditions."""
+
+    trial_id: int
+    experiment_id: int
+    name: str
+    kind: str
+    conditions: dict[str, float | str | bool] = Field(examples=[{"load_kg": 0.1, "balanced": False, "repeat": 3}])
+    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
+    reason: str = Field(description="why it ended")
+    results: dict[str, Any] = Field(description="what the procedure found, units in the names")
+    channels: list[str] = Field(description="names of the recorded channels, SI with the unit in the name")
+    rows: int
+    started_utc: datetime
+    finished_utc: datetime | None
+
+
+class Event(BaseModel):
+    """Something that happened during a trial."""
+
+    time_s: float
+    name: str
+    detail: str
+
+
+class TrialWithEvents(Trial):
+    """A trial and its events."""
+
+    events: list[Event]
+
+
+class Trials(Page):
+    """One page of trials, in the order in which they were made."""
+
+    items: list[Trial]
+
+
+class Samples(BaseModel):
+    """Channels of one trial; all lists have the same length, a quantity that was not measured is null."""
+
+    trial_id: int
+    rows_recorded: int
+    rows_returned: int
+    channels: dict[str, list[float | None]]
+
+
+def represent(trial: StoredTrial) -> dict[str, Any]:
+    """A stored trial as the fields of `Trial`."""
+    names = ("experiment_id", "name", "kind", "outcome", "reason", "rows", "started_utc", "finished_utc")
+    fields = {name: getattr(trial, name) for name in names}
+    changed = {"conditions": plain(trial.conditions), "results": plain(trial.results), "channels": list(trial.channels)}
+    return {"trial_id": trial.id, **fields, **changed}
+
+
+@router.get("", summary="Trials, filtered", responses=problems(422))
+def trials(
+    store: StoreOf,
+    experiment_id: Annotated[int | None, Query(ge=1)] = None,
+    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
+    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    limit: Limit = 100,
+    offset: Offset = 0,
+) -> Trials:
+    """In the order in which they were made. Without filters: all trials."""
+    found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
+    items, page = cut(found, limit, offset)
+    return Trials(items=[Trial.model_validate(represent(trial)) for trial in items], **page)
+
+
+class FoundTrials(Page):
+    """One page of the trials that were looked for."""
+
+    total: int = Field(description="how many there are in all", examples=[1])
+    items: list[Trial]
+
+
+@router.get("/search", summary="Trials by words, sorted, page by page", responses=problems(422))
+def search(
+    store: StoreOf,
+    words: Annotated[str, Query(max_length=200, description="each is in the name, kind, outcome or a condition")] = "",
+    experiment_id: Annotated[int | None, Query(ge=1)] = None,
+    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
+    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    sort: Annotated[Sorting, Query(description="what they are sorted by")] = "trial",
+    descending: Annotated[bool, Query(description="the highest, or newest, first")] = True,
+    limit: Limit = 50,
+    offset: Offset = 0,
+) -> FoundTrials:
+    """For a list that a person looks through; a page of 100 000 trials comes as quickly as one of ten."""
+    wanted = TrialQuery(
+        experiment_id, kind or None, outcome or None, tuple(words.split()), sort=sort, descending=descending
+    )
+    found, total = store.search_trials(wanted, limit, offset)
+    more = offset + limit if offset + limit < total else None
+    items = [Trial.model_validate(represent(trial)) for trial in found]
+    return FoundTrials(items=items, total=total, limit=limit, offset=offset, next_offset=more)
+
+
+@router.get("/{trial_id}", summary="One trial with its events", responses=problems(404) | conditional.ANSWER)
+def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialId) -> TrialWithEvents:
+    """Conditions, outcome and why, results, channels, events. With an `ETag`, which changes when it does."""
+    events = [{"time_s": event.time_s, "name": event.name, "detail": event.detail} for event in store.events(trial_id)]
+    found = {**represent(store.trial(trial_id)), "events": events}
+    response.headers.update(conditional.unless_known(request, found))
+    return TrialWithEvents.model_validate(found)
+
+
+@router.get(
+    "/{trial_id}/samples",
+    summary="Samples, down-sampled on request",
+    response_model=Samples,
+    responses=problems(404, 422) | conditional.ANSWER,
+)
+def samples(
+    store: StoreOf,
+    request: Request,
+    trial_id: TrialId,
+    channels: Annotated[
+        str,
+        Query(max_length=2000, description="names, comma-separated; without: all", examples=["time_s,position_rad"]),
+    ] = "",
+    points: Annotated[
+        int, Query(ge=10, le=200_000, description="about how many rows at most; the extremes of every channel are kept")
+    ] = 4000,
+    from_s: Annotated[float | None, Query(description="begin of a stretch; without: of the trial [s]")] = None,
+    to_s: Annotated[float | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
+) -> Response:
+    """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
+    found = store.trial(trial_id)
+    headers = _known(request, found)
+    names = [name for name in channels.split(",") if name] or list(found.channels)
+    # the store keeps rows for each channel; together they are to stay near `points`
+    share = max(LEAST_PER_CHANNEL, points // len(names))
+    stretch = None if from_s is None and to_s is None else (_or(from_s, -math.inf), _or(to_s, math.inf))
+    reduced = store.samples_reduced(trial_id, names, share, stretch)
+    return Response(samples_json(trial_id, found.rows, reduced), media_type="application/json", headers=headers)
+
+
+def _or(value: float | None, otherwise: float) -> float:
+    return otherwise if value is None else value
+
+
+@router.get(
+    "/{trial_id}/csv",
+    summary="The whole trial as CSV",
+    response_class=StreamingResponse,
+    responses={
+        200: {
+            "description": "One line per row; SI, the unit in the column's name, empty where not measured.",
+            "content": {"text/csv": {"example": "time_s,position_rad,current_a\n0.0,0.0,0.012\n"}},
+            "headers": attachment("trial-1.csv"),
+        },
+        **problems(404),
+        **conditional.ANSWER,
+    },
+)
+def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
+    """The same file that a recording set holds for the trial: numbers are exact."""
+    found = store.trial(trial_id)
+    headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
+    return StreamingResponse(
+        csv_chunks(stream_of_trial(store, found)), media_type="text/csv; charset=utf-8", headers=headers
+    )
+
+
+@router.get(
+    "/{trial_id}/parquet",
+    summary="The whole trial as Parquet",
+    response_class=StreamingResponse,
+    responses={200: PARQUET_ANSWER, **problems(404, 422), **conditional.ANSWER},
+)
+def parquet(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
+    """One column per channel and condition; null where not measured. 422 where pyarrow is not installed."""
+    found = store.trial(trial_id)
+    headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
+    chunks = parquet_chunks([stream_of_trial(store, found)])
+    return StreamingResponse(chunks, media_type=PARQUET, headers=headers)
+
+
+def _known(request: Request, found: StoredTrial) -> dict[str, str]:
+    """Headers of what is made from a trial's samples: they do not change any more once it has ended."""
+    return {} if found.finished_utc is None else conditional.unless_known(request, found)

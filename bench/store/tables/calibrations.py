@@ -1,0 +1,58 @@
+"""Calibrations in the store: friction curves, where they come from, and which of them is to be used."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from sqlalchemy import Connection, Row, select, update
+
+from bench.store.database import Database
+from bench.store.errors import NotFoundError
+from bench.store.records import CalibrationRow
+from bench.store.schema import CALIBRATION
+from bench.store.tables.experiments import insert_row, now
+
+
+class Calibrations:
+    """The calibrations of one store; `Store.calibrations`. Every method may be called from any thread."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def add(self, **values: Any) -> int:
+        """Add one, of the fields of `CalibrationRow` other than id and times. Returns its id."""
+        with self._database.writing() as connection:
+            return insert_row(connection, CALIBRATION, values | {"created_utc": now()})
+
+    def get(self, calibration_id: int) -> CalibrationRow:
+        """One calibration, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return _get(connection, calibration_id)
+
+    def find(self, limit: int | None = None, offset: int = 0) -> list[CalibrationRow]:
+        """Newest first; all of them without a limit."""
+        query = select(CALIBRATION).order_by(CALIBRATION.c.id.desc()).limit(limit).offset(offset)
+        with self._database.reading() as connection:
+            return [_record(row) for row in connection.execute(query)]
+
+    def choose(self, calibration_id: int) -> None:
+        """Name one as the one to use, or `NotFoundError`."""
+        with self._database.writing() as connection:
+            _get(connection, calibration_id)
+            connection.execute(update(CALIBRATION).where(CALIBRATION.c.id == calibration_id).values(chosen_utc=now()))
+
+    def unchoose(self, calibration_ids: Sequence[int]) -> None:
+        """Forget that these were named."""
+        with self._database.writing() as connection:
+            chosen = CALIBRATION.c.id.in_(list(calibration_ids))
+            connection.execute(update(CALIBRATION).where(chosen).values(chosen_utc=None))
+
+
+def _get(connection: Connection, calibration_id: int) -> CalibrationRow:
+    row = connection.execute(select(CALIBRATION).where(CALIBRATION.c.id == calibration_id)).one_or_none()
+    if row is None:
+        raise NotFoundError(f"calibration {calibration_id} is not in the store; list the calibrations to see which are")
+    return _record(row)
+
+
+def _record(row: Row[Any]) -> CalibrationRow:
+    return CalibrationRow(**row._asdict())

@@ -1,0 +1,158 @@
+"""Rows of the table of experiments. Each function works inside the caller's transaction."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, Table, insert, select, update
+
+from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
+from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment
+from bench.store.schema import EXPERIMENT, TRIAL
+from bench.store.tables import tags
+
+COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment) if field.name != "tags")
+
+
+def now() -> datetime:
+    """The present time, UTC."""
+    return datetime.now(UTC)
+
+
+def insert_row(connection: Connection, table: Table, row: dict[str, Any]) -> int:
+    """Insert one row. Returns the id that the database gave it."""
+    row_id: int = connection.execute(insert(table).values(**row).returning(table.c.id)).scalar_one()
+    return row_id
+
+
+def add(connection: Connection, owner: str | None, values: dict[str, Any], outcome: str = "running") -> int:
+    """Insert an experiment that starts now. Returns its id.
+
+    Raises:
+        StoreValueError: a source that does not exist.
+    """
+    if values["source"] not in SOURCES:
+        raise StoreValueError(f"source of an experiment is '{values['source']}'; wanted {', '.join(SOURCES)}")
+    row = values | {"owner": owner, "started_utc": now(), "outcome": outcome, "reason": "", "results": {}}
+    return insert_row(connection, EXPERIMENT, row | facts_of(values["provenance"]))
+
+
+def finish(connection: Connection, experiment_id: int, outcome: str, reason: str, results: dict[str, Any]) -> None:
+    """Close an experiment; a trial of it that still runs is given the same outcome.
+
+    Raises:
+        NotFoundError: no such experiment.
+        StoreStateError: it is finished already.
+        StoreValueError: an outcome that does not exist.
+    """
+    check_outcome(outcome)
+    found = get(connection, experiment_id).outcome
+    if found != "running":
+        raise StoreStateError(f"experiment {experiment_id} is finished already ({found}); it cannot finish twice")
+    end = {"finished_utc": now(), "outcome": outcome, "reason": reason}
+    running = (TRIAL.c.experiment_id == experiment_id) & (TRIAL.c.outcome == "running")
+    connection.execute(update(TRIAL).where(running).values(**end))
+    connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end, results=results))
+
+
+def show(connection: Connection, experiment_id: int) -> None:
+    """Let an import be seen that is complete."""
+    end = {"finished_utc": now(), "outcome": "completed", "owner": None}
+    connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end))
+
+
+def unfinished(connection: Connection) -> list[tuple[int, str | None, str]]:
+    """id, owner and outcome of each experiment that is marked running, or that nobody sees."""
+    columns = EXPERIMENT.c
+    query = select(columns.id, columns.owner, columns.outcome).where(columns.outcome.in_(("running", *HIDDEN)))
+    return [(row.id, row.owner, row.outcome) for row in connection.execute(query)]
+
+
+def get(connection: Connection, experiment_id: int) -> Experiment:
+    """One experiment.
+
+    Raises:
+        NotFoundError: no such experiment.
+    """
+    query = select(*COLUMNS).where(EXPERIMENT.c.id == experiment_id, EXPERIMENT.c.outcome.not_in(HIDDEN))
+    row = connection.execute(query).one_or_none()
+    if row is None:
+        raise NotFoundError(f"experiment {experiment_id} is not in the store; list the experiments to see which are")
+    return Experiment(**row._asdict(), tags=tags.of_experiments(connection, [experiment_id]).get(experiment_id, ()))
+
+
+def find(
+    connection: Connection,
+    kind: str | None,
+    outcome: str | None,
+    source: str | None,
+    tag: str | None,
+    limit: int | None,
+    offset: int,
+) -> list[Experiment]:
+    """Experiments, newest first."""
+    query = (
+        select(*COLUMNS)
+        .where(EXPERIMENT.c.outcome.not_in(HIDDEN))
+        .order_by(EXPERIMENT.c.id.desc())
+        .limit(limit)
+        .offset(offset)
+    )
+    wanted = {"kind": kind, "outcome": outcome, "source": source}
+    for name, value in wanted.items():
+        if value is not None:
+            query = query.where(EXPERIMENT.c[name] == value)
+    if tag is not None:
+        query = query.where(tags.with_tag(tag))
+    rows = connection.execute(query).all()
+    known = tags.of_experiments(connection, [row.id for row in rows])
+    return [Experiment(**row._asdict(), tags=known.get(row.id, ())) for row in rows]
+
+
+def annotate(connection: Connection, experiment_id: int, note: str | None, new_tags: Iterable[str] | None) -> None:
+    """Change note and tags, also of one that has ended; None leaves as it is.
+
+    Raises:
+        NotFoundError: no such experiment.
+        StoreValueError: a tag that cannot be kept.
+    """
+    get(connection, experiment_id)
+    if note is not None:
+        connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(note=note))
+    if new_tags is not None:
+        tags.write(connection, experiment_id, new_tags)
+
+
+def check_outcome(outcome: str) -> None:
+    """Refuse an outcome that does not end anything.
+
+    Raises:
+        StoreValueError: not one of `OUTCOMES`, or "running".
+    """
+    if outcome == "running" or outcome not in OUTCOMES:
+        wanted = ", ".join(name for name in OUTCOMES if name != "running")
+        raise StoreValueError(f"outcome is '{outcome}'; wanted {wanted}")
+
+
+PATHS = {
+    "bench": ("configuration", "name"),
+    "software_version": ("software", "version"),
+    "software_commit": ("software", "commit"),
+    "drive": ("drive", "product"),
+    "firmware": ("drive", "firmware"),
+}
+LARGEST_SEED = 2**63 - 1
+
+
+def facts_of(provenance: Mapping[str, Any]) -> dict[str, str | int | None]:
+    """Column -> value; None where the provenance does not say."""
+    seed = provenance.get("seed")
+    fits = isinstance(seed, int) and not isinstance(seed, bool) and abs(seed) <= LARGEST_SEED
+    return {**{name: _text(provenance, path) for name, path in PATHS.items()}, "seed": seed if fits else None}
+
+
+def _text(provenance: Mapping[str, Any], path: tuple[str, str]) -> str | None:
+    section = provenance.get(path[0])
+    value = section.get(path[1]) if isinstance(section, Mapping) else None
+    return None if value is None else str(value)

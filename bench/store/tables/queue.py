@@ -1,0 +1,255 @@
+"""The queue of a bench in the store: what is to be run, in which order, and what became of it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, Row, delete, func, insert, select, update
+
+from bench.store.database import Database
+from bench.store.errors import NotFoundError, StoreStateError
+from bench.store.schema import CAMPAIGN, EXPERIMENT, QUEUE_ITEM, QUEUE_STATE
+from bench.store.tables.experiments import insert_row, now
+
+WAITING, RUNNING = "waiting", "running"
+LOST = "the process that ran the queue ended before its experiment was on record"
+GONE = "its experiment is not in the store any more"
+ITEM = QUEUE_ITEM.c
+
+
+@dataclass(frozen=True, slots=True)
+class NewItem:
+    """An experiment to come.
+
+    Attributes:
+        kind, parameters, operator, note, pace: as `Runner.start` takes them.
+        tags: given to the experiment.
+        duration_s: estimate.
+        loads: [load_kg, balanced] of its trials, one entry where the next trials have the same.
+    """
+
+    kind: str
+    parameters: dict[str, Any]
+    operator: str = ""
+    note: str = ""
+    tags: list[str] = field(default_factory=list)
+    pace: str | None = None
+    duration_s: float = 0.0
+    loads: list[list[Any]] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class QueueItem:
+    """An experiment in the queue, or one that came out of it.
+
+    Attributes:
+        id: of the item.
+        campaign_id: that it belongs to; None for a single one.
+        state: "waiting", "running", or the outcome of its experiment.
+        reason: why it ended.
+        experiment_id: of its record, once there is one.
+        others: see `NewItem`.
+    """
+
+    id: int
+    campaign_id: int | None
+    kind: str
+    parameters: dict[str, Any]
+    operator: str
+    note: str
+    tags: list[str]
+    pace: str | None
+    duration_s: float
+    loads: list[list[Any]]
+    state: str
+    reason: str
+    experiment_id: int | None
+    created_utc: datetime
+    finished_utc: datetime | None
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignRow:
+    """Experiments that belong together, as they were asked for."""
+
+    id: int
+    name: str
+    definition: dict[str, Any]
+    operator: str
+    note: str
+    tags: list[str]
+    created_utc: datetime
+
+
+COLUMNS = tuple(ITEM[name] for name in QueueItem.__dataclass_fields__)
+
+
+class QueueTable:
+    """The queue of one bench. Every method may be called from any thread.
+
+    Args:
+        database: of the store.
+        bench: its name; several benches may share a store.
+    """
+
+    def __init__(self, database: Database, bench: str) -> None:
+        self._database = database
+        self._bench = bench
+
+    def add(self, items: Sequence[NewItem], campaign: dict[str, Any] | None = None) -> list[int]:
+        """Add items at the end, all or none; a campaign by the fields of `CampaignRow`. Returns their ids."""
+        with self._database.writing() as connection:
+            last = connection.execute(select(func.max(ITEM.place)).where(ITEM.bench == self._bench)).scalar()
+            campaign_id = None
+            if campaign is not None:
+                campaign_id = insert_row(connection, CAMPAIGN, {**campaign, "created_utc": now()})
+            common = {"bench": self._bench, "campaign_id": campaign_id, "state": WAITING, "reason": ""}
+            rows = [
+                {**asdict(item), **common, "place": (last or 0) + number, "created_utc": now()}
+                for number, item in enumerate(items, 1)
+            ]
+            return [insert_row(connection, QUEUE_ITEM, row) for row in rows]
+
+    def items(self, *states: str, campaign_id: int | None = None) -> list[QueueItem]:
+        """In the order of the queue; of some states, of a campaign; all without either."""
+        query = select(*COLUMNS).where(ITEM.bench == self._bench).order_by(ITEM.place, ITEM.id)
+        if states:
+            query = query.where(ITEM.state.in_(states))
+        if campaign_id is not None:
+            query = query.where(ITEM.campaign_id == campaign_id)
+        with self._database.reading() as connection:
+            return [_item(row) for row in connection.execute(query)]
+
+    def ended(self, limit: int) -> list[QueueItem]:
+        """What came out of the queue, newest first."""
+        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.state.not_in((WAITING, RUNNING)))
+        with self._database.reading() as connection:
+            found = connection.execute(query.order_by(ITEM.finished_utc.desc(), ITEM.id.desc()).limit(limit))
+            return [_item(row) for row in found]
+
+    def item(self, item_id: int) -> QueueItem:
+        """One item, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            return self._get(connection, item_id)
+
+    def next(self) -> QueueItem | None:
+        """What is to be run next; None where nothing waits."""
+        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.state == WAITING)
+        with self._database.reading() as connection:
+            row = connection.execute(query.order_by(ITEM.place, ITEM.id).limit(1)).one_or_none()
+            return None if row is None else _item(row)
+
+    def move(self, item_id: int, to: int) -> None:
+        """Move one that waits to a place among those that wait, from 0; beyond the last: to the end.
+
+        Raises:
+            NotFoundError: no such item.
+            StoreStateError: it does not wait.
+        """
+        with self._database.writing() as connection:
+            self._get_waiting(connection, item_id)
+            query = select(ITEM.id, ITEM.place).where(ITEM.bench == self._bench, ITEM.state == WAITING)
+            rows = connection.execute(query.order_by(ITEM.place, ITEM.id)).all()
+            order = [row.id for row in rows if row.id != item_id]
+            order.insert(to, item_id)
+            for row_id, place in zip(order, sorted(row.place for row in rows), strict=True):
+                connection.execute(update(QUEUE_ITEM).where(ITEM.id == row_id).values(place=place))
+
+    def change(self, item_id: int, values: dict[str, Any]) -> None:
+        """Change one that waits, as `move`."""
+        with self._database.writing() as connection:
+            self._get_waiting(connection, item_id)
+            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
+
+    def remove(self, item_id: int) -> None:
+        """Take one out that waits, as `move`."""
+        with self._database.writing() as connection:
+            self._get_waiting(connection, item_id)
+            connection.execute(delete(QUEUE_ITEM).where(ITEM.id == item_id))
+
+    def clear(self) -> int:
+        """Take all out that wait; how many."""
+        with self._database.writing() as connection:
+            waiting = (ITEM.bench == self._bench) & (ITEM.state == WAITING)
+            return connection.execute(delete(QUEUE_ITEM).where(waiting)).rowcount
+
+    # what the conductor says
+
+    def begin(self, item_id: int) -> None:
+        """It is being started, as `move`."""
+        with self._database.writing() as connection:
+            self._get_waiting(connection, item_id)
+            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(state=RUNNING))
+
+    def began(self, item_id: int, experiment_id: int) -> None:
+        """Its experiment is on record."""
+        self._set(item_id, experiment_id=experiment_id)
+
+    def give_back(self, item_id: int) -> None:
+        """It could not be started yet: it waits again, at its place."""
+        self._set(item_id, state=WAITING)
+
+    def finish(self, item_id: int, outcome: str, reason: str) -> None:
+        """It has ended."""
+        self._set(item_id, state=outcome, reason=reason, finished_utc=now())
+
+    def settle(self) -> list[QueueItem]:
+        """Say of items that a dead process left running what became of them; those."""
+        left = self.items(RUNNING)
+        for item in left:
+            outcome, reason = self._end_of(item.experiment_id)
+            self.finish(item.id, outcome, reason)
+        return left
+
+    def held(self) -> str | None:
+        """Why nothing is started; None where it may be."""
+        with self._database.reading() as connection:
+            row = connection.execute(select(QUEUE_STATE).where(QUEUE_STATE.c.bench == self._bench)).one_or_none()
+        return row.reason if row is not None and row.held else None
+
+    def hold(self, reason: str | None) -> None:
+        """Start nothing more, and why; None: go on."""
+        values = {"held": reason is not None, "reason": reason or "", "changed_utc": now()}
+        with self._database.writing() as connection:
+            mine = QUEUE_STATE.c.bench == self._bench
+            if not connection.execute(update(QUEUE_STATE).where(mine).values(**values)).rowcount:
+                connection.execute(insert(QUEUE_STATE).values(bench=self._bench, **values))
+
+    def campaigns(self, campaign_ids: Iterable[int] | None = None) -> list[CampaignRow]:
+        """Newest first; all of them without ids."""
+        query = select(CAMPAIGN).order_by(CAMPAIGN.c.id.desc())
+        if campaign_ids is not None:
+            query = query.where(CAMPAIGN.c.id.in_(list(campaign_ids)))
+        with self._database.reading() as connection:
+            return [CampaignRow(**row._asdict()) for row in connection.execute(query)]
+
+    def _end_of(self, experiment_id: int | None) -> tuple[str, str]:
+        if experiment_id is None:
+            return "interrupted", LOST
+        query = select(EXPERIMENT.c.outcome, EXPERIMENT.c.reason).where(EXPERIMENT.c.id == experiment_id)
+        with self._database.reading() as connection:
+            row = connection.execute(query).one_or_none()
+        if row is None:
+            return "interrupted", GONE
+        return (row.outcome, row.reason) if row.outcome != RUNNING else ("interrupted", LOST)
+
+    def _set(self, item_id: int, **values: Any) -> None:
+        with self._database.writing() as connection:
+            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
+
+    def _get(self, connection: Connection, item_id: int) -> QueueItem:
+        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.id == item_id)
+        row = connection.execute(query).one_or_none()
+        if row is None:
+            raise NotFoundError(f"item {item_id} is not in the queue; list the queue to see what is")
+        return _item(row)
+
+    def _get_waiting(self, connection: Connection, item_id: int) -> None:
+        found = self._get(connection, item_id)
+        if found.state != WAITING:
+            raise StoreStateError(f"item {item_id} is {found.state}; only what waits can be changed, moved or removed")
+
+
+def _item(row: Row[Any]) -> QueueItem:
+    return QueueItem(**row._asdict())

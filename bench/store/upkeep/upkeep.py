@@ -1,0 +1,129 @@
+"""Looking after a store: what is in it, is it sound, a copy of it, its space given back."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from sqlalchemy import func, select
+
+from bench.store.database import Database
+from bench.store.errors import StoreFullError, StoreStateError
+from bench.store.migration import HEAD
+from bench.store.schema import EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
+from bench.store.tables.experiments import unfinished
+from bench.store.tables.samples import SAMPLE_BYTES
+from bench.store.upkeep.copying import copy_into, sqlite_copy
+
+
+@dataclass(frozen=True, slots=True)
+class StoreInfo:
+    """What is in a store.
+
+    Attributes:
+        where: the database; without password.
+        schema: its revision.
+        size_bytes: of the database, with its log.
+        free_bytes: on its disk; None where that is another machine's.
+        oldest_utc: when the first of its experiments began.
+    """
+
+    where: str
+    schema: str
+    size_bytes: int
+    free_bytes: int | None
+    experiments: int
+    trials: int
+    rows: int
+    studies: int
+    running: int
+    oldest_utc: datetime | None
+
+
+class Upkeep:
+    """`Store.upkeep`."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def info(self) -> StoreInfo:
+        """What is in the store."""
+        with self._database.reading() as connection:
+            count = select(func.count()).select_from
+            running = len(unfinished(connection))
+            experiments, oldest = connection.execute(select(func.count(), func.min(EXPERIMENT.c.started_utc))).one()
+            trials, rows = connection.execute(select(func.count(), func.coalesce(func.sum(TRIAL.c.rows), 0))).one()
+            studies = connection.execute(count(STUDY)).scalar_one()
+        backend = self._database.backend
+        size, free = backend.size_bytes(), backend.free_bytes()
+        return StoreInfo(
+            self._database.where, HEAD, size, free, experiments, trials, int(rows), studies, running, oldest
+        )
+
+    def check(self) -> list[str]:
+        """Read all of it, and say what is wrong; nothing is an empty list."""
+        return [*self._database.backend.check(), *self._incomplete_trials()]
+
+    def backup(self, target: str) -> None:
+        """Copy the store while it is in use: what was committed when the copy began.
+
+        Args:
+            target: a file to make, or the URL of an empty database.
+
+        Raises:
+            StoreFileError: it is there already, or is not empty.
+            StoreFullError: there is no room for the file.
+        """
+        if "://" in target:
+            copy_into(self._database, target)
+        else:
+            sqlite_copy(self._database, Path(target).absolute())
+
+    def vacuum(self) -> int:
+        """Give the space of what was removed back to the disk, and renew what queries are planned by.
+
+        Returns:
+            How many bytes smaller the database is.
+
+        Raises:
+            StoreStateError: something is recorded or imported.
+            StoreFullError: SQLite needs room for a copy while it works.
+        """
+        self._refuse_while_in_use()
+        before = self._database.backend.size_bytes()
+        free = self._database.backend.free_bytes()
+        if free is not None and free < before:
+            raise StoreFullError(
+                f"store '{self._database.where}': {free / 1e6:.0f} MB are free on its disk; to vacuum it needs as much "
+                f"as it has, {before / 1e6:.0f} MB. Free some space first"
+            )
+        with self._database.explained():
+            self._database.backend.vacuum()
+        return before - self._database.backend.size_bytes()
+
+    def _refuse_while_in_use(self) -> None:
+        with self._database.reading() as connection:
+            found = unfinished(connection)
+        alive = [str(number) for number, token, _ in found if self._database.backend.lives(token)]
+        if alive:
+            raise StoreStateError(f"experiment {', '.join(alive)} is being recorded or imported; wait for its end")
+
+    def _incomplete_trials(self) -> list[str]:
+        """Trials whose blocks do not make up their rows."""
+        blocks = (
+            select(
+                SAMPLE_BLOCK.c.trial_id,
+                func.sum(SAMPLE_BLOCK.c.rows).label("rows"),
+                func.max(SAMPLE_BLOCK.c.first_row + SAMPLE_BLOCK.c.rows).label("last"),
+                func.sum(func.length(SAMPLE_BLOCK.c.data)).label("bytes"),
+            )
+            .group_by(SAMPLE_BLOCK.c.trial_id)
+            .subquery()
+        )
+        query = select(TRIAL.c.id, TRIAL.c.rows, TRIAL.c.channels, blocks.c.rows, blocks.c.last, blocks.c.bytes)
+        problems = []
+        with self._database.reading() as connection:
+            for number, rows, channels, *found in connection.execute(query.join(blocks, isouter=True)):
+                present, last, size = (int(value or 0) for value in found)
+                if (present, last, size) != (rows, rows, rows * len(channels) * SAMPLE_BYTES):
+                    problems.append(f"trial {number} has {rows} rows; its blocks hold {present}, in {size} bytes")
+        return problems

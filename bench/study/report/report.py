@@ -1,0 +1,81 @@
+"""A study as one HTML file that a lab can file: what was measured, the models, what is missing, what to record next."""
+
+from typing import Any
+
+from bench.config.configuration import BenchConfiguration
+from bench.errors import BenchError
+from bench.report import Section, html_page
+from bench.store import Store
+from bench.study.closed_loop import simulate
+from bench.study.compare import compare
+from bench.study.create import describe
+from bench.study.diagnose import diagnose
+from bench.study.ladder import ladder
+from bench.study.report.report_sections import (
+    closed_loop_section,
+    diagnosis_section,
+    ladder_section,
+    measured_section,
+    model_section,
+    provenance_section,
+    residual_section,
+    suggestion_section,
+)
+from bench.study.suggestion.suggest import suggest
+
+
+def report_html(store: Store, study_id: int, configuration: BenchConfiguration | None = None) -> str:
+    """The report of a study as one HTML page that needs no network.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        configuration: of the bench, for the trials to record next; None: they are left out.
+
+    Raises:
+        NotFoundError: no such study.
+        StudyError: its trials cannot be used.
+    """
+    return html_page(*report(store, study_id, configuration))
+
+
+def report(store: Store, study_id: int, configuration: BenchConfiguration | None = None) -> tuple[str, list[Section]]:
+    """Title and sections. Arguments and errors as `report_html`."""
+    study, rungs = describe(store, study_id), ladder(store, study_id)
+    first, newest = study["models"][0]["model_id"], study["model_id"]
+    now = compare(store, study_id, newest)
+    before = now if first == newest else compare(store, study_id, first)
+    sections = [
+        measured_section(study, store),
+        ladder_section(rungs),
+        model_section(now),
+        residual_section(before, now),
+        _in_closed_loop(store, study_id, newest),
+    ]
+    if first != newest:
+        title = f"What was missing from the first model, {first}"
+        sections.append(diagnosis_section(title, diagnose(store, study_id, first), before))
+    sections.append(
+        diagnosis_section(f"What is missing from the newest model, {newest}", diagnose(store, study_id), now)
+    )
+    if configuration is not None:
+        sections.append(_next(store, study_id, configuration))
+    return f"Study {study_id}: {study['name']}", [*sections, provenance_section(study, store)]
+
+
+def _next(store: Store, study_id: int, configuration: BenchConfiguration) -> Section:
+    """Trials to record next; why there are none where this bench cannot tell."""
+    try:
+        found: dict[str, Any] = suggest(store, study_id, configuration)
+    except BenchError as error:
+        return Section("Trials to record next", [f"Not known: {error}."])
+    return suggestion_section(found)
+
+
+def _in_closed_loop(store: Store, study_id: int, model_id: int) -> Section:
+    """Where the model's joint goes; why nobody knows where it cannot be moved."""
+    try:
+        found = simulate(store, study_id, model_id)
+    except BenchError as error:
+        return Section("In closed loop", [f"Not known: {error}."])
+    return closed_loop_section(found)

@@ -1,0 +1,32 @@
+"""The next round of a study that asks for its own trials: pick up what was recorded, and say what to record next."""
+
+from typing import Any
+
+from bench.config.configuration import BenchConfiguration
+from bench.store import Store
+from bench.study.errors import NothingNewError
+from bench.study.extend import extend_study
+from bench.study.suggestion.rounds import AT_ONCE
+from bench.study.suggestion.suggest import suggest
+
+
+def next_round(store: Store, study_id: int, configuration: BenchConfiguration, trials: int = AT_ONCE) -> dict[str, Any]:
+    """Add what was recorded for a study since the last round, and suggest trials by what all of it tells.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        configuration: of the bench that would run them.
+        trials: how many at most.
+
+    Returns:
+        `extended`, as of `extend_study`, None where nothing new is there; `suggested`, as of `suggest`.
+
+    Raises:
+        NotFoundError, StudyError: as `extend_study` and `suggest`.
+    """
+    try:
+        extended = extend_study(store, study_id)
+    except NothingNewError:
+        extended = None
+    return {"extended": extended, "suggested": suggest(store, study_id, configuration, None, trials)}

@@ -1,0 +1,172 @@
+"""What to record next, as JSON: trials that would separate the rivals of a diagnosis."""
+
+from collections.abc import Collection, Sequence
+from typing import Any
+
+from bench.calibration import with_friction
+from bench.config.configuration import BenchConfiguration
+from bench.control.drive_factory import is_simulated
+from bench.store import Experiment, Store
+from bench.study.errors import StudyError, lab_errors
+from bench.study.extend import note_for
+from bench.study.judged import diagnosis_of_model
+from bench.study.material import Material, facts_of, load_model
+from bench.study.selection import Criterion
+from bench.study.suggestion.kept_out import kept_out, without
+from bench.study.suggestion.options import Choice, choices
+from bench.study.suggestion.predict import choose
+from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.next_trial.confounded import shows_from_rest
+from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
+
+MOST_TRIALS = 6
+
+
+def suggest(
+    store: Store,
+    study_id: int,
+    configuration: BenchConfiguration,
+    model_id: int | None = None,
+    trials: int = MOST_TRIALS,
+    refused: Collection[str] = (),
+) -> dict[str, Any]:
+    """The trials that would raise the smallest d' of the leading rivals most, per minute of bench time.
+
+    Every trial that the bench can run inside its limits is run on the joint of the fitted model first. What was
+    suggested before, and tripped or failed on the joint itself, is kept out, and named. A simulated joint repeats a
+    trial to the bit: what the study has of it already is not suggested again.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        configuration: of the bench that would run them.
+        model_id: which model; None takes the newest.
+        trials: how many at most.
+        refused: names of trials that are kept out besides.
+
+    Raises:
+        StudyError: no such model, a study of another rig, data that are wrong themselves, or what a trial would show
+            cannot be computed.
+    """
+    material, model = load_model(store, study_id, model_id)
+    if facts_of(configuration.rig) != material.definition.facts:
+        raise StudyError(
+            f"study {study_id} is of another rig than this bench, '{configuration.rig.name}'; name the configuration "
+            "of its bench with --config"
+        )
+    configuration = with_friction(store, configuration)
+    fit = material.fit_of(model)
+    diagnosis = diagnosis_of_model(material, model, fit)
+    with lab_errors():
+        if diagnosis.verdict == "data-problem":
+            raise StudyError(f"{diagnosis.sentence} Mend it before more is recorded")
+        repeats = is_simulated(configuration)
+        possible = choices(configuration, not repeats, shows_from_rest(diagnosis))
+        impossible = kept_out(store, study_id)
+        told = [*impossible, *(_recorded(store, material) if repeats else ())]
+        possible = [one for one in without(_fitted_ones(material, possible), told) if one.name not in refused]
+        found, chosen = choose(fit, diagnosis, configuration, possible, trials, once=repeats)
+    return {
+        "study_id": study_id,
+        "model_id": model.id,
+        "verdict": diagnosis.verdict,
+        "diagnosis": diagnosis.sentence,
+        "sentence": _sentence(found, diagnosis),
+        "minutes": sum(pick.minutes for pick in found.picks),
+        "note": note_for(study_id),
+        "pairs": [_pair(pair) for pair in found.pairs],
+        "hopeless": [_pair(pair) for pair in found.hopeless],
+        "kept_out": [_kept_out(one) for one in impossible],
+        "trials": [_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
+    }
+
+
+def _recorded(store: Store, material: Material) -> list[Experiment]:
+    """Experiments that the study has trials of."""
+    return [store.experiment(number) for number in dict.fromkeys(trial.experiment_id for trial in material.trials)]
+
+
+def _fitted_ones(material: Material, possible: Sequence[Choice]) -> list[Choice]:
+    """Those whose trials the study would fit, not hold out."""
+    criteria = [Criterion.parse(text) for text in material.definition.hold_out]
+    return [
+        choice
+        for choice in possible
+        if not any(
+            criterion.holds({"trial": plan.name, "kind": choice.kind, **plan.conditions})
+            for criterion in criteria
+            for plan in choice.plans
+        )
+    ]
+
+
+def _pair(pair: Pair) -> dict[str, Any]:
+    return {
+        "true": pair.true,
+        "rival": pair.rival,
+        "before": pair.before,
+        "after": pair.after,
+        "promised": pair.promised,
+    }
+
+
+def _kept_out(one: Experiment) -> dict[str, Any]:
+    return {"experiment_id": one.id, "kind": one.kind, "outcome": one.outcome, "reason": one.reason}
+
+
+def _pick(pick: Pick, choice: Choice, found: Suggestion, material: Material) -> dict[str, Any]:
+    unit = material.dataset.effort_definition.unit
+    return {
+        "name": choice.name,
+        "kind": choice.kind,
+        "parameters": choice.parameters,
+        "minutes": pick.minutes,
+        "before": pick.before,
+        "after": pick.after,
+        "sentence": (
+            f"{_names(*pick.pair)} predict efforts that differ by {pick.difference:.3g} {unit} there; the noise is "
+            f"{found.noise:.3g} {unit}."
+        ),
+    }
+
+
+def _names(true: str, rival: str | None) -> str:
+    return f"{effect_named(true).title} and {'no missing effect' if rival is None else effect_named(rival).title}"
+
+
+def _sentence(found: Suggestion, diagnosis: Diagnosis) -> str:
+    if not found.pairs:
+        return "No trial that this bench can run tells the rivals apart. " + _hopeless(found)
+    before, after = (min(getattr(pair, end) for pair in found.pairs) for end in ("before", "after"))
+    if not found.picks:
+        return f"No further trial is needed, or helps: the smallest predicted d' is {before:.1f}. " + _hopeless(found)
+    minutes = sum(pick.minutes for pick in found.picks)
+    return (
+        f"{len(found.picks)} trial{'s' * (len(found.picks) != 1)}, {minutes:.2g} min: the smallest predicted d' rises "
+        f"from {before:.1f} to {after:.1f}, {_promise(found)}; from about 6 on a name is sure. "
+        + _condition(found, diagnosis)
+        + _hopeless(found)
+    ).strip()
+
+
+def _promise(found: Suggestion) -> str:
+    """What of the prediction holds for nine in ten of the sizes that the rivals may have."""
+    least = min(pair.promised for pair in found.pairs)
+    if least > 0.0:
+        return f"to at least {least:.1f} for nine in ten of the sizes that these trials leave the rivals"
+    return "that is no promise, since what speaks for the rivals may be chance"
+
+
+def _condition(found: Suggestion, diagnosis: Diagnosis) -> str:
+    """What the prediction holds for, where nothing is sure to be missing: sizes that may be noise."""
+    if diagnosis.verdict == "missing":
+        return ""
+    rivals = [effect_named(name).title for name in dict.fromkeys(pair.true for pair in found.pairs)]
+    one_of = rivals[0] if len(rivals) == 1 else f"one of {', '.join(rivals[:-1])} and {rivals[-1]}"
+    return f"That holds if {one_of} is missing and as large as it seems, which is not sure; if not, they tell so. "
+
+
+def _hopeless(found: Suggestion) -> str:
+    names = dict.fromkeys(_names(pair.true, pair.rival) for pair in found.hopeless)
+    return f"Not told apart by any trial of this bench: {'; '.join(names)}." if names else ""

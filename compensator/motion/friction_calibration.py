@@ -1,0 +1,128 @@
+"""General Kinetic Friction from steady points of a balanced joint (paper, sections 2.2, 3.2.1, Figs 2, 3).
+
+    I = sgn(w) (Fc + (Fs - Fc) exp(-|w/vs|^ds) + b |w|)                 (2)
+        + offset + rise_offset exp(-|w/vs|^ds) [+ J dw/dt]
+
+Robust bounded regression: soft-L1 loss, its scale from the median absolute residual. The offset is what differs between
+the directions (an arm not quite balanced, a current sensor's zero, unequal Coulomb friction); in one direction alone it
+could not be told from Coulomb friction. Dry friction that is a share larger one way is larger by that share of its rise
+towards rest, too: the offset of the rise. Neither is part of the curve.
+
+J, in A s2/rad, is for points whose speed is not quite steady: within a finite travel a heavy arm is not. What little it
+still gains is worth J dw/dt, and without it that share is taken for friction. No part of the curve either.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from compensator.line_fit import CONFIDENCE, Interval
+from compensator.motion.calibration_points import check_accelerations, check_points
+from compensator.motion.curve_regression import Solution, solve
+from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motor import dc_motor as motor
+from compensator.motor.dc_motor import MotorConstants
+
+NOT_TOLD = "not determined: static friction is not told from Coulomb friction"
+NOT_COVERED = "below the lowest speed measured: extrapolated"
+AT_BOUND = "held by its physical bound"
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionFit:
+    """One friction curve and how sure it is.
+
+    Attributes:
+        curve: eq. (2).
+        parameters: 95 % interval of each of its parameters, of `offset_a`, with `stribeck` of `rise_offset_a` and,
+            where accelerations were given, of `inertia_a_s2_rad`, by name.
+        scatter_a: standard deviation of the points about the curve, outliers aside [A].
+        points: number of them.
+    """
+
+    curve: KineticFriction
+    parameters: dict[str, Interval]
+    scatter_a: float
+    points: int
+
+
+NO_PART_OF_THE_CURVE = ("offset_a", "inertia_a_s2_rad", "rise_offset_a")
+
+
+def fit(
+    speed_rad_s: ArrayLike,
+    current_a: ArrayLike,
+    stribeck: bool = True,
+    acceleration_rad_s2: ArrayLike | None = None,
+) -> FrictionFit:
+    """Fit one curve to the steady points of one load.
+
+    Args:
+        speed_rad_s: steady speeds, shape (n,), both signs, none 0; of the motor shaft if a look-up is to give duties.
+        current_a: motor current at each, shape (n,).
+        stribeck: False leaves out static friction and the Stribeck shape (Fs = Fc): for points without low speeds.
+        acceleration_rad_s2: of the same shaft, shape (n,), where the speeds are not quite steady. Sign as the speed's
+            where the joint gains speed.
+
+    Raises:
+        CalibrationError: too few points, not finite, at rest, one direction only, or (with `stribeck`) no low speeds.
+    """
+    speed, current = check_points(speed_rad_s, current_a, stribeck)
+    acceleration = None if acceleration_rad_s2 is None else check_accelerations(acceleration_rad_s2, speed)
+    solution = solve(speed, current, stribeck, acceleration)
+    quantile = float(stdtrit(len(speed) - solution.fitted, 0.5 + CONFIDENCE / 2.0))
+    parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
+    curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name not in NO_PART_OF_THE_CURVE})
+    return FrictionFit(curve, parameters, solution.scatter_a, len(speed))
+
+
+def fit_duty(
+    speed_rad_s: ArrayLike, duty: ArrayLike, supply_v: float, constants: MotorConstants, stribeck: bool = True
+) -> FrictionFit:
+    """As `fit`, from duties [1] at a supply [V]: eq. (3) takes the back-EMF out of them. Speeds of the motor shaft."""
+    speed, duties = np.asarray(speed_rad_s, dtype=np.float64), np.asarray(duty, dtype=np.float64)
+    return fit(speed, motor.current_a(constants, duties, speed, supply_v), stribeck)
+
+
+def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dict[str, Interval]:
+    """Intervals of the parameters by name, in the order of `KineticFriction`, the offset last."""
+    coulomb_a, rise_a, log_speed, log_shape, viscous, offset_a, inertia, rise_offset_a = solution.p
+    width = quantile * np.sqrt(np.diag(solution.covariance))
+    static_width = quantile * np.sqrt(np.sum(solution.covariance[:2, :2]))
+    told = bool(solution.free[1]) and rise_a > width[1]
+    found = {
+        "coulomb_a": _linear(coulomb_a, width[0], solution.free[0]),
+        "static_a": _linear(coulomb_a + rise_a, static_width, True)
+        if told
+        else Interval(float(coulomb_a + rise_a), note=NOT_TOLD),
+        "stribeck_speed_rad_s": _logarithmic(log_speed, width[2], solution.free[2], told, slowest_rad_s),
+        "shape": _logarithmic(log_shape, width[3], solution.free[3], told),
+        "viscous_a_s_rad": _linear(viscous, width[4], solution.free[4]),
+        "offset_a": _around(offset_a, width[5]),
+        "rise_offset_a": _around(rise_offset_a, width[7]) if told else Interval(0.0, note=NOT_TOLD),
+    }
+    return found | ({"inertia_a_s2_rad": _linear(inertia, width[6], True)} if solution.free[6] else {})
+
+
+def _around(value: float, width: float) -> Interval:
+    return Interval(float(value), float(value - width), float(value + width))
+
+
+def _linear(value: float, width: float, free: bool) -> Interval:
+    """Of a parameter that is never below 0."""
+    if not free:
+        return Interval(float(value), note=AT_BOUND)
+    return Interval(float(value), max(float(value - width), 0.0), float(value + width))
+
+
+def _logarithmic(log_value: float, width: float, free: bool, told: bool, lowest: float = 0.0) -> Interval:
+    """Of a parameter that is fitted by its logarithm, since its errors are ratios."""
+    value = float(np.exp(log_value))
+    if not told:
+        return Interval(value, note=NOT_TOLD)
+    if not free:
+        return Interval(value, note=AT_BOUND)
+    note = NOT_COVERED if value < lowest else ""
+    return Interval(value, float(np.exp(log_value - width)), float(np.exp(log_value + width)), note)

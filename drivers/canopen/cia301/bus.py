@@ -1,0 +1,53 @@
+"""Opening and closing a CAN bus of python-can in bounded time."""
+
+import socket
+from contextlib import suppress
+
+import can
+
+from drivers.canopen.cia301.bounded import bounded
+from drivers.canopen.cia301.slcan_bus import SlcanBus
+from drivers.canopen.settings import BusSettings
+from drivers.errors import DriveConnectionError
+
+_OPEN_S = 3.0
+_CLOSE_S = 1.0
+_KNOCK_S = 2.0
+
+_NEXT_STEP = {
+    "socketcan": "is the interface there and up? `ip link set {channel} up type can bitrate {bitrate}`",
+    "slcan": "is the adapter plugged in, the port right and nobody else using it?",
+    "socketcand": "does socketcand run at {host}:{port}, and does it offer {channel}?",
+    "virtual": "it exists inside one process only",
+}
+
+
+def open_bus(settings: BusSettings, device: str) -> can.BusABC:
+    """Open a bus.
+
+    Raises:
+        DriveConnectionError: it is not there, or does not open in time.
+    """
+    arguments = settings.arguments()
+    timeout_s = _OPEN_S + settings.adapter_start_s
+    try:
+        if settings.interface == "socketcand":
+            # python-can would knock ten seconds long, without a pause
+            socket.create_connection((settings.host, settings.port), timeout=_KNOCK_S).close()
+        if settings.interface != "slcan":
+            return bounded(lambda: can.Bus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
+        del arguments["interface"], arguments["ignore_config"]
+        return bounded(lambda: SlcanBus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
+    except (can.CanError, OSError, ValueError) as error:
+        step = _NEXT_STEP[settings.interface].format(
+            channel=settings.channel, bitrate=settings.bitrate, host=settings.host, port=settings.port
+        )
+        raise DriveConnectionError(
+            device, f"the bus {settings.interface} {settings} does not open: {error}; {step}"
+        ) from error
+
+
+def close_bus(bus: can.BusABC) -> None:
+    """Close a bus, also one that is broken. Never raises, never hangs."""
+    with suppress(Exception):
+        bounded(bus.shutdown, _CLOSE_S)

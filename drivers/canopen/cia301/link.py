@@ -1,0 +1,145 @@
+"""The bus as the driver uses it: bounded sends, and receiving in the thread that calls.
+
+Everything that comes in is handed out by `receive` and `drain` in the control loop's own thread. There is no receiving
+thread: no frame waits for a thread switch, and what a handler raises is raised in the loop.
+"""
+
+import errno
+import struct
+import time
+from time import perf_counter
+
+import can
+import canopen
+
+from drivers.canopen.cia301.bus import close_bus, open_bus
+from drivers.canopen.settings import BusSettings
+from drivers.errors import DriveConnectionError
+
+_SEND_S = 0.02  # longest wait for room in the transmit buffer
+_RETRY_S = 0.0005
+_MOST_WAITING = 2000  # frames taken in at once: a babbling node must not hold the loop
+_BUS_OFF = 0x40  # error class of a SocketCAN error frame (linux/can/error.h)
+
+
+class CanLink(canopen.Network):
+    """One CAN bus, open or not.
+
+    Args:
+        settings: how it is reached.
+        device: named in errors.
+
+    Attributes:
+        garbled: frames that could not be read, or were not what their COB-ID promises.
+        waited: sends that found the transmit buffer full and were repeated.
+    """
+
+    def __init__(self, settings: BusSettings, device: str) -> None:
+        super().__init__()
+        self._settings = settings
+        self._device = device
+        self.garbled = 0
+        self.waited = 0
+
+    def open(self) -> None:
+        """Open the bus.
+
+        Raises:
+            DriveConnectionError: it is not there, or does not open in time.
+        """
+        self.bus = open_bus(self._settings, self._device)
+
+    def close(self) -> None:
+        """Close the bus, also a broken one. Never raises."""
+        bus, self.bus = self.bus, None
+        if bus is not None:
+            close_bus(bus)
+
+    def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
+        """Send one frame.
+
+        Raises:
+            DriveConnectionError: the port is gone, the bus is off, or the transmit buffer stays full.
+        """
+        self.send_prepared(prepare(can_id, data, remote))
+
+    def send_prepared(self, message: can.Message) -> None:
+        """Send a frame that was made before; as `send_message`."""
+        if self.bus is None:
+            raise DriveConnectionError(self._device, "the bus is closed; open the drive first")
+        deadline_s = 0.0
+        while True:
+            try:
+                self.bus.send(message, _SEND_S)
+                return
+            except (can.CanError, OSError) as error:
+                deadline_s = deadline_s or perf_counter() + _SEND_S
+                if not _buffer_full(error) or perf_counter() > deadline_s:
+                    raise self._lost("sending", error) from error
+                self.waited += 1
+                time.sleep(_RETRY_S)
+
+    def receive(self, timeout_s: float) -> bool:
+        """Wait for one frame, and hand it to its handler.
+
+        Args:
+            timeout_s: longest wait [s].
+
+        Returns:
+            Whether there was one, readable or not.
+
+        Raises:
+            DriveConnectionError: the port is gone, or the bus is off.
+        """
+        if self.bus is None:
+            raise DriveConnectionError(self._device, "the bus is closed; open the drive first")
+        try:
+            message = self.bus.recv(timeout_s)
+        except (ValueError, IndexError):  # a line that is no frame
+            self.garbled += 1
+            return True
+        except (can.CanError, OSError) as error:
+            raise self._lost("receiving", error) from error
+        if message is None:
+            return False
+        if message.is_error_frame:
+            self._check(message)
+        elif not message.is_remote_frame:
+            self._hand_out(message)
+        return True
+
+    def drain(self) -> None:
+        """Hand out every frame that waits already, without waiting for more."""
+        for _ in range(_MOST_WAITING):
+            if not self.receive(0.0):
+                return
+
+    def _hand_out(self, message: can.Message) -> None:
+        try:
+            for handler in self.subscribers.get(message.arbitration_id, ()):
+                handler(message.arbitration_id, message.data, message.timestamp)
+        except (ValueError, struct.error):
+            self.garbled += 1
+
+    def _check(self, message: can.Message) -> None:
+        self.garbled += 1
+        if self._settings.interface == "socketcan" and message.arbitration_id & _BUS_OFF:
+            raise DriveConnectionError(
+                self._device, "the bus is off after too many errors; check wiring, termination and bit rate, then open"
+            )
+
+    def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
+        what = "the transmit buffer stays full: nobody acknowledges" if _buffer_full(error) else str(error)
+        return DriveConnectionError(
+            self._device, f"{doing} failed: {what}; check cable, adapter and bit rate, then open the drive again"
+        )
+
+
+def prepare(can_id: int, data: bytes, remote: bool = False) -> can.Message:
+    """A frame for `CanLink.send_prepared`, which may be sent often."""
+    return can.Message(arbitration_id=can_id, data=data, is_extended_id=False, is_remote_frame=remote)
+
+
+def _buffer_full(error: Exception) -> bool:
+    code = getattr(error, "error_code", None) or getattr(error, "errno", None)
+    return code in (errno.ENOBUFS, errno.EAGAIN) or "buffer full" in str(error).lower()

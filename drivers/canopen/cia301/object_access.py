@@ -1,0 +1,149 @@
+"""Reading and writing objects of the drive by SDO, blocking: for opening and switching, not for control cycles."""
+
+import struct
+from time import perf_counter
+from typing import Final
+
+import canopen
+from canopen.sdo.client import SdoClient
+from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
+
+from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.objects import DataType, DriveObject
+from drivers.errors import DriveConfigurationError, DriveConnectionError
+
+ANSWER_S: Final = 0.2  # longest wait for one answer
+_ATTEMPTS: Final = 2
+_BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (CiA 301, 7.2.4.3)
+_NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
+_NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
+_ABSENT: Final = (0x0602_0000, 0x0609_0011)  # no such object, no such subindex
+
+
+class ObjectRefusedError(DriveConfigurationError):
+    """Raised when the drive refuses to read or write an object.
+
+    Attributes:
+        code: abort code of CiA 301, 7.2.4.3.17.
+    """
+
+    def __init__(self, device: str, message: str, code: int) -> None:
+        super().__init__(device, message)
+        self.code = code
+
+
+class ObjectAccess:
+    """The SDO client of one drive.
+
+    Args:
+        link: open.
+        node_id: of the drive.
+        device: named in errors.
+    """
+
+    def __init__(self, link: CanLink, node_id: int, device: str) -> None:
+        self._device = device
+        self._client = _Client(link, node_id)
+
+    def take(self, data: bytes) -> None:
+        """Receive an answer of the drive's SDO server."""
+        self._client.on_response(0, data, 0.0)
+
+    def read(self, item: DriveObject) -> int:
+        """Value of an object [counts].
+
+        Raises:
+            ObjectRefusedError: the drive refuses.
+            DriveConnectionError: it does not answer, or not with a value.
+        """
+        try:
+            return item.unpack(self._transfer(item, None))
+        except struct.error as error:
+            raise DriveConnectionError(
+                self._device, f"{item} reads as too few bytes; is it a CiA 402 drive?"
+            ) from error
+
+    def read_if_present(self, item: DriveObject) -> int | None:
+        """Value of an object [counts], None where the drive does not have it."""
+        try:
+            return self.read(item)
+        except ObjectRefusedError as refusal:
+            if refusal.code in _ABSENT:
+                return None
+            raise
+
+    def read_text(self, index: int) -> str:
+        """A visible string; empty where the drive does not have it."""
+        try:
+            data = self._transfer(DriveObject(index, 0, DataType.U8, "text"), None)
+        except ObjectRefusedError:
+            return ""
+        return data.split(b"\0")[0].decode("ascii", errors="replace").strip()
+
+    def write(self, item: DriveObject, value: int) -> None:
+        """Write an object.
+
+        Raises:
+            ObjectRefusedError: the drive refuses.
+            DriveConnectionError: it does not answer.
+        """
+        self._transfer(item, item.pack(value))
+
+    def _transfer(self, item: DriveObject, data: bytes | None) -> bytes:
+        """Download `data`, or upload where there is none. Both may be repeated without harm."""
+        what = "reading" if data is None else f"writing {item.unpack(data)} to"
+        problem: Exception | None = None
+        for _ in range(_ATTEMPTS):
+            try:
+                if data is None:
+                    return self._client.upload(item.index, item.subindex)
+                self._client.download(item.index, item.subindex, data)
+                return b""
+            except SdoAbortedError as error:
+                raise ObjectRefusedError(self._device, f"{what} {item}: refused, {error}", error.code) from error
+            except SdoCommunicationError as error:
+                problem = error
+        raise DriveConnectionError(
+            self._device,
+            f"{what} {item}: {problem} (SDO, {_ATTEMPTS} times {ANSWER_S:g} s); is the drive on, the cable in, "
+            "node ID and bit rate right?",
+        )
+
+
+class _Client(SdoClient):
+    """canopen's client, which takes the answers in itself: there is no receiving thread.
+
+    An answer that begins a transfer names its object. One that names another belongs to a request that was given up,
+    by this host or by the one before it: it is let go.
+    """
+
+    RESPONSE_TIMEOUT = ANSWER_S
+    RETRY_DELAY = 0.0
+
+    def __init__(self, link: CanLink, node_id: int) -> None:
+        super().__init__(0x600 + node_id, 0x580 + node_id, canopen.ObjectDictionary())  # type: ignore[no-untyped-call]
+        self.network = link
+        self._link = link
+        self._asked = b""  # index and subindex of the transfer
+
+    def send_request(self, request: bytes) -> None:
+        if request[0] >> 5 in _BEGINS:
+            self._asked = bytes(request[1:4])
+        super().send_request(request)  # type: ignore[no-untyped-call]
+
+    def on_response(self, can_id: int, data: bytes, timestamp: float) -> None:
+        if data[0] >> 5 not in _NAMES_OBJECT or bytes(data[1:4]) in (self._asked, _NO_OBJECT):
+            super().on_response(can_id, data, timestamp)  # type: ignore[no-untyped-call]
+
+    def read_response(self) -> bytes:
+        deadline_s = perf_counter() + self.RESPONSE_TIMEOUT
+        while self.responses.empty():
+            remaining_s = deadline_s - perf_counter()
+            if remaining_s <= 0.0:
+                self._link.drain()
+                break
+            self._link.receive(remaining_s)
+        if self.responses.empty():
+            raise SdoCommunicationError("no answer")
+        response: bytes = super().read_response()  # type: ignore[no-untyped-call]
+        return response

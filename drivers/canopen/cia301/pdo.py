@@ -1,0 +1,99 @@
+"""Process data objects: their layout, and the writes that configure them (CiA 301, 7.5.2.35 to 7.5.2.38). Pure."""
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from drivers.canopen.cia301.objects import DataType, DriveObject
+
+SYNCHRONOUS = 1  # transmission type: at every SYNC
+INVALID = 0x8000_0000  # bit 31 of a PDO's COB-ID: it does not exist
+NO_RTR = 0x4000_0000  # bit 30 of a TPDO's COB-ID: it cannot be requested
+_LONGEST = 8  # bytes of a CAN frame
+
+
+class Write(NamedTuple):
+    """One value for one object."""
+
+    object: DriveObject
+    value: int
+
+
+class PdoLayout:
+    """Objects one after the other in up to 8 bytes, little-endian.
+
+    Args:
+        entries: in their order.
+
+    Raises:
+        ValueError: they do not fit.
+    """
+
+    def __init__(self, entries: Sequence[DriveObject]) -> None:
+        self.entries = tuple(entries)
+        self._struct = struct.Struct("<" + "".join(entry.type.value for entry in entries))
+        self.size = self._struct.size
+        if self.size > _LONGEST:
+            raise ValueError(f"{self.size} bytes do not fit a PDO of {_LONGEST}")
+        self.pack = self._struct.pack
+        self.unpack = self._struct.unpack
+
+
+@dataclass(frozen=True, slots=True)
+class Pdo:
+    """One PDO of the drive.
+
+    Attributes:
+        number: from 1.
+        transmit: True where the drive sends it.
+        cob_id: of its frames.
+        layout: what it carries.
+    """
+
+    number: int
+    transmit: bool
+    cob_id: int
+    layout: PdoLayout
+
+    def _communication(self, subindex: int, kind: DataType, name: str) -> DriveObject:
+        return communication(self.number, self.transmit, subindex, kind, name)
+
+    def _entry(self, subindex: int) -> DriveObject:
+        kind = DataType.U32 if subindex else DataType.U8
+        index = (0x1A00 if self.transmit else 0x1600) + self.number - 1
+        return DriveObject(index, subindex, kind, f"mapping of {self}")
+
+    def writes(self) -> list[Write]:
+        """How it is configured: off, transmission type, no entries, the entries, their number, on."""
+        cob_id = self._communication(1, DataType.U32, "COB-ID")
+        flags = NO_RTR if self.transmit else 0
+        entries = [Write(self._entry(place), entry.mapping) for place, entry in enumerate(self.layout.entries, 1)]
+        return [
+            Write(cob_id, INVALID | flags | self.cob_id),
+            Write(self._communication(2, DataType.U8, "transmission type"), SYNCHRONOUS),
+            Write(self._entry(0), 0),
+            *entries,
+            Write(self._entry(0), len(entries)),
+            Write(cob_id, flags | self.cob_id),
+        ]
+
+    def expected(self) -> list[Write]:
+        """What reads back afterwards: the last value written to each object."""
+        return [Write(item, value) for item, value in dict(self.writes()).items()]
+
+    def __str__(self) -> str:
+        return f"{'TPDO' if self.transmit else 'RPDO'}{self.number}"
+
+
+def communication(number: int, transmit: bool, subindex: int, kind: DataType, name: str) -> DriveObject:
+    """An entry of a PDO's communication record."""
+    index = (0x1800 if transmit else 0x1400) + number - 1
+    return DriveObject(index, subindex, kind, f"{name} of {'TPDO' if transmit else 'RPDO'}{number}")
+
+
+def same(item: DriveObject, found: int, wanted: int) -> bool:
+    """Whether what reads back is what was written. Bit 30 of a COB-ID is the device's own business."""
+    if item.subindex == 1 and (0x1400 <= item.index < 0x1600 or 0x1800 <= item.index < 0x1A00):
+        return found & ~NO_RTR == wanted & ~NO_RTR
+    return found == wanted

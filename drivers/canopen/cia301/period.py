@@ -1,0 +1,44 @@
+"""Which control periods a drive on a bus can have."""
+
+from typing import Final
+
+from drivers.canopen.cia301.bus_load import cycle_s
+from drivers.canopen.settings import CanopenSettings
+from drivers.errors import DriveConfigurationError
+
+_WATCHDOG_PERIODS: Final = 2  # cycles that the watchdog has to outlast
+
+
+def check_period(settings: CanopenSettings, period_s: float) -> None:
+    """Compare a control period [s] with the watchdog.
+
+    Raises:
+        DriveConfigurationError: it is too long, or none.
+    """
+    longest_s = settings.watchdog_s / _WATCHDOG_PERIODS
+    if not 0.0 < period_s <= longest_s:
+        raise DriveConfigurationError(
+            settings.device,
+            f"control period {period_s:g} s: more than 0 and at most {longest_s:g} s (half the watchdog) is wanted; "
+            "change the period or watchdog_s",
+        )
+
+
+def check_bus_load(settings: CanopenSettings, payload_bytes: tuple[int, ...], period_s: float) -> None:
+    """Compare a control period [s] with what the frames of a cycle take on the bus.
+
+    Args:
+        settings: with the bit rate.
+        payload_bytes: of each frame.
+        period_s: the control period [s].
+
+    Raises:
+        DriveConfigurationError: it is too short.
+    """
+    fastest_s = cycle_s(payload_bytes, settings.bus.bitrate)
+    if period_s < fastest_s:
+        raise DriveConfigurationError(
+            settings.device,
+            f"control period {period_s:g} s: the frames of a cycle take {fastest_s:.3g} s on this bus; "
+            "at least that is wanted; change the period or the bit rate",
+        )

@@ -1,0 +1,46 @@
+"""Between what the drive counts at the motor and what the bench sees of the joint. Pure."""
+
+from dataclasses import dataclass
+
+from drivers.canopen.cia301.objects import DriveObject
+from drivers.joint import JointScale
+
+_I16, _I32 = 0x7FFF, 0x7FFF_FFFF
+
+
+@dataclass(frozen=True, slots=True)
+class DriveScale:
+    """Scales of one drive and its joint.
+
+    Attributes:
+        joint: counts, gear ratio, signs, zero.
+        rated_current_a: motor current of 1000 permille [A].
+        velocity_unit_rad_s: one count of velocity at the motor [rad/s]; NaN where unknown.
+    """
+
+    joint: JointScale
+    rated_current_a: float
+    velocity_unit_rad_s: float
+
+    @property
+    def velocity_rad_s(self) -> float:
+        """One count of velocity at the joint [rad/s], with the encoder's sign."""
+        return self.joint.encoder_sign * self.velocity_unit_rad_s / self.joint.gear_ratio
+
+    def current_a(self, item: DriveObject) -> float:
+        """One count of an object that tells a motor current [A], without sign."""
+        return item.scale * (self.rated_current_a if item.unit == "rated current" else 1.0)
+
+    @property
+    def highest_current_a(self) -> float:
+        """The most that a torque demand can say [A]."""
+        return _I16 * 1e-3 * self.rated_current_a
+
+    @property
+    def farthest_rad(self) -> float:
+        """The farthest angle, either way, that a position demand can say [rad]."""
+        return _I32 * self.joint.count_rad - abs(self.joint.zero_rad)
+
+    def torque_permille(self, current_a: float) -> int:
+        """A motor current within `highest_current_a` as torque demand."""
+        return round(self.joint.motor_sign * current_a / self.rated_current_a * 1000.0)

@@ -1,0 +1,4 @@
+"""Gear, shaft, arm and encoder.
+
+One law a file; `sim_backend.plant.step` asks each once.
+"""

@@ -1,0 +1,28 @@
+"""The same work on many items, in processes."""
+
+import os
+
+import pytest
+
+from bench.parallel.over_cores import over_cores
+
+
+def _squared(item):
+    if item < 0:
+        raise ValueError(f"{item} is below 0")
+    return item**2, os.getpid()
+
+
+def test_results_come_in_order_and_from_other_processes():
+    results = list(over_cores(_squared, range(8), workers=2))
+    assert [square for square, _ in results] == [item**2 for item in range(8)]
+    assert os.getpid() not in {process for _, process in results}
+
+
+def test_one_worker_works_here():
+    assert list(over_cores(_squared, [3], workers=1)) == [(9, os.getpid())]
+
+
+def test_error_of_an_item_is_told():
+    with pytest.raises(ValueError, match="-1 is below 0"):
+        list(over_cores(_squared, [2, -1], workers=2))
