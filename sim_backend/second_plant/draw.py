@@ -88,12 +88,10 @@ def sensors_drawn(random: np.random.Generator, needs: set[str]) -> Sensors:
 def told_drawn(random: np.random.Generator, needs: set[str]) -> Told:
     """Which facts the owner knows."""
     nominal = "nominal" in needs
-    shares = (0.8, 0.8, 0.8, 0.7, 0.5, 0.5, 0.7, 0.1, 0.1)
-    ratio, counts, constant, length, inertia, mass, known, stiffness, backlash = (
-        bool(random.random() < share) for share in shares
-    )
+    shares = (0.8, 0.8, 0.8, 0.7, 0.5, 0.5, 0.7)
+    ratio, counts, constant, length, inertia, mass, known = (bool(random.random() < share) for share in shares)
     tolerance = float(random.normal(1.0, 0.03))
-    return Told(ratio, counts, constant, length, inertia, mass, nominal and known, stiffness, backlash, tolerance)
+    return Told(ratio, counts, constant, length, inertia, mass, nominal and known, tolerance)
 
 
 def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[str], level: Level) -> tuple[Trial, ...]:

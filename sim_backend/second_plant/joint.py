@@ -80,8 +80,6 @@ class Told:
     inertia: bool
     mass: bool
     nominal: bool
-    stiffness: bool
-    backlash: bool
     tolerance: float  # factor on the torque constant
 
 
