@@ -82,7 +82,7 @@ def reveal(
 
 
 def _guess_of(context: typer.Context, study: int) -> "Guess":
-    from bench.service.models.study_guess import guess_of_study
+    from bench.evaluation.challenge.guess import guess_of_study
 
     with session_of(context).open_store() as store:
         return guess_of_study(store, study)

@@ -55,7 +55,7 @@ def start(context: typer.Context, file: File, url: Url = DEFAULT_URL, as_json: J
 
 
 def _fields(name: str, found: "CampaignPlan") -> dict[str, Any]:
-    from bench.service.models.queue_models import planned
+    from bench.service.routes.queue_models import planned
 
     items = [planned(item).model_dump() for item in found.items]
     return {"name": name, "items": items, "duration_s": found.duration_s, "load_changes": found.load_changes}
