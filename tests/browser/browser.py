@@ -14,6 +14,11 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking",
 WITH_TOKEN = f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')"
 
 
+def imported(module: str) -> str:
+    """JavaScript that imports a module of the page, such as "plots/thin": the one that the page itself uses."""
+    return f"import(document.querySelector('script[type=module]').src.replace('app/main', '{module}'))"
+
+
 @contextmanager
 def browser(*arguments: str) -> Iterator[Any]:
     """A browser, for a command."""

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from bench.errors import BaselineError
 from bench.evaluation.bench_report.campaign import SeedValues, fingerprint
 from bench.evaluation.bench_report.comparison import mean_interval
-from bench.evaluation.bench_report.errors import BaselineError
 from bench.provenance import software
 
 HOW = "make it with: friction-bench bench-report --update-baseline"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.evaluation.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.report import Bars, Figure, Line, Points, Section, Table
 from bench.store import Store
 from bench.study.changes import add_effect

@@ -10,8 +10,7 @@ from bench.calibration import friction_of
 from bench.calibration.curve_data import Columns, CurvePicture, curve_data
 from bench.config.friction_curves import FrictionCurve
 from bench.config.rig import Rig
-from bench.evaluation.paper.published import FIG_2, FIG_3
-from bench.evaluation.paper.row import Row
+from bench.evaluation.paper.row import FIG_2, FIG_3, Row
 from bench.report import Figure, Line, Points, Section, Table, shades
 from bench.store import CalibrationRow
 from compensator.motor import dc_motor as motor

@@ -4,10 +4,12 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from bench.control.loop import Reading
+from bench.control.cycle import Reading
 from bench.json_types import Number
 from bench.runs.runner import RunnerStatus
 from bench.service.routes.leases import LeaseNow
+
+FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run
 
 
 class Run(BaseModel):
@@ -23,6 +25,9 @@ class Run(BaseModel):
     duration_s: float = Field(description="estimate of the whole, in the joint's time; a simulated one may be faster")
     left_s: float = Field(description="what is left of it")
     pausing: str = Field(description="asked: it stands still after the trial that runs; paused: it does; else empty")
+    power_off: Literal["confirmed", "failed"] | None = Field(
+        description="whether the drive took its power off at the end; null while it runs"
+    )
 
 
 class ReadingNow(BaseModel):
@@ -35,7 +40,9 @@ class ReadingNow(BaseModel):
     duty: Number
     supply_v: Number
     temperature_c: Number
-    power: str = Field(description="state of the power stage: disabled, enabled, quick_stop or fault")
+    power: str = Field(
+        description="of the power stage: disabled, enabled, quick_stop or fault; unknown after a failed power-off"
+    )
 
 
 class PromptNow(BaseModel):
@@ -62,7 +69,7 @@ def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> S
         state="running" if found.outcome == "running" else "idle",
         simulated=simulated,
         run=_run(found) if found.kind else None,
-        reading=None if found.reading is None else _reading(found.reading),
+        reading=None if found.reading is None else _reading(found.reading, _power(found, found.reading)),
         prompt=None if found.prompt is None else PromptNow(number=found.prompt.number, sentence=found.prompt.sentence),
         lease=lease,
     )
@@ -80,10 +87,23 @@ def _run(found: RunnerStatus) -> Run:
         duration_s=found.duration_s,
         left_s=found.left_s,
         pausing=found.pausing,
+        power_off=None if found.outcome == "running" else _power_off(found),
     )
 
 
-def _reading(reading: Reading) -> ReadingNow:
+def _power(found: RunnerStatus, reading: Reading) -> str:
+    """State of the power stage: of a run that has ended, the last sample was taken before the power went."""
+    if found.outcome == "running":
+        return reading.sample.status.name.lower()
+    return "disabled" if _power_off(found) == "confirmed" else "unknown"
+
+
+def _power_off(found: RunnerStatus) -> Literal["confirmed", "failed"]:
+    """What the control loop noted of the power-off that ends every run."""
+    return "failed" if any(note in found.reason for note in FAILED_POWER_OFF) else "confirmed"
+
+
+def _reading(reading: Reading, power: str) -> ReadingNow:
     sample = reading.sample
     return ReadingNow(
         time_s=reading.time_s,
@@ -93,5 +113,5 @@ def _reading(reading: Reading) -> ReadingNow:
         duty=sample.duty,
         supply_v=sample.supply_v,
         temperature_c=sample.temperature_c,
-        power=sample.status.name.lower(),
+        power=power,
     )

@@ -5,15 +5,16 @@
 
 import asyncio
 from contextlib import suppress
-from importlib.metadata import version
 
 from fastapi import APIRouter, Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 from starlette.requests import ClientDisconnect
 
+from bench import __version__
+from bench.config.channels import CHANNELS
+from bench.config.limits import Limits
 from bench.control.drive_factory import is_simulated
-from bench.control.limits import Limits
 from bench.json_types import Json
 from bench.service.auth.access import Viewer, allow_read, require_viewer
 from bench.service.auth.audit_trail import note
@@ -64,6 +65,18 @@ class Bench(Status):
     rig: Json
 
 
+class RecordedChannel(BaseModel):
+    """One channel of the recorded rows."""
+
+    model_config = ConfigDict(from_attributes=True)
+    name: str
+    unit: str = Field(description="SI, angles in rad, temperatures in degC; 1 where there is none")
+    label: str = Field(description="short, for plots")
+    description: str
+    plotted: bool = Field(description="whether a plot shows it unless asked otherwise")
+    exported: bool = Field(description="whether recording sets, CSV and Parquet files hold it")
+
+
 class Stop(BaseModel):
     """Why it is stopped; kept with the record."""
 
@@ -107,11 +120,17 @@ def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
     return Bench(
         **dict(status_of(found, is_simulated(configuration), lease_now(lease.current()))),
         name=configuration.name,
-        software_version=version("friction-bench"),
+        software_version=__version__,
         drive=None if found.description is None else _drive(found.description),
         limits=_limits(configuration.limits),
         rig=configuration.rig.model_dump(exclude_none=True),
     )
+
+
+@router.get("/channels", summary="What trials record", dependencies=[Depends(allow_read)])
+def channels() -> list[RecordedChannel]:
+    """Name, unit and meaning of every channel, in the order of the columns. A trial names those that it has."""
+    return [RecordedChannel.model_validate(channel) for channel in CHANNELS.values()]
 
 
 # async on purpose: it runs on the event loop itself and never waits for a free worker thread

@@ -11,7 +11,6 @@ from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.background import BackgroundTask
 
-from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
 from bench.json_types import Json
 from bench.recording_set import export_experiment, export_parquet
@@ -24,7 +23,7 @@ from bench.service.compute import at_bench
 from bench.service.http import conditional
 from bench.service.http.attachment import attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
-from bench.service.http.problems import FieldProblem, InvalidFieldsError, field_problems, problems
+from bench.service.http.problems import InvalidFieldsError, field_problems, problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import LeaseOf
 from bench.service.routes.queue_models import Note, Tags
@@ -181,29 +180,35 @@ def _begun(
 ) -> Started:
     """The experiment that has begun, now or with the same key before."""
 
+    refuse_mistyped(body)  # a typing error is no failed start: nothing is recorded
+
     def begin() -> Started:
         with lease.starting(caller.name):
             begun = runner.start(body.kind, dict(body.parameters), body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
         return Started(experiment_id=begun, kind=body.kind)
 
-    try:
-        started = once(store.access.start_keys, caller.name, key, body.model_dump(), begin, Started)
-    except ParameterError as error:
-        raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
+    started = once(store.access.start_keys, caller.name, key, body.model_dump(), begin, Started)
     if body.tags:
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
             store.annotate(started.experiment_id, tags=body.tags)
     return started
 
 
-def _fields_of(body: NewExperiment) -> list[FieldProblem]:
-    """The fields that the parameters' model refuses."""
+def refuse_mistyped(body: NewExperiment) -> None:
+    """Refuse parameters that the kind's model does not take, before anything is recorded.
+
+    Raises:
+        UnknownKindError: no such kind.
+        InvalidFieldsError: with each field, its value and what is allowed.
+    """
+    kind = find_kind(body.kind)
     try:
-        find_kind(body.kind).parameters.model_validate(body.parameters)
+        kind.parameters.model_validate(body.parameters)
     except ValidationError as error:
-        return field_problems(error, prefix="parameters")
-    return []
+        fields = field_problems(error, prefix="parameters")
+        words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
+        raise InvalidFieldsError(f"{body.kind}: {words}", "ParameterError", fields) from error
 
 
 @router.get("/experiments", summary="What has been run", responses=problems(422))

@@ -1,0 +1,85 @@
+// Numbers, units and names as people read them.
+
+import { withShownUnit } from "./units.js";
+
+const UNITS = [
+  ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
+  ["_s", "s"], ["_a", "A"], ["_v", "V"], ["_c", "°C"], ["_m", "m"], ["_n", "N"], ["_g", "g"],
+];
+
+export function unitOf(name) {
+  const found = UNITS.find(([suffix]) => name.endsWith(suffix));
+  return found ? found[1] : "";
+}
+
+export function nameOf(name) {
+  const found = UNITS.find(([suffix]) => name.endsWith(suffix));
+  const bare = found ? name.slice(0, -found[0].length) : name;
+  return bare.replaceAll("_", " ");
+}
+
+export function withUnit(name) {
+  const unit = unitOf(name);
+  return unit ? `${nameOf(name)} [${unit}]` : nameOf(name);
+}
+
+export function number(value, digits = 4) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (typeof value !== "number") return String(value);
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
+  return String(Number(value.toPrecision(digits)));
+}
+
+// a value whose name tells its unit, in the units that are shown
+export function quantity(name, value) {
+  return typeof value === "number" ? withShownUnit(value, unitOf(name)) : number(value);
+}
+
+const ROUNDING = 1e-7;
+
+// a small one by its first two digits: those after the point would say next to nothing of it
+export function percent(share, digits = 2) {
+  if (share === null || share === undefined) return "–";
+  const small = Math.abs(share) > ROUNDING && Math.abs(100 * share) < 5 * 10 ** -digits;
+  return `${small ? number(100 * share, 2) : (100 * share).toFixed(digits)} %`;
+}
+
+export function interval(value, low, high, show = percent) {
+  return low === null || low === undefined ? show(value) : `${show(value)} (${show(low)} to ${show(high)})`;
+}
+
+// a time as people say it
+export function duration(time_s) {
+  if (time_s < 90) return `${number(Math.round(time_s))} s`;
+  return time_s < 5400 ? `${number(Math.round(time_s / 60))} min` : `${number(time_s / 3600, 2)} h`;
+}
+
+export function conditions(values) {
+  return Object.entries(values ?? {}).map(([name, value]) => {
+    if (value === true) return nameOf(name);
+    if (value === false) return `not ${nameOf(name)}`;
+    return `${nameOf(name)} ${quantity(name, value)}`;
+  }).join(", ");
+}
+
+export function when(iso) {
+  if (!iso) return "–";
+  const date = new Date(iso);
+  if (Number.isNaN(date.getTime())) return String(iso);
+  const two = (value) => String(value).padStart(2, "0");
+  const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join("-");
+  return `${day} ${[date.getHours(), date.getMinutes(), date.getSeconds()].map(two).join(":")}`;
+}
+
+const LEAST_P = 0.001; // stands for that and less: no smaller chance can be known
+
+// of a table whose heading says p
+export function chanceCell(p) {
+  if (p === null || p === undefined) return "–";
+  return p <= LEAST_P ? `≤ ${LEAST_P}` : number(p, 2);
+}
+
+// behind "p", in a sentence
+export function chance(p) {
+  return p === null || p === undefined || p <= LEAST_P ? chanceCell(p) : `= ${chanceCell(p)}`;
+}
