@@ -22,7 +22,7 @@ from bench.experiments.kinds import (
     teleoperation,
     waveform,
 )
-from bench.json_types import Json
+from bench.json_types import Values
 
 KINDS: dict[str, ExperimentKind] = {
     kind.name: kind
@@ -59,7 +59,7 @@ def find_kind(name: str) -> ExperimentKind:
     return KINDS[name]
 
 
-def parse_parameters(kind: ExperimentKind, values: Json) -> Parameters:
+def parse_parameters(kind: ExperimentKind, values: Values) -> Parameters:
     """Parameters from what a user gave; what is left out has its default.
 
     Raises:

@@ -1,8 +1,9 @@
 """What may be asked of a bench in operation, wherever its control loop runs."""
 
-from typing import Any, Protocol
+from typing import Protocol
 
 from bench.config.configuration import BenchConfiguration
+from bench.json_types import Values
 from bench.runs.live import LiveRows
 from bench.runs.runner import Pace, RunnerStatus
 
@@ -20,7 +21,7 @@ class BenchControl(Protocol):
     def start(
         self,
         kind: str,
-        parameters: dict[str, Any],
+        parameters: Values,
         operator: str = "",
         note: str = "",
         pace: Pace | None = None,

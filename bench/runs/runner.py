@@ -2,7 +2,7 @@
 
 import threading
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from bench.calibration import with_friction
 from bench.config.channels import PAIR_RECORDED, RECORDED
@@ -18,6 +18,7 @@ from bench.control.station import Station, make_station
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiments.parts.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
+from bench.json_types import Values
 from bench.provenance import provenance
 from bench.runs.experiment_run import ExperimentRun, Pausing, Prepared, Request
 from bench.runs.live import LiveBuffer, LiveRows
@@ -98,7 +99,7 @@ class Runner:
     def start(
         self,
         kind: str,
-        parameters: dict[str, Any],
+        parameters: Values,
         operator: str = "",
         note: str = "",
         pace: Pace | None = None,
@@ -275,7 +276,7 @@ class Runner:
             raise ParameterError("pace is 'fast'; a real drive runs in real time")
         return pace == "real-time" or not simulated
 
-    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: dict[str, Any]) -> int:
+    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: Values) -> int:
         drives, benches = self._descriptions, [configuration]
         if find_kind(request.kind).pair and configuration.master is not None:
             benches.append(configuration.of_master())

@@ -1,7 +1,6 @@
 """Keep a fitted model in the store, with the errors it had and the shapes it was fitted at."""
 
-from typing import Any
-
+from bench.json_types import Values
 from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.models.kept import KeptModel
@@ -23,7 +22,7 @@ def kept_of(model: ModelRow) -> KeptModel:
     return KeptModel.model_validate(model.result)
 
 
-def stored(kept: KeptModel) -> dict[str, Any]:
+def stored(kept: KeptModel) -> Values:
     """The same for the store: what was never found is left out."""
     return kept.model_dump(exclude_unset=True)
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from bench.config.rig import Rig
+from bench.json_types import Values
 from bench.store import Store
 from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
@@ -50,7 +51,7 @@ class Definition:
         """As it was when it had so many trials: later ones are added at the end."""
         return replace(self, trial_ids=self.trial_ids[:trials], held_out=self.held_out[:trials])
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> Values:
         """For the store."""
         return asdict(self)
 

@@ -3,7 +3,7 @@
 import secrets
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -88,10 +88,10 @@ def _guess_of(context: typer.Context, study: int) -> "Guess":
         return guess_of_study(store, study)
 
 
-def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, Any]:
+def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, object]:
     from dataclasses import asdict
 
-    found: dict[str, Any] = {"answer": answer.to_json()}
+    found: dict[str, object] = {"answer": answer.to_json()}
     if guess is not None and score is not None:
         found |= {"guess": asdict(guess), "score": {**asdict(score), "perfect": score.perfect, "points": score.points}}
     return found

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import numpy as np
 
 from bench.calibration import friction_of
 from bench.calibration.curve_data import Columns, CurvePicture, curve_data
+from bench.calibration.result import Curve, Estimate
 from bench.config.friction_curves import FrictionCurve
 from bench.config.rig import Rig
 from bench.evaluation.paper.row import FIG_2, FIG_3, Row
@@ -81,18 +81,19 @@ def _parameters(row: CalibrationRow) -> Table:
     names = ("coulomb_a", "static_a", "stribeck_speed_rad_s", "viscous_a_s_rad")
     scales = (1e3, 1e3, 1.0, 1e3)
     rows = []
-    for curve in row.result["curves"]:
-        found = [curve["parameters"][name] for name in names]
+    for curve in map(Curve.model_validate, row.result["curves"]):
+        found = [curve.parameters[name] for name in names]
         cells = [_with_interval(one, scale) for one, scale in zip(found, scales, strict=True)]
-        rows.append((1e3 * curve["load_kg"], 1e3 * curve["f_load_a"], *cells))
+        rows.append((1e3 * curve.load_kg, 1e3 * curve.f_load_a, *cells))
     columns = ["load [g]#", "F_load [mA]#", "Coulomb [mA]#", "static [mA]#", "Stribeck [rad/s]#", "viscous [mA s/rad]#"]
     return Table("General Kinetic Friction, eq. (2), with half of the 95 % interval", columns, rows)
 
 
-def _with_interval(one: dict[str, Any], scale: float) -> str:
-    if one["low"] is None:
-        return f"{scale * one['value']:.4g}"
-    return f"{scale * one['value']:.4g} ± {scale * (one['high'] - one['low']) / 2.0:.2g}"
+def _with_interval(one: Estimate, scale: float) -> str:
+    value = float("nan") if one.value is None else one.value
+    if one.low is None or one.high is None:
+        return f"{scale * value:.4g}"
+    return f"{scale * value:.4g} ± {scale * (one.high - one.low) / 2.0:.2g}"
 
 
 def _speed_at(curve: FrictionCurve, current_a: float) -> float:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from functools import partial
 from math import ceil
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
@@ -15,6 +14,7 @@ from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
 from bench.experiments.parts.resolution import resolution_rad
+from bench.json_types import Value
 from drivers.contract import Command, Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
@@ -145,7 +145,7 @@ def _duration_s(parameters: CommissioningParameters, _configuration: BenchConfig
     return 2.0 * (1.0 / parameters.rate_a_s + 1.0)
 
 
-def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     return dict(trials[0].results) if trials else {}
 
 

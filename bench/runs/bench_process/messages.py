@@ -4,6 +4,7 @@ They are the same software, on one machine, parent and child: messages are pickl
 else can reach. STOP is no message: it goes by the stop line, past everything here.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -38,7 +39,7 @@ class Call:
 
     number: int
     method: Method
-    arguments: dict[str, Any]
+    arguments: Mapping[str, Any]
     stops: int
 
 
@@ -77,7 +78,7 @@ class Failure:
     number: int
     kind: type[BaseException]
     text: str
-    attributes: dict[str, Any]
+    attributes: Mapping[str, object]
     trace: str
 
 

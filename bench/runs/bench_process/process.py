@@ -12,7 +12,6 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.control import scheduling
@@ -20,7 +19,7 @@ from bench.control.drive_factory import make_equipment
 from bench.errors import BenchError
 from bench.runs import event_log
 from bench.runs.bench_process.failures import failure_of
-from bench.runs.bench_process.messages import SLOW, VERSION, Call, Hello, Reply
+from bench.runs.bench_process.messages import SLOW, VERSION, Call, Hello, Method, Reply
 from bench.runs.bench_process.publisher import GONE, Publisher
 from bench.runs.bench_process.stop_line import LineStop, StopLine
 from bench.runs.runner import Runner
@@ -30,6 +29,9 @@ from bench.store import Store
 ORPHAN = "the service that ran the bench is gone (killed, or it crashed)"
 TERMINATED = "the bench process was ended by a signal"
 LOOK_S = 0.5  # how often to see whether the parent is still there: something of its could hold the connection open
+METHODS: dict[Method, Callable[..., object]] = {
+    "start": Runner.start, "answer": Runner.answer, "pause": Runner.pause, "resume": Runner.resume,
+}  # fmt: skip
 LAST_S = 90.0  # a drive that does not let go by then is left to its watchdog
 
 
@@ -104,8 +106,7 @@ class BenchProcess:
 
     def _make(self, call: Call) -> None:
         try:
-            method: Callable[..., Any] = getattr(self._runner, call.method)
-            reply: object = Reply(call.number, method(**call.arguments))
+            reply: object = Reply(call.number, METHODS[call.method](self._runner, **call.arguments))
         except BaseException as error:
             reply = failure_of(call.number, error)
         self._publisher.end_call(reply)

@@ -1,10 +1,12 @@
 """A runner whose control loop is in a process of its own."""
 
 import os
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration
+from bench.json_types import Values
 from bench.runs.bench_process.calls import Calls
 from bench.runs.bench_process.child import MODULE, Child
 from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
@@ -44,7 +46,7 @@ class RemoteRunner:
     def start(
         self,
         kind: str,
-        parameters: dict[str, Any],
+        parameters: Values,
         operator: str = "",
         note: str = "",
         pace: Pace | None = None,
@@ -108,14 +110,14 @@ class RemoteRunner:
             with suppress(BenchProcessError):  # what it was meant for has ended with the process
                 self._call(method, {})
 
-    def _call(self, method: Method, arguments: dict[str, Any]) -> Any:
+    def _call(self, method: Method, arguments: Mapping[str, object]) -> Any:
         stops = self._line.settled()  # what is asked for from here on counts
         for _ in range(TRIES - 1):
             with suppress(NotBegunError):  # it was just ending: another process is there next time
                 return self._call_once(method, arguments, stops)
         return self._call_once(method, arguments, stops)
 
-    def _call_once(self, method: Method, arguments: dict[str, Any], stops: int) -> Any:
+    def _call_once(self, method: Method, arguments: Mapping[str, object], stops: int) -> Any:
         child = self._supervisor.child()
         number, answer = self._calls.open()
         try:

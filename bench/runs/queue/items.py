@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.json_types import Json
 from bench.runs.runner import Pace
 from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import checked
@@ -22,7 +22,7 @@ class Order:
     """
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     operator: str = ""
     note: str = ""
     tags: list[str] = field(default_factory=list)

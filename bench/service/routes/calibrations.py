@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench import calibration
 from bench.calibration.curve_data import Picture, curve_data
+from bench.calibration.result import Curve
 from bench.json_types import Json
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
@@ -33,25 +34,6 @@ class NewCalibration(BaseModel):
     )
     stribeck: bool = Field(default=True, description="false: Coulomb and viscous friction alone")
     note: str = Field(default="", max_length=2000)
-
-
-class Curve(BaseModel):
-    """General Kinetic Friction of the balanced joint under one load, over the speed of the motor shaft."""
-
-    load_kg: float
-    f_load_a: float = Field(description="F_load under this load; it selects the curve")
-    f_load_from: str
-    coulomb_a: float
-    static_a: float
-    stribeck_speed_rad_s: float
-    shape: float
-    viscous_a_s_rad: float
-    offset_a: float = Field(description="half of what friction is more forwards than backwards")
-    rise_offset_a: float = Field(default=0.0, description="what that rises by towards rest")
-    inertia_a_s2_rad: float = Field(description="current per acceleration of the motor shaft: motor, arm and load")
-    parameters: Json = Field(description="value, low, high (95 %) and note of each, by name")
-    scatter_a: float
-    points: int
 
 
 class Calibration(BaseModel):

@@ -184,7 +184,7 @@ def _begun(
 
     def begin() -> Started:
         with lease.starting(caller.name):
-            begun = runner.start(body.kind, dict(body.parameters), body.operator, body.note, body.pace)
+            begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
         return Started(experiment_id=begun, kind=body.kind)
 

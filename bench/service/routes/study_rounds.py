@@ -59,7 +59,7 @@ async def begin_round(
     def take_in() -> Round:
         _refuse_while_recording(conductor, study_id)
         suggested = found.suggested
-        orders = [Order(one.kind, dict(one.parameters), note=suggested.note) for one in suggested.trials]
+        orders = [Order(one.kind, one.parameters, note=suggested.note) for one in suggested.trials]
         item_ids = conductor.add(orders, by=caller.name) if orders else []
         note(request, f"queued {len(item_ids)} trials that study {study_id} asks for")
         return Round(extended=found.extended, suggested=suggested, item_ids=item_ids)
