@@ -6,8 +6,7 @@ from dataclasses import asdict
 from math import sin
 
 from bench.calibration.curves import friction_fits, inertia_of, rise_offset_of
-from bench.calibration.motor_constants import identify_motor
-from bench.calibration.points import FrictionPoint, Row, friction_points
+from bench.calibration.points import FrictionPoint, Row, friction_points, identify_motor
 from bench.calibration.rest import rest_of
 from bench.calibration.samples import points_of_recording
 from bench.calibration.selection import drive_of_experiment

@@ -5,7 +5,7 @@ import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,30 +17,15 @@ from bench.control.recorder import Event, Sink
 from bench.control.station import Station
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.json_types import Value, Values
+from bench.json_types import Value
 from bench.runs import event_log, session
+from bench.runs.bench_control import Pausing, Request
 from bench.runs.live import LiveBuffer
 from bench.runs.session import Session
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
 
 PAUSE_POLL_S = 0.05
-Pausing = Literal["", "asked", "paused"]
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """What a user asked for.
-
-    Attributes:
-        hung: load_kg, and whether balanced, of what hangs on the arm already; None: somebody is asked.
-    """
-
-    kind: str
-    parameters: Values
-    operator: str = ""
-    note: str = ""
-    hung: tuple[float, bool] | None = None
 
 
 @dataclass(frozen=True, slots=True)

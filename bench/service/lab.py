@@ -15,8 +15,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 from bench.errors import BenchError
-from bench.runs.bench_process.failures import error_of, failure_of
-from bench.runs.bench_process.messages import Failure
+from bench.runs.bench_process.messages import Failure, error_of, failure_of
 from bench.store import Store
 
 P = ParamSpec("P")

@@ -25,7 +25,7 @@ def _campaign() -> None:
 def plan(context: typer.Context, file: File, as_json: Json = False) -> None:
     """Show what it comes to on this bench: order, duration, load changes. Nothing moves; no service is needed."""
     from bench.runs.queue import plan_campaign
-    from bench.runs.queue.campaign_file import read_campaign
+    from bench.runs.queue.campaign import read_campaign
 
     campaign = read_campaign(file)
     found = plan_campaign(campaign, session_of(context).configuration())
@@ -43,7 +43,7 @@ def plan(context: typer.Context, file: File, as_json: Json = False) -> None:
 @app.command()
 def start(context: typer.Context, file: File, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
     """Put it into the queue of a running service: all of its experiments, or none."""
-    from bench.runs.queue.campaign_file import read_campaign
+    from bench.runs.queue.campaign import read_campaign
 
     body = read_campaign(file).model_dump(mode="json")
     found = ask(session_of(context), "POST", url, "/campaigns", body)

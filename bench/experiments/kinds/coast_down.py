@@ -11,15 +11,14 @@ from pydantic import Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
+from bench.config.rig import resolution_rad
 from bench.control.cycle import OFF, Procedure, Reading
 from bench.experiments.analysis.coast_fit import fit_coast
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.excursion import Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
 from bench.experiments.parts.refusal import refuse_currents, refuse_load, refuse_speed
-from bench.experiments.parts.resolution import resolution_rad
 from bench.experiments.parts.stroke import StrokeSettings, refuse_travel
 from bench.json_types import Value, numbers
 from drivers.contract import Command, Mode
@@ -91,7 +90,7 @@ def _coast(
 ) -> Part[tuple[list[Reading], bool]]:
     """The readings, and whether it stands."""
     command = OFF if parameters.released == "off" else Command(Mode.CURRENT, 0.0)
-    still_rad, settled = 1.5 * resolution_rad(configuration), configuration.motion.settled_cycles
+    still_rad, settled = 1.5 * resolution_rad(configuration.rig), configuration.motion.settled_cycles
     readings: list[Reading] = []
     rest_rad, still = joint.reading.sample.position_rad, 0
     for cycle in range(ceil(parameters.coast_s / configuration.control.period_s)):
@@ -167,7 +166,7 @@ def _refuse(parameters: CoastDownParameters, configuration: BenchConfiguration) 
         refuse_travel("a speed of speeds_rad_s", speed_rad_s, travel)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
     refuse_currents(configuration)
-    resolution_rad(configuration)
+    resolution_rad(configuration.rig)
 
 
 def _duration_s(parameters: CoastDownParameters, _configuration: BenchConfiguration) -> float:

@@ -6,14 +6,13 @@ from math import ceil
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
+from bench.config.rig import resolution_rad
 from bench.control.cycle import OFF, Procedure, Reading
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
-from bench.experiments.parts.resolution import resolution_rad
 from bench.json_types import Value
 from drivers.contract import Command, Mode
 
@@ -51,7 +50,7 @@ def _plan(parameters: CommissioningParameters, configuration: BenchConfiguration
 def _refuse(parameters: CommissioningParameters, configuration: BenchConfiguration) -> None:
     refuse_angles("angle 0", [0.0], parameters.excursion_rad + MARGIN_RAD, configuration)
     refuse_currents(configuration)
-    least_rad = 20.0 * resolution_rad(configuration)
+    least_rad = 20.0 * resolution_rad(configuration.rig)
     if parameters.excursion_rad < least_rad:
         allowed = f"at least {least_rad:.3g} (20 encoder counts)"
         raise LimitError(quantity_message("excursion_rad", parameters.excursion_rad, allowed, "rad"))

@@ -12,8 +12,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid

@@ -11,15 +11,14 @@ from pydantic import Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
+from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
-from bench.experiments.parts.resolution import resolution_rad
 from bench.json_types import Value, numbers
 
 Amplitude = Annotated[float, Field(gt=0)]
@@ -64,7 +63,7 @@ def reverse(configuration: BenchConfiguration, parameters: ReversalsParameters, 
     yield from joint.wake()
     yield from joint.move(parameters.angle_rad)
     yield from joint.settle(parameters.angle_rad)
-    joint.grip(resolution_rad(configuration))
+    joint.grip(resolution_rad(configuration.rig))
     ends = _ends(parameters, amplitude_rad)
     parts: list[tuple[list[SetPoint], list[Reading]]] = []
     for begin_rad, end_rad in pairwise(ends):
@@ -139,7 +138,7 @@ def _plan(parameters: ReversalsParameters, configuration: BenchConfiguration) ->
 
 def _refuse(parameters: ReversalsParameters, configuration: BenchConfiguration) -> None:
     refuse_load("load_kg", parameters.load_kg, configuration)
-    least_rad = LEAST_COUNTS * resolution_rad(configuration)
+    least_rad = LEAST_COUNTS * resolution_rad(configuration.rig)
     for amplitude_rad in parameters.amplitudes_rad:
         ends_rad = [parameters.angle_rad - amplitude_rad, parameters.angle_rad + amplitude_rad]
         refuse_angles("angle_rad and an amplitude of amplitudes_rad", [0.0, *ends_rad], OVERSHOOT_RAD, configuration)

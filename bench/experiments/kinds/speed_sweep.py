@@ -12,9 +12,8 @@ from bench.control.cycle import Procedure
 from bench.errors import LimitError, quantity_message
 from bench.experiments.analysis.saturation import Ending, next_run_up, remaining_rad_s
 from bench.experiments.analysis.steady_speed import steady_speed_results
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.kinds.load_sweep import PAPER_LOADS_KG, Load
-from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.refusal import refuse_currents, refuse_duty, refuse_load, refuse_speed
 from bench.experiments.parts.stroke import MARGIN_RAD, OVERSPEED, Held, Strokes, StrokeSettings, Window, refuse_travel
 from bench.json_types import Value, numbers

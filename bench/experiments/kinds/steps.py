@@ -8,9 +8,8 @@ from pydantic import model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
-from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.refusal import (
     refuse_angles,
     refuse_currents,

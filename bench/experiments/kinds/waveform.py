@@ -8,8 +8,7 @@ from pydantic import Field, model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, ParameterError
-from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, conditions
 from bench.experiments.parts.injection import RESTS_S, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal

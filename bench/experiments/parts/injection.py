@@ -10,8 +10,7 @@ from pydantic import model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
 from bench.json_types import Value, numbers

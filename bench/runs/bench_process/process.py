@@ -18,20 +18,15 @@ from bench.control import scheduling
 from bench.control.drive_factory import make_equipment
 from bench.errors import BenchError
 from bench.runs import event_log
-from bench.runs.bench_process.failures import failure_of
-from bench.runs.bench_process.messages import SLOW, VERSION, Call, Hello, Method, Reply
+from bench.runs.bench_process.messages import SLOW, VERSION, Call, Hello, Method, Reply, failure_of
 from bench.runs.bench_process.publisher import GONE, Publisher
 from bench.runs.bench_process.stop_line import LineStop, StopLine
-from bench.runs.runner import Runner
-from bench.runs.surroundings import Surroundings
+from bench.runs.runner import HostProcess, Runner
 from bench.store import Store
 
 ORPHAN = "the service that ran the bench is gone (killed, or it crashed)"
 TERMINATED = "the bench process was ended by a signal"
 LOOK_S = 0.5  # how often to see whether the parent is still there: something of its could hold the connection open
-METHODS: dict[Method, Callable[..., object]] = {
-    "start": Runner.start, "answer": Runner.answer, "pause": Runner.pause, "resume": Runner.resume,
-}  # fmt: skip
 LAST_S = 90.0  # a drive that does not let go by then is left to its watchdog
 
 
@@ -52,8 +47,14 @@ class BenchProcess:
         self._store = store
         self._before = line.asked()
         facts = {"control_loop": {"process": "its own", "scheduling": scheduling.describe()}}
-        surroundings = Surroundings(lambda: LineStop(line, self._before), scheduling.undisturbed, facts)
-        self._runner = Runner(configuration, store, surroundings)
+        host = HostProcess(lambda: LineStop(line, self._before), scheduling.undisturbed, facts)
+        runner = self._runner = Runner(configuration, store, host)
+        self._methods: dict[Method, Callable[..., object]] = {
+            "begin": runner.begin,
+            "answer": runner.answer,
+            "pause": runner.pause,
+            "resume": runner.resume,
+        }
         self._publisher = Publisher(self._runner, connection)
         self._slow_calls: queue.Queue[Call] = queue.Queue()
         self._parent = os.getppid()
@@ -106,7 +107,7 @@ class BenchProcess:
 
     def _make(self, call: Call) -> None:
         try:
-            reply: object = Reply(call.number, METHODS[call.method](self._runner, **call.arguments))
+            reply: object = Reply(call.number, self._methods[call.method](*call.arguments))
         except BaseException as error:
             reply = failure_of(call.number, error)
         self._publisher.end_call(reply)

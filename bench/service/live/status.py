@@ -6,7 +6,7 @@ from pydantic import BaseModel, Field
 
 from bench.control.cycle import Reading
 from bench.json_types import Number
-from bench.runs.runner import RunnerStatus
+from bench.runs.bench_control import RunnerStatus
 from bench.service.routes.leases import LeaseNow
 
 FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run

@@ -13,7 +13,7 @@ from starlette.requests import ClientDisconnect
 
 from bench import __version__
 from bench.config.channels import CHANNELS
-from bench.config.limits import Limits
+from bench.config.sections import Limits
 from bench.control.drive_factory import is_simulated
 from bench.json_types import Json
 from bench.service.auth.access import Viewer, allow_read, require_viewer
@@ -77,6 +77,12 @@ class RecordedChannel(BaseModel):
     exported: bool = Field(description="whether recording sets, CSV and Parquet files hold it")
 
 
+class RecordedChannels(BaseModel):
+    """All of them."""
+
+    channels: list[RecordedChannel]
+
+
 class Stop(BaseModel):
     """Why it is stopped; kept with the record."""
 
@@ -128,9 +134,9 @@ def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
 
 
 @router.get("/channels", summary="What trials record", dependencies=[Depends(allow_read)])
-def channels() -> list[RecordedChannel]:
+def channels() -> RecordedChannels:
     """Name, unit and meaning of every channel, in the order of the columns. A trial names those that it has."""
-    return [RecordedChannel.model_validate(channel) for channel in CHANNELS.values()]
+    return RecordedChannels(channels=[RecordedChannel.model_validate(channel) for channel in CHANNELS.values()])
 
 
 # async on purpose: it runs on the event loop itself and never waits for a free worker thread
