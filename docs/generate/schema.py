@@ -50,7 +50,7 @@ def _allowed(schema: Schema, link: Link) -> str:
     if "enum" in schema:
         return ", ".join(code(as_json(one)) for one in schema["enum"])
     bounds = [f"{words} {schema[key]}" for key, words in _BOUNDS if key in schema]
-    kind = schema.get("type", "")
+    kind = str(schema.get("type", ""))
     if kind == "array":
         first = schema.get("items") or (schema.get("prefixItems") or [{}])[0]
         return "; ".join([f"list of {allowed(first, link) or 'values'}", *bounds])
