@@ -37,7 +37,7 @@ def install(app: FastAPI) -> None:
             schemas = document["components"]["schemas"]
             schemas |= _problem_schemas()
             for path, method, route in _routes(document):
-                _complete(path, method, route)
+                _complete(path, method, route, schemas)
             for unused in ("HTTPValidationError", "ValidationError"):
                 schemas.pop(unused, None)
         return dict(app.openapi_schema or {})
@@ -56,19 +56,30 @@ def _problem_schemas() -> Document:
     return {**found.pop("$defs", {}), "Problem": found}
 
 
-def _complete(path: str, method: str, route: Document) -> None:
+def _complete(path: str, method: str, route: Document, schemas: Document) -> None:
     """An example of what is answered; every problem as problem+json with one; those that may come from every route."""
     responses = route["responses"]
-    if (example := examples().get(key(method, path))) is not None:
-        for status, answer in responses.items():
-            if status.startswith("2"):
-                answer["content"]["application/json"]["example"] = example
+    recorded = examples().get(key(method, path))
+    for status, answer in responses.items():
+        said = answer.get("content", {}).get("application/json")
+        if status.startswith("2") and said is not None and "example" not in said:
+            example = recorded or _own_example(said.get("schema", {}), schemas)
+            if example is not None:
+                said["example"] = example
     statuses = {int(status) for status in responses if int(status) >= 400}
     statuses |= {421, 503}
     if route.get("security"):
         statuses |= {*READING} if method == "get" else {*READING, 403}
     for status in sorted(statuses):
         responses[str(status)] = _problem(status)
+
+
+def _own_example(schema: Document, schemas: Document) -> Document | None:
+    """An answer made of the examples that a model gives for each of its fields; None where one has none."""
+    fields = schemas.get(schema.get("$ref", "").rpartition("/")[2], {}).get("properties", {})
+    if not fields or not all("examples" in field for field in fields.values()):
+        return None
+    return {name: field["examples"][0] for name, field in fields.items()}
 
 
 def _problem(status: int) -> Document:
