@@ -15,7 +15,7 @@ from bench.control.drive_factory import is_simulated
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.runs.live import LiveRows
-from bench.service.http.json_numbers import column
+from bench.service.http.written_samples import column
 from bench.service.live.live_rows import Rows, rows_of
 from bench.service.live.replay import CHUNK_ROWS, GapError, Mark, Piece, missed, skipped_experiments
 from bench.service.live.status import Status, status_of

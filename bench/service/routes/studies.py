@@ -1,4 +1,4 @@
-"""/studies: compare measured with predicted, name the missing effect, add it, watch the error fall."""
+"""/studies: make one, change its models, give it trials, hand a model to the bench. GET is in `study_answers`."""
 
 from typing import Annotated, Literal
 
@@ -8,28 +8,18 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
-from bench.service.http import conditional
-from bench.service.http.attachment import attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study import changes, extend, search, use
-from bench.study.compare import compare
-from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
-from bench.study.ladder import ladder
+from bench.study.create import create_study
 from bench.study.models.change import Changed, Searched
-from bench.study.models.comparison import Comparison
-from bench.study.models.diagnosis import Diagnosis
-from bench.study.models.ladder import Ladder
 from bench.study.models.study import Study, StudyName
-from bench.study.report.report import report_html
 from bench.study.suggestion.suggest import suggest
 from bench.study.suggestion.suggested import Suggested
 
-REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
@@ -115,17 +105,6 @@ class UseModel(BaseModel):
     model_id: int | None = Field(default=None, ge=1, description="null: the newest of the study")
 
 
-def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId) -> None:
-    """Dependency of what is computed from a study: it stays the same as long as no model is added or removed.
-
-    The catalogue of effects is part of it too, which is read at the start of the service.
-    """
-    found = store.study(study_id)
-    # what was kept with a model later, its error on the bench or in closed loop, is part of the ladder, too
-    models = [(model.id, model.created_utc, sorted(model.result)) for model in store.models(study_id)]
-    response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
-
-
 @router.post(
     "",
     status_code=201,
@@ -158,70 +137,6 @@ def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
     found, page = cut(rows[offset : offset + limit + 1], limit, offset)
     items = [StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in found]
     return Studies(items=items, **page)
-
-
-@router.get(
-    "/{study_id}",
-    summary="One study",
-    dependencies=[Depends(kept)],
-    responses=problems(404) | conditional.ANSWER,
-)
-async def one_study(request: Request, study_id: StudyId) -> Study:
-    """Its trials, their roles, and the newest model."""
-    return await in_lab(request, describe, study_id)
-
-
-@router.get(
-    "/{study_id}/compare",
-    summary="Measured against predicted",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
-async def compare_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
-    """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
-    return await in_lab(request, compare, study_id, model_id)
-
-
-@router.get(
-    "/{study_id}/diagnose",
-    summary="Which effect is missing",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
-async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
-    """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return await in_lab(request, diagnose, study_id, model_id)
-
-
-@router.get(
-    "/{study_id}/ladder",
-    summary="The error from model to model",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
-async def all_models(request: Request, study_id: StudyId) -> Ladder:
-    """Training and held-out error of every model of the study."""
-    return await in_lab(request, ladder, study_id)
-
-
-@router.get(
-    "/{study_id}/report",
-    summary="One HTML file to be filed",
-    response_class=Response,
-    responses={
-        200: {
-            "description": "Needs no network.",
-            "content": {"text/html": REPORT},
-            "headers": attachment("study-1.html"),
-        },
-        **problems(404, 422),
-    },
-)
-async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
-    """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
-    page = await in_lab(request, report_html, study_id, runner.configuration)
-    headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
-    return Response(page, media_type="text/html", headers=headers)
 
 
 @router.post(
