@@ -27,7 +27,7 @@ PACKAGES = ("bench", "compensator", "drivers", "sim_backend", "web")
 LONGEST_S = 300.0  # of one step, on a busy machine
 READ_FILES = """
 from bench.config.configuration import PRESETS, preset_configuration
-from bench.service.http.examples import examples
+from bench.service.http.openapi import examples
 from drivers.modbus.map_file import known_maps, load_map
 for preset in PRESETS.iterdir(): preset_configuration(preset.name.removesuffix(".toml"))
 for name in known_maps(): load_map(name)

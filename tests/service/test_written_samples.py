@@ -3,7 +3,7 @@
 import numpy as np
 
 from bench.service.http import written_samples
-from bench.service.http.written_samples import column, samples_json
+from bench.service.http.downloads import column, samples_json
 from bench.service.routes.trials import Samples
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from bench.study.suggestion.came import in_words, what_came
+from bench.study.suggestion.earlier_trials import in_words, what_came
 from bench.study.suggestion.rounds import MOST_FAILED, Ended, Tried, in_rounds
 from bench.study.suggestion.suggested import Came, PairOfRivals, Suggested
 

@@ -18,7 +18,7 @@ from bench.study import diagnose, extend
 from bench.study.errors import StudyError
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.suggestion import suggest
-from bench.study.suggestion.came import in_words, what_came
+from bench.study.suggestion.earlier_trials import in_words, what_came
 from bench.study.suggestion.rounds import Ended, in_rounds
 from bench.study.suggestion.suggested import Came, Suggested, SuggestedTrial
 from drivers.errors import DriveError

@@ -10,7 +10,7 @@ from bench.cli.operation.run import Pace, carry_out
 from bench.cli.output import Json, print_json, say, table
 
 if TYPE_CHECKING:
-    from bench.calibration.result import Curve, Estimate
+    from bench.calibration.curves import Curve, Estimate
     from bench.json_types import Value
     from bench.store import CalibrationRow
 
@@ -123,7 +123,7 @@ def _show(row: "CalibrationRow", as_json: bool) -> None:
 
         print_json(represent(row, None).model_dump(mode="json", exclude={"in_use"}))
         return
-    from bench.calibration.result import Curve, Estimate
+    from bench.calibration.curves import Curve, Estimate
 
     experiments = ", ".join(map(str, row.experiment_ids))
     say(f"calibration {row.id} of rig '{row.rig.get('name')}', from experiments {experiments} ({row.source})")

@@ -7,7 +7,7 @@ import numpy as np
 
 from bench.calibration import friction_of
 from bench.calibration.curve_data import Columns, CurvePicture, curve_data
-from bench.calibration.result import Curve, Estimate
+from bench.calibration.curves import Curve, Estimate
 from bench.config.friction_curves import FrictionCurve
 from bench.config.rig import Rig
 from bench.evaluation.paper.row import FIG_2, FIG_3, Row

@@ -12,7 +12,7 @@ from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from bench.runs import event_log
-from bench.service.auth.roles import Caller
+from bench.service.auth.tokens import Caller
 from bench.service.http.guard import SAFE_METHODS
 from bench.store.errors import StoreError
 from bench.store.tables.audit import AuditEntry

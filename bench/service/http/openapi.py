@@ -1,12 +1,30 @@
 """The interface's own description, completed with what holds for every route."""
 
+import json
+import re
 from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
 
-from bench.service.http.examples import examples, key
 from bench.service.http.problems import MEANINGS, MEDIA_TYPE, Problem
+
+FILE = Path(__file__).with_name("examples.json")
+
+
+@cache
+def examples() -> dict[str, Any]:
+    """By `key`."""
+    found: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
+    return found
+
+
+def key(method: str, path: str) -> str:
+    """A route, whatever the numbers in its path are called: `GET /api/v1/trials/{}`."""
+    return f"{method.upper()} {re.sub(r'{[a-z_]+}', '{}', path)}"
+
 
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
 Document = dict[str, Any]

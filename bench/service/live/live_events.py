@@ -15,10 +15,9 @@ from bench.control.drive_factory import is_simulated
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.runs.live import LiveRows
-from bench.service.http.written_samples import column
-from bench.service.live.live_rows import Rows, rows_of
+from bench.service.http.downloads import column
 from bench.service.live.replay import CHUNK_ROWS, GapError, Mark, Piece, missed, skipped_experiments
-from bench.service.live.status import Status, status_of
+from bench.service.live.status import Rows, Status, rows_of, status_of
 from bench.service.routes.leases import lease_now
 from bench.store import Store
 from bench.store.errors import StoreError

@@ -7,7 +7,31 @@ from pydantic import BaseModel, Field
 from bench.control.cycle import Reading
 from bench.json_types import Number
 from bench.runs.bench_control import RunnerStatus
+from bench.runs.live import LiveRows
+from bench.service.http.downloads import column
 from bench.service.routes.leases import LeaseNow
+
+
+class Rows(BaseModel):
+    """Rows since `after_row`. A quantity that was not measured is null."""
+
+    channels: list[str]
+    rows: list[list[float | None]]
+    last_row: int = Field(description="send it as `after_row` next time")
+    restarted: bool = Field(description="True where rows before these belong to something else or are gone")
+    trial_id: int | None = Field(description="of these rows; null where that is not known")
+
+
+def rows_of(found: LiveRows) -> Rows:
+    """Rows for JSON."""
+    return Rows(
+        channels=list(found.channels),
+        rows=[column(row) for row in found.rows],
+        last_row=found.last_row,
+        restarted=found.restarted,
+        trial_id=found.trial_id,
+    )
+
 
 FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run
 

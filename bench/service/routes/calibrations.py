@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench import calibration
 from bench.calibration.curve_data import Picture, curve_data
-from bench.calibration.result import Curve
+from bench.calibration.curves import Curve
 from bench.json_types import Json
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note

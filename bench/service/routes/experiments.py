@@ -18,10 +18,10 @@ from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
-from bench.service.auth.roles import Caller
+from bench.service.auth.tokens import Caller
 from bench.service.compute import at_bench
 from bench.service.http import conditional
-from bench.service.http.attachment import attachment
+from bench.service.http.downloads import attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import InvalidFieldsError, field_problems, problems
 from bench.service.http.repeated_start import Key, once

@@ -9,8 +9,7 @@ from pydantic import BaseModel
 from bench.control.drive_factory import is_simulated
 from bench.service.auth.access import allow_read
 from bench.service.live.live_events import LiveEvents
-from bench.service.live.live_rows import Rows, rows_of
-from bench.service.live.status import Status, status_of
+from bench.service.live.status import Rows, Status, rows_of, status_of
 from bench.service.routes.leases import LeaseOf, lease_now
 from bench.service.services import RunnerOf
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_lab
 from bench.service.http import conditional
-from bench.service.http.attachment import attachment
+from bench.service.http.downloads import attachment
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.study import error_map as study

@@ -12,10 +12,9 @@ from bench.json_types import Json
 from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
-from bench.service.http.attachment import attachment
+from bench.service.http.downloads import attachment, samples_json
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
-from bench.service.http.written_samples import samples_json
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
 from bench.store.tables.trial_search import TrialQuery

@@ -8,7 +8,7 @@ from bench.store import Store
 from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis, ProvisionalTerm, Ranked
 from bench.study.models.study import Study
-from bench.study.report.cells import cell, number, percent
+from bench.study.report.model_sections import cell, number, percent
 from bench.study.suggestion.suggested import Suggested
 from compensator.lab.chance import chance_cell
 

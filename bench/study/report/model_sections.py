@@ -9,8 +9,30 @@ from bench.study.models.closed_loop import ClosedLoop, LoopError, TrialInLoop
 from bench.study.models.comparison import AtRest, Comparison, FittedParameter, ResidualAgainst, TrialError
 from bench.study.models.ladder import Ladder, Rung
 from bench.study.models.study import Study
-from bench.study.report.cells import cell, number, percent
 from compensator.lab.chance import chance_cell
+
+NO_SHARE = 1e-7  # less is rounding
+SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
+
+
+def number(value: float | None) -> float | None:
+    """NaN as None."""
+    return None if value is None or not isfinite(value) else value
+
+
+def percent(share: float | None) -> str:
+    """A share as per cent; a small one by its first two digits."""
+    if share is None or not isfinite(share):
+        return "-"
+    return f"{100 * share:.2g}%" if NO_SHARE < abs(share) < SMALL_SHARE else f"{share:.2%}"
+
+
+def cell(value: object) -> str:
+    """A value of any kind, short."""
+    if isinstance(value, list | tuple):
+        return " ".join(map(cell, value)) or "none"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
 
 SHOWN_TRIALS = 2  # over time: the worst one that was fitted, and the worst one held out
 

@@ -11,7 +11,7 @@ from bench.study.extend import note_for
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
 from bench.study.selection import Criterion
-from bench.study.suggestion.kept_out import kept_out, without
+from bench.study.suggestion.earlier_trials import kept_out, without
 from bench.study.suggestion.options import Choice, choices
 from bench.study.suggestion.predict import choose
 from bench.study.suggestion.suggested import KeptOut, PairOfRivals, Suggested, SuggestedTrial

@@ -15,11 +15,11 @@ from compensator.lab.at_rest.breakaway_regression import (
 )
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.chance import chance_in_words
-from compensator.lab.diagnosis.breakaway_picture import picture_of_breakaway
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE, SIGNIFICANT, is_confirmed
 from compensator.lab.diagnosis.families import EXAMINED, Answer
 from compensator.lab.diagnosis.note import Note
+from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.errors import NotApplicableError

@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.best_shapes import best_shapes
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
     as_in_the_ladder,
+    best_shapes,
     examine,
     is_confirmed,
     is_sure,

@@ -16,7 +16,7 @@ from compensator.lab.left_over.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.evidence import least_p_value
-from compensator.lab.screening.hysteresis import DRIVER as HYSTERESIS
+from compensator.lab.screening.generic import HYSTERESIS_DRIVER as HYSTERESIS
 
 MOST_NAMES = 3
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."

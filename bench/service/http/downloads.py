@@ -5,10 +5,22 @@ or two, from STOP, too; between pieces others have their turn.
 """
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
+
+
+def attachment(name: str) -> dict[str, Any]:
+    """As the description of an answer has it, with a name for example."""
+    said = {
+        "schema": {"type": "string"},
+        "description": "name of the file",
+        "example": f'attachment; filename="{name}"',
+    }
+    return {"Content-Disposition": said}
+
 
 AT_ONCE = 10_000  # numbers
 
