@@ -251,9 +251,11 @@ def _unused(fit: Fit) -> list[str]:
 
 def _same_samples(fit: Fit) -> list[str]:
     """Copies are not independent: a trial that judges its own copy proves nothing."""
-    names: dict[bytes, list[str]] = {}
+    names: dict[tuple[bytes, bytes], list[str]] = {}
     for trial in fit.dataset.trials:
-        names.setdefault(trial.signals.effort.tobytes(), []).append(f"'{trial.signals.recording.name}'")
+        # a commanded effort is the same in every repeat: the motion tells whether a trial is one
+        samples = trial.signals.effort.tobytes(), trial.signals.position.tobytes()
+        names.setdefault(samples, []).append(f"'{trial.signals.recording.name}'")
     return [
         f"trials {', '.join(same)} hold the same samples: held-out errors and intervals look better than they are; "
         "keep one of them"
