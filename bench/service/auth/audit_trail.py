@@ -140,7 +140,7 @@ def _entry(scope: Scope, status: int) -> AuditEntry:
     )
 
 
-def _facts(entry: AuditEntry) -> dict[str, Any]:
+def _facts(entry: AuditEntry) -> dict[str, object]:
     """As the log has it, which stamps its lines itself."""
     return {name: value for name, value in asdict(entry).items() if name != "at_utc"}
 

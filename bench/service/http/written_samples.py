@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from bench.service.http.json_numbers import column
-
 AT_ONCE = 10_000  # numbers
 
 
@@ -31,3 +29,11 @@ def samples_json(trial_id: int, rows_recorded: int, channels: Mapping[str, NDArr
 def _pieces(values: NDArray[np.float64]) -> Iterator[bytes]:
     for start in range(0, len(values), AT_ONCE):
         yield to_json(column(values[start : start + AT_ONCE]))[1:-1]
+
+
+def column(values: NDArray[np.float64]) -> list[float | None]:
+    """A column as JSON numbers; NaN and infinities become None."""
+    listed: list[float | None] = values.tolist()
+    for index in np.flatnonzero(~np.isfinite(values)).tolist():
+        listed[index] = None
+    return listed

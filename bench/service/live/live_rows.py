@@ -3,7 +3,7 @@
 from pydantic import BaseModel, Field
 
 from bench.runs.live import LiveRows
-from bench.service.http.json_numbers import column
+from bench.service.http.written_samples import column
 
 
 class Rows(BaseModel):

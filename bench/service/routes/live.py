@@ -64,5 +64,5 @@ async def live(
 def now(runner: RunnerOf, lease: LeaseOf, after_row: AfterRow = -1, limit: MostRows = MOST_ROWS) -> LiveNow:
     """For programs that poll. Send `last_row` back as `after_row`."""
     simulated = is_simulated(runner.configuration)
-    status = Status.model_validate(status_of(runner.status(), simulated, lease_now(lease.current())))
+    status = status_of(runner.status(), simulated, lease_now(lease.current()))
     return LiveNow(status=status, rows=rows_of(runner.live(after_row, limit)))

@@ -1,9 +1,9 @@
 """Trials that were suggested before and did not come to their end: what trips once trips again."""
 
 import json
-from typing import Any
 
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.json_types import Values
 from bench.store import Experiment, Store
 from bench.study.extend import note_for
 from bench.study.suggestion.options import Choice
@@ -30,10 +30,10 @@ def without(choices: list[Choice], experiments: list[Experiment]) -> list[Choice
     return [one for one in choices if _key(one.kind, _all_parameters(one)) not in known]
 
 
-def _all_parameters(choice: Choice) -> dict[str, Any]:
+def _all_parameters(choice: Choice) -> Values:
     """Also those that do not differ from the defaults, as they are kept with an experiment."""
     return parse_parameters(find_kind(choice.kind), choice.parameters).model_dump(mode="json")
 
 
-def _key(kind: str, parameters: dict[str, Any]) -> str:
+def _key(kind: str, parameters: Values) -> str:
     return json.dumps([kind, parameters], sort_keys=True)

@@ -1,13 +1,13 @@
 """What the routes of the queue take and answer."""
 
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from bench.json_types import Json
 from bench.runs.queue import QueueState
 from bench.runs.queue.campaign import MOST_ITEMS
-from bench.service.http.json_numbers import plain
 from bench.store.tables.queue import NewItem, QueueItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
 
@@ -27,7 +27,7 @@ class NewQueueItem(BaseModel):
         },
     )
     kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
-    parameters: dict[str, Any] = Field(default={}, description="what differs from the defaults, SI")
+    parameters: Json = Field(default={}, description="what differs from the defaults, SI")
     operator: Operator = ""
     note: Note = ""
     tags: Tags = []
@@ -57,7 +57,7 @@ class Item(BaseModel):
     item_id: int
     campaign_id: int | None
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     operator: str
     note: str
     tags: list[str]
@@ -100,7 +100,7 @@ class PlannedItem(BaseModel):
     """One experiment of a campaign."""
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     loads_kg: list[float] = Field(description="that are hung in turn")
     duration_s: float
 
@@ -122,8 +122,21 @@ class StartedCampaign(Plan):
 
 def item_of(found: QueueItem) -> Item:
     """An item as it is answered."""
-    fields = {name: plain(getattr(found, name)) for name in Item.model_fields if name != "item_id"}
-    return Item(item_id=found.id, **fields)
+    return Item(
+        item_id=found.id,
+        campaign_id=found.campaign_id,
+        kind=found.kind,
+        parameters=found.parameters,
+        operator=found.operator,
+        note=found.note,
+        tags=list(found.tags),
+        duration_s=found.duration_s,
+        state=found.state,
+        reason=found.reason,
+        experiment_id=found.experiment_id,
+        created_utc=found.created_utc,
+        finished_utc=found.finished_utc,
+    )
 
 
 def queue_of(found: QueueState, ended: list[QueueItem]) -> Queue:
@@ -143,4 +156,4 @@ def queue_of(found: QueueState, ended: list[QueueItem]) -> Queue:
 def planned(item: NewItem) -> PlannedItem:
     """An item of a plan as it is answered."""
     loads_kg = [float(load) for load, _ in item.loads]
-    return PlannedItem(kind=item.kind, parameters=plain(item.parameters), loads_kg=loads_kg, duration_s=item.duration_s)
+    return PlannedItem(kind=item.kind, parameters=item.parameters, loads_kg=loads_kg, duration_s=item.duration_s)
