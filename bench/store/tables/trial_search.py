@@ -118,8 +118,8 @@ def _like(connection: Connection, column: ColumnElement[str], word: str) -> Colu
 def _about(column: ColumnElement[float], number: float, key: str) -> list[ColumnElement[bool]]:
     """A condition is the number, as it is rounded where it is shown: in SI, or in grams and degrees."""
     scale = next((scale for suffix, scale in SHOWN_AS.items() if key.endswith(suffix)), 1.0)
-    values = {number, number * scale}
-    return [column.between(*sorted((value * (1 - ROUNDING), value * (1 + ROUNDING)))) for value in values]
+    spans = [sorted((value * (1 - ROUNDING), value * (1 + ROUNDING))) for value in {number, number * scale}]
+    return [column.between(low, high) for low, high in spans]
 
 
 def _number(word: str) -> float | None:
