@@ -18,6 +18,7 @@ _BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (C
 _NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
 _NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
 _ABSENT: Final = (0x0602_0000, 0x0609_0011)  # no such object, no such subindex
+_WRITE_ONLY: Final = 0x0601_0001
 
 
 class ObjectRefusedError(DriveConfigurationError):
@@ -25,11 +26,23 @@ class ObjectRefusedError(DriveConfigurationError):
 
     Attributes:
         code: abort code of CiA 301, 7.2.4.3.17.
+        why: the code in words.
     """
 
-    def __init__(self, device: str, message: str, code: int) -> None:
+    def __init__(self, device: str, message: str, code: int, why: str = "") -> None:
         super().__init__(device, message)
         self.code = code
+        self.why = why or message
+
+    @property
+    def write_only(self) -> bool:
+        """Whether the object is there and may not be read."""
+        return self.code == _WRITE_ONLY
+
+    @property
+    def absent(self) -> bool:
+        """Whether the drive says that it has no such object."""
+        return self.code in _ABSENT
 
 
 class ObjectAccess:
@@ -64,13 +77,11 @@ class ObjectAccess:
             ) from error
 
     def read_if_present(self, item: DriveObject) -> int | None:
-        """Value of an object [counts], None where the drive does not have it."""
+        """Value of an object [counts], None where the drive does not tell it, for whatever reason."""
         try:
             return self.read(item)
-        except ObjectRefusedError as refusal:
-            if refusal.code in _ABSENT:
-                return None
-            raise
+        except ObjectRefusedError:
+            return None
 
     def read_text(self, index: int) -> str:
         """A visible string; empty where the drive does not have it."""
@@ -100,7 +111,9 @@ class ObjectAccess:
                 self._client.download(item.index, item.subindex, data)
                 return b""
             except SdoAbortedError as error:
-                raise ObjectRefusedError(self._device, f"{what} {item}: refused, {error}", error.code) from error
+                raise ObjectRefusedError(
+                    self._device, f"{what} {item}: refused, {error}", error.code, str(error)
+                ) from error
             except SdoCommunicationError as error:
                 problem = error
         raise DriveConnectionError(
