@@ -37,7 +37,7 @@ test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock 
 report: $(STAMP) ## has a change made the bench worse? beside bench-baseline.json, as table, JUnit XML and HTML in out/
 	$(BIN)/friction-bench bench-report --junit out/bench-report.xml --html out/bench-report.html
 
-screenshots: $(STAMP) ## the walk of docs/walk.md in Chromium, every view, light and dark: pictures in out/walk
+screenshots: $(STAMP) ## the walk of docs/tutorial/walk.md in Chromium, every view, light and dark: pictures in out/walk
 	$(BIN)/python -m tests.browser.screenshots out/walk
 
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs

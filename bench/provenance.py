@@ -11,9 +11,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from bench import __version__
 from drivers.contract import Description
 
-DISTRIBUTION = "friction-bench"
 LIBRARIES = (
     "numpy", "scipy", "numba", "pydantic", "sqlalchemy", "alembic", "tsdownsample",
     "python-can", "canopen", "pyserial", "pymodbus",
@@ -48,7 +48,7 @@ def provenance(
 @functools.cache
 def _software() -> dict[str, Any]:
     return {
-        "version": _version(DISTRIBUTION),
+        "version": __version__,
         **_commit(),
         "python": platform.python_version(),
         "libraries": {name: found for name in LIBRARIES if (found := _version(name)) is not None},

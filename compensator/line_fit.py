@@ -1,13 +1,29 @@
 """Ordinary least squares of a few coefficients, with 95 % intervals of them and of their quotients."""
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, nan
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import stdtrit
 
-from compensator.interval import CONFIDENCE, Interval
 from compensator.motion.kinetic_friction import FloatArray
+
+CONFIDENCE = 0.95
+
+
+class Interval(NamedTuple):
+    """One identified parameter.
+
+    Attributes:
+        value, low, high: in the parameter's unit; low and high are NaN where the data do not determine it.
+        note: "" or why the value is to be read with care.
+    """
+
+    value: float
+    low: float = nan
+    high: float = nan
+    note: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ itself where no command comes for `Description.watchdog_s`.
 """
 
 from dataclasses import dataclass
-from enum import Enum, IntEnum
+from enum import Enum, IntEnum, StrEnum
+from math import nan
 from typing import NamedTuple, Protocol
 
 
@@ -30,6 +31,14 @@ class Status(IntEnum):
     ENABLED = 1
     QUICK_STOP = 2
     FAULT = 3
+
+
+class Watchdog(StrEnum):
+    """How sure it is that the drive stops by itself where its host falls silent."""
+
+    PROVEN = "proven"  # it was seen: a demand, silence, and then no output, before anything else was written
+    CONFIGURED = "configured, not proven"  # set and read back, or vouched for by whoever set it in the drive
+    NONE = "none"  # the drive has nothing that guards against it
 
 
 class Command(NamedTuple):
@@ -98,6 +107,23 @@ class Sample(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class Inspection:
+    """What a drive says of itself while nothing is written to it.
+
+    Attributes:
+        status: of the power stage, by the drive's own word; what it was told last where it does not tell.
+        fault: in words; "" where it reports none.
+        duty: applied PWM duty, -1 .. 1; NaN where it is not measured.
+        current_a: motor current [A]; NaN where it is not measured.
+    """
+
+    status: Status
+    fault: str = ""
+    duty: float = nan
+    current_a: float = nan
+
+
+@dataclass(frozen=True, slots=True)
 class Description:
     """Identity and capabilities of a drive, as found at connect.
 
@@ -111,6 +137,7 @@ class Description:
         max_rate_hz: highest cycle rate that the drive sustains [Hz].
         watchdog_s: time after the last command at which the drive stops by itself [s].
         longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
+        watchdog: how sure it is that the drive stops by itself then.
     """
 
     device: str
@@ -126,6 +153,7 @@ class Description:
     watchdog_s: float
     longest_call_s: float = 0.0
     longest_open_s: float = 0.0
+    watchdog: Watchdog = Watchdog.CONFIGURED
 
 
 class Drive(Protocol):
@@ -163,8 +191,16 @@ class Drive(Protocol):
     def quick_stop(self) -> None:
         """Brake as fast as the drive can, then power off."""
 
+    def inspect(self) -> Inspection:
+        """Ask for state, fault and applied output, and write nothing; a watchdog that ran out stays as it is.
+
+        Raises:
+            DriveStateError: it is not open.
+            DriveConnectionError: no valid answer within the time limit.
+        """
+
     def clear_fault(self) -> None:
-        """Acknowledge a fault. The drive is left disabled.
+        """Acknowledge a fault; `inspect` says which. The drive is left disabled.
 
         Raises:
             DriveFault: the cause is still there, and so is the fault.

@@ -26,13 +26,12 @@ class ExitCode(IntEnum):
 
 
 HELP = """\
-**Exit codes:** 0 done · 1 the experiment did not complete (failed, tripped, stopped by somebody) · 2 wrong usage ·
-3 refused: bad input, outside the limits, no such thing, bench busy · 4 the drive does not answer or has a fault ·
-5 the service cannot be reached or refuses the token · 130 ended by Ctrl-C · 143 ended by SIGTERM
+Exit codes: 0 done; 1 the experiment did not complete (failed, tripped, stopped by somebody); \
+2 wrong usage; 3 refused: bad input, outside the limits, no such thing, bench busy; 4 the drive does not answer or has \
+a fault; 5 the service cannot be reached or refuses the token; 130 ended by Ctrl-C; 143 ended by SIGTERM.
 
-**Environment:** FRICTION_BENCH_CONFIG (as --config) · FRICTION_BENCH_STORE (as --store) ·
-FRICTION_BENCH_LOG (as --log) · FRICTION_BENCH_URL (service for `status` and `stop`) ·
-FRICTION_BENCH_TOKEN (token of the service)
+Environment: FRICTION_BENCH_CONFIG (as --config), FRICTION_BENCH_STORE (as --store), FRICTION_BENCH_LOG (as --log), \
+FRICTION_BENCH_URL (service for `status` and `stop`), FRICTION_BENCH_TOKEN (token of the service).
 """
 
 

@@ -5,14 +5,14 @@ import math
 from collections.abc import Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 from bench.errors import BenchError
+
+if TYPE_CHECKING:  # rich is imported when something is printed: `--help` starts at once
+    from rich.console import Console
 
 
 class FileError(BenchError, OSError):
@@ -26,8 +26,10 @@ NO_SHARE = 1e-7  # less is rounding
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
 
 
-def console() -> Console:
+def console() -> "Console":
     """The terminal. Made at each call, because stdout may have been exchanged since the last."""
+    from rich.console import Console
+
     plain = Console()
     # a pipe has no width of its own; do not cut lines that a program will read
     return plain if plain.is_terminal else Console(width=_MOST_COLUMNS)
@@ -35,16 +37,24 @@ def console() -> Console:
 
 def say(sentence: str) -> None:
     """One sentence."""
+    from rich.markup import escape
+
     console().print(escape(sentence), highlight=False)
 
 
 def complain(sentence: str) -> None:
     """One error, on stderr."""
+    from rich.console import Console
+    from rich.markup import escape
+
     Console(stderr=True, soft_wrap=True).print(f"[bold red]error:[/] {escape(sentence)}", highlight=False)
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """A table; columns whose name ends in '#' hold numbers and stand to the right."""
+    from rich.markup import escape
+    from rich.table import Table
+
     made = Table(title=escape(title), title_justify="left", header_style="bold")
     for name in columns:
         made.add_column(escape(name.removesuffix("#")), justify="right" if name.endswith("#") else "left")

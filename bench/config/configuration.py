@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator
 
-from bench.config.drives.settings import DriveSettings
-from bench.config.drives.simulated import SimulatedDriveSettings
+from bench.config.drives.real import RealDriveSettings
+from bench.config.drives.registry import AnyDriveSettings, default_drive_settings
 from bench.config.friction_curves import FrictionSettings
 from bench.config.master import MasterSettings
 from bench.config.quantities import quantity
@@ -98,7 +98,7 @@ class BenchConfiguration(Section):
 
     name: str = Field(description="Name of the bench")
     rig: Rig
-    drive: DriveSettings = SimulatedDriveSettings()
+    drive: AnyDriveSettings = Field(default_factory=default_drive_settings)
     control: ControlSettings = ControlSettings()
     limits: Limits = Limits()
     motion: MotionSettings = MotionSettings()
@@ -124,7 +124,7 @@ class BenchConfiguration(Section):
                 f"bench '{self.name}' has one joint, and a master is needed too: add [master.drive] to bench.toml, and "
                 "[master.rig] where the master is not built as the slave is"
             )
-        if (self.master.drive.kind == "sim") != (self.drive.kind == "sim"):
+        if isinstance(self.master.drive, RealDriveSettings) != isinstance(self.drive, RealDriveSettings):
             raise ConfigurationError(
                 f"master.drive.kind is '{self.master.drive.kind}' and drive.kind is '{self.drive.kind}'; a simulated "
                 "joint and a real one have no common time. Choose 'sim' for both or for neither"

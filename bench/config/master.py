@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from bench.config.drives.settings import DriveSettings
+from bench.config.drives.registry import AnyDriveSettings
 from bench.config.quantities import quantity
 from bench.config.rig import Rig, Section
 from bench.control.limits import Limits
@@ -22,6 +22,6 @@ class MasterSettings(Section):
     """A second joint, with the operator's hand on its arm. Its motor makes torque; the hand makes the motion."""
 
     rig: Rig | None = Field(default=None, description="The master's joint; that of the slave where left out")
-    drive: DriveSettings = Field(description="The master's drive, as in [drive]")
+    drive: AnyDriveSettings = Field(description="The master's drive, as in [drive]")
     limits: Limits = Limits()
     reflection: ReflectionSettings = ReflectionSettings()

@@ -1,11 +1,12 @@
 """Who hangs the load on the arm: the simulation itself, or a person who is asked."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from bench.errors import ExperimentError
 
 
+@runtime_checkable
 class Technician(Protocol):
     """Prepares the arm for a trial. Called with the power off."""
 

@@ -4,8 +4,7 @@ from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping, read_mapping
 from bench.recording_set.parquet import parquet_chunks
 from bench.recording_set.read import read_recording_set
-from bench.recording_set.recording_set import RecordingSet
-from bench.recording_set.rig_file import read_rig
+from bench.recording_set.recording_set import RecordingSet, read_rig
 from bench.recording_set.stream import RecordingStream, stream_of, stream_of_trial
 from bench.recording_set.text.csv_text import csv_chunks
 from bench.recording_set.transfer import export_experiment, export_parquet, import_recording_set

@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.stream import Piece, RecordingStream
-from bench.recording_set.text import events as event_cells
+from bench.recording_set.text.values import encode_events
 from compensator.lab.recordings.channels import EVENT_COLUMN
 from compensator.lab.recordings.recording import Condition
 
@@ -84,7 +84,7 @@ class _Layout:
     def _events(self, piece: Piece) -> Any:
         cells: list[str | None] = [None] * piece.columns.shape[1]
         for row, found in piece.events.items():
-            cells[row] = event_cells.encode(found, float(piece.time_s[row]))
+            cells[row] = encode_events(found, float(piece.time_s[row]))
         return self._pa.array(cells, self._pa.string())
 
     def _constant(self, kind: Any, value: object, count: int) -> Any:

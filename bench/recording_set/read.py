@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bench.config.rig import Rig
-from bench.recording_set import known_conditions
 from bench.recording_set.container import Container, check_name, open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping
@@ -14,7 +13,14 @@ from bench.recording_set.recording_csv import read_recording_csv
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.text.table import Table, place
 from bench.recording_set.text.toml_file import MOST_BYTES, parse_toml
-from bench.recording_set.trials_csv import DEFAULT_KIND, TRIALS_FILE, TrialEntry, name_of, read_trials_csv
+from bench.recording_set.trials_csv import (
+    DEFAULT_KIND,
+    TRIALS_FILE,
+    TrialEntry,
+    condition_problem,
+    name_of,
+    read_trials_csv,
+)
 from compensator.lab.recordings.recording import Recording
 
 RIG_FILE = "rig.toml"
@@ -74,7 +80,7 @@ def _mapped(mapping: Mapping) -> list[TrialEntry]:
     for trial in mapping.trials:
         check_name(trial.file, source)
         for name, value in trial.conditions.items():
-            if problem := known_conditions.problem(name, value):
+            if problem := condition_problem(name, value):
                 raise RecordingSetError(f"{source}, file '{trial.file}'", problem, column=name)
     return [TrialEntry(trial.file, name_of(trial.file), trial.kind, dict(trial.conditions)) for trial in mapping.trials]
 

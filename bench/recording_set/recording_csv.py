@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from bench.recording_set.mapping import Mapping
-from bench.recording_set.text import events as event_cells
 from bench.recording_set.text import numbers
 from bench.recording_set.text.columns import Use, plan
 from bench.recording_set.text.table import Chunk, Row, Table
+from bench.recording_set.text.values import decode_events
 from compensator.lab.recordings.recording import Event, FloatArray
 
 MOST_ROWS = 50_000_000
@@ -71,7 +71,7 @@ def _column(chunk: Chunk, rows: Sequence[Row], use: Use, decimal: str) -> FloatA
 def _events(rows: Sequence[Row], index: int, time_s: FloatArray) -> Iterator[Event]:
     for row, cells in enumerate(rows):
         if cells[index]:
-            yield from event_cells.decode(cells[index], float(time_s[row]))
+            yield from decode_events(cells[index], float(time_s[row]))
 
 
 def _check_finite(chunk: Chunk, values: FloatArray, column: str) -> None:

@@ -1,8 +1,11 @@
 """A recording set in memory."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from bench.config.rig import Rig
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.text.toml_file import parse_toml
 from compensator.lab.recordings.recording import Recording
 
 
@@ -19,3 +22,15 @@ class RecordingSet:
     name: str
     rig: Rig
     recordings: list[Recording]
+
+
+def read_rig(path: Path) -> Rig:
+    """Read a rig file.
+
+    Raises:
+        RecordingSetError: not there, no TOML, an unknown key or an impossible value; names file, line and key.
+    """
+    try:
+        return parse_toml(path.read_bytes(), Rig, path.name)
+    except OSError as error:
+        raise RecordingSetError(str(path), f"cannot be read: {error.strerror}; name a rig file") from error

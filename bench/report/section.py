@@ -2,8 +2,111 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
 
-from bench.report.figure import Figure
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+_DARK, _LIGHT = (68, 1, 84), (253, 190, 60)  # of a row of shades: from a dark violet over green to a light orange
+_MIDDLE = (33, 145, 140)
+MANY_POINTS = 30
+Numbers = Sequence[float | None]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through points; dashed for references. Without a colour it has the next one."""
+
+    name: str
+    x: Numbers
+    y: Numbers
+    dashed: bool = False
+    colour: str = ""
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points, with bars from low to high where given. Without a colour they have the next one."""
+
+    name: str
+    x: Numbers
+    y: Numbers
+    low: Sequence[float] = ()
+    high: Sequence[float] = ()
+    colour: str = ""
+    in_legend: bool = True
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Bars over names, with error bars from low to high where given."""
+
+    name: str
+    x: Sequence[str]
+    y: Sequence[float]
+    low: Sequence[float] = ()
+    high: Sequence[float] = ()
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One plot: title, axis titles with units, and what is drawn."""
+
+    title: str
+    x_title: str
+    y_title: str
+    drawn: Sequence[Line | Points | Bars]
+
+    def to_plotly(self) -> dict[str, Any]:
+        """Data and layout as Plotly takes them."""
+        traces = [_trace(one, COLOURS[i % len(COLOURS)]) for i, one in enumerate(self.drawn)]
+        return {
+            "data": traces,
+            "layout": {
+                "title": {"text": self.title},
+                "xaxis": {"title": {"text": self.x_title}},
+                "yaxis": {"title": {"text": self.y_title}},
+                "legend": {"orientation": "h", "y": -0.25},
+                "margin": {"l": 70, "r": 20, "t": 50, "b": 60},
+                "template": "none",
+            },
+        }
+
+
+def shades(count: int) -> list[str]:
+    """Colours of a quantity that rises, from dark to light: told apart by lightness too."""
+    return [_shade(index / max(count - 1, 1)) for index in range(count)]
+
+
+def _shade(share: float) -> str:
+    low, high, part = (_DARK, _MIDDLE, 2.0 * share) if share < 0.5 else (_MIDDLE, _LIGHT, 2.0 * share - 1.0)
+    return "#" + "".join(f"{round(one + part * (two - one)):02x}" for one, two in zip(low, high, strict=True))
+
+
+def _length(low: float, high: float) -> float | None:
+    """Of one side of a bar; None where it is not known: a mean of one value."""
+    return high - low if isfinite(high - low) else None
+
+
+def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
+    common: dict[str, Any] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
+    if not isinstance(one, Bars):
+        colour = one.colour or colour
+    if isinstance(one, Line):
+        dash = "dash" if one.dashed else "solid"
+        return {**common, "type": "scatter", "mode": "lines", "line": {"color": colour, "dash": dash}}
+    if len(one.low):
+        measured = [float(value or 0.0) for value in one.y]
+        common["error_y"] = {
+            "type": "data",
+            "symmetric": False,
+            "array": [_length(value, high) for high, value in zip(one.high, measured, strict=True)],
+            "arrayminus": [_length(low, value) for low, value in zip(one.low, measured, strict=True)],
+        }
+    if isinstance(one, Points):
+        # many points in one figure: small ones
+        marker = {"color": colour, "size": 7 if len(one.x) <= MANY_POINTS else 5}
+        return {**common, "type": "scatter", "mode": "markers", "showlegend": one.in_legend, "marker": marker}
+    return {**common, "type": "bar", "marker": {"color": colour}}
 
 
 @dataclass(frozen=True)

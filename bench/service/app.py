@@ -4,11 +4,11 @@ import asyncio
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from importlib.metadata import version
 
 import anyio.to_thread
 from fastapi import APIRouter, FastAPI
 
+from bench import __version__
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
@@ -130,7 +130,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
 
     app = FastAPI(
         title="friction-bench",
-        version=version("friction-bench"),
+        version=__version__,
         summary="Bench driver and test service for a geared servo joint",
         description=DESCRIPTION,
         openapi_url=f"{PREFIX}/openapi.json",

@@ -4,13 +4,13 @@ import signal
 import socket
 from collections.abc import Callable
 from contextlib import closing
-from importlib.metadata import version
 from types import FrameType
 from typing import NamedTuple
 
 import uvicorn
 from fastapi import FastAPI
 
+from bench import __version__
 from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
 from bench.runs import event_log
@@ -116,7 +116,7 @@ def serve_bench(
                     for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
                         say(line)
                     facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}
-                    event_log.note("service started", **facts, version=version("friction-bench"))
+                    event_log.note("service started", **facts, version=__version__)
                     _serve(BenchServer(app, runner, tls), listener)
     event_log.note("service ended")
 

@@ -1,10 +1,10 @@
 """Bring a database to the tables of this version. Alembic is only loaded when there is something to do."""
 
-from importlib.metadata import version
 from pathlib import Path
 
 from sqlalchemy import Connection, inspect, text
 
+from bench import __version__
 from bench.store.database import Database
 from bench.store.errors import StoreFileError, StoreVersionError
 
@@ -47,7 +47,7 @@ def _upgrade(connection: Connection, where: str, found: str | None, target: str 
     known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
     if found is not None and found not in known:
         raise StoreVersionError(
-            f"store '{where}' was made by a newer version (schema {found}; version {version('friction-bench')} knows "
+            f"store '{where}' was made by a newer version (schema {found}; version {__version__} knows "
             f"up to {HEAD}); install the newer version, or name another"
         )
     command.upgrade(config, target)

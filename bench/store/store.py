@@ -7,14 +7,26 @@ from bench.store.database import Database
 from bench.store.experiment_store import ExperimentStore
 from bench.store.migration import migrate
 from bench.store.study_store import StudyStore
-from bench.store.tables.access_records import AccessRecords
+from bench.store.tables.access_tokens import AccessTokens
+from bench.store.tables.audit import Audit
 from bench.store.tables.calibrations import Calibrations
 from bench.store.tables.queue import QueueTable
+from bench.store.tables.start_keys import StartKeys
 from bench.store.trial_store import TrialStore
 from bench.store.upkeep.custody import Custody
 from bench.store.upkeep.retention import Retention
 from bench.store.upkeep.space import SpaceNeed
 from bench.store.upkeep.upkeep import Upkeep
+
+
+class AccessRecords:
+    """`Store.access`."""
+
+    def __init__(self, database: Database) -> None:
+        self.tokens = AccessTokens(database)
+        self.audit = Audit(database)
+        self.start_keys = StartKeys(database)
+
 
 BUSY_TIMEOUT_S = 10.0
 

@@ -120,8 +120,15 @@ def facts_of(rig: Rig) -> Facts:
         arm_inertia_kg_m2=rig.arm.inertia_kg_m2,
         arm_moment_n_m=_arm_moment_n_m(rig),
         supply_is_nominal=rig.supply.is_nominal or None,
+        position_count=_position_count_rad(rig),
         effort=rig.effort.quantity if rig.effort else None,
     )
+
+
+def _position_count_rad(rig: Rig) -> float | None:
+    """What one count of the sensor is at the joint; None of a linear joint, or where the rig does not tell."""
+    counts, ratio = rig.sensor.counts_per_turn, rig.gear.ratio
+    return None if counts is None or ratio is None or rig.joint == "linear" else 2.0 * np.pi / (counts * ratio)
 
 
 def _arm_moment_n_m(rig: Rig) -> float | None:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from compensator.interval import CONFIDENCE, Interval
+from compensator.line_fit import CONFIDENCE, Interval
 from compensator.motion.calibration_points import check_accelerations, check_points
 from compensator.motion.curve_regression import Solution, solve
 from compensator.motion.kinetic_friction import KineticFriction

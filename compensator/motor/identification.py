@@ -24,8 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from compensator.errors import CalibrationError
-from compensator.interval import Interval
-from compensator.line_fit import fit_line
+from compensator.line_fit import Interval, fit_line
 from compensator.motion.kinetic_friction import FloatArray
 
 LEAST_SAMPLES = 5  # three parameters and some to tell how sure they are

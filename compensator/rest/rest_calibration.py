@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtri, stdtrit
 
 from compensator.errors import CalibrationError
-from compensator.interval import CONFIDENCE, Interval
+from compensator.line_fit import CONFIDENCE, Interval
 from compensator.motion.gear_loss import GearLoss
 from compensator.rest.breakaway_fit import BreakawayFit
 

@@ -22,7 +22,7 @@ from math import isfinite, isnan, nan
 from typing import NamedTuple
 
 from compensator.errors import ModelParameterError, NoEstimateError
-from compensator.rest.breakaway import BreakawayEstimate, estimate
+from compensator.rest.breakaway_fit import BreakawayEstimate, estimate
 
 
 class Phase(Enum):

@@ -1,7 +1,7 @@
 """One friction curve, whatever the load, at the measured speed; nothing at rest, where a speed tells nothing."""
 
 from compensator.motion.load_estimate import LoadEstimate, Observation
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.rivals.load_observer import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 

@@ -12,8 +12,7 @@ from math import copysign, exp
 from typing import NamedTuple
 
 from compensator.motion.load_estimate import LoadEstimate, Observation
-from compensator.rivals.load_observer import ObserverState, observe
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.rivals.load_observer import ObserverState, SpeedState, follow, observe
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 

@@ -10,7 +10,7 @@ from math import copysign, nan
 from typing import NamedTuple
 
 from compensator.motion.load_estimate import LoadEstimate, Observation
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.rivals.load_observer import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 CREEP_RAD_S = 1e-6  # of the motor: the curve's value next to speed 0

@@ -12,7 +12,7 @@ from math import copysign
 from typing import NamedTuple
 
 from compensator.motion.load_estimate import LoadEstimate, Observation
-from compensator.rivals.measured_speed import SpeedState, follow
+from compensator.rivals.load_observer import SpeedState, follow
 from compensator.rivals.rival import Knowledge, Rival, estimate
 
 

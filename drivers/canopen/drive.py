@@ -3,15 +3,16 @@
 from contextlib import suppress
 
 from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.objects import STATUSWORD
 from drivers.canopen.cia301.period import check_bus_load, check_period
 from drivers.canopen.cia301.sync_cycle import CycleCounts
 from drivers.canopen.cia402.demand import Demand
 from drivers.canopen.cia402.power_stage import PowerStage
-from drivers.canopen.cia402.state_machine import State, status_of, towards_standstill
+from drivers.canopen.cia402.state_machine import State, state_of, status_of, towards_standstill
 from drivers.canopen.description import describe
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
-from drivers.contract import Command, Description, Mode, Sample, Status
+from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
 from drivers.demand import check_mode
 from drivers.errors import DriveError, DriveFault
 from drivers.joint import JointScale
@@ -125,6 +126,17 @@ class CanopenDrive:
         self._opened("quick_stop")
         self._mode, self._stopping = Mode.OFF, True
         self._exchange_off()
+
+    def inspect(self) -> Inspection:
+        """State and fault, by SDO alone: no SYNC, no PDO, no heartbeat is sent.
+
+        Raises:
+            DriveStateError: it is not open.
+            DriveConnectionError: it does not answer.
+        """
+        session, _ = self._opened("inspect")
+        status = status_of(state_of(int(session.access.read(STATUSWORD))))
+        return Inspection(status, session.fault_name() if status is Status.FAULT else "")
 
     def clear_fault(self) -> None:
         """Reset a fault. The drive is left disabled.

@@ -3,7 +3,7 @@
 from contextlib import suppress
 from time import perf_counter
 
-from drivers.contract import Command, Description, Drive, Mode, Sample, Status
+from drivers.contract import Command, Description, Drive, Inspection, Mode, Sample, Status
 from drivers.demand import check_demand, check_mode
 from drivers.errors import DriveError
 from drivers.joint import JointScale
@@ -96,6 +96,15 @@ class ModbusDrive(Drive):
         session, self._mode = self._opened("quick_stop"), Mode.OFF
         if session.told is Status.ENABLED:
             session.begin_quick_stop()
+
+    def inspect(self) -> Inspection:
+        """State, fault and applied output; nothing is written.
+
+        Raises:
+            DriveStateError: it is not open.
+            DriveConnectionError: no answer in time.
+        """
+        return self._opened("inspect").inspect()
 
     def clear_fault(self) -> None:
         """Acknowledge a fault. The drive is left disabled.

@@ -95,6 +95,11 @@ class Sampling:
             state, Ages(age_s, age_s, age_s, age_s, slow_age_s, slow_age_s, age_s),
         )  # fmt: skip
 
+    def output(self, values: Values) -> tuple[float, float]:
+        """Applied duty, -1 .. 1, and motor current [A]; NaN where the drive has no register for it."""
+        sign = self._joint.motor_sign
+        return sign * self._value("duty", values), sign * self._value("current_a", values)
+
     def _value(self, part: str, values: Values) -> float:
         """Of this cycle, or kept; NaN where the drive has no register for it."""
         name = self._names.get(part, "")

@@ -2,7 +2,7 @@
 
 from math import nan
 
-from drivers.contract import Mode, Sample, Status
+from drivers.contract import Inspection, Mode, Sample, Status
 from drivers.errors import DriveConfigurationError, DriveError
 from drivers.joint import JointScale
 from drivers.modbus.demand import Demand
@@ -106,6 +106,19 @@ class Session:
         if self._plan.slow and self._cycle % self._settings.slow_every == 0:
             self._read_slow()
         return self._sampling.sample(values, self.state, at_s)
+
+    def inspect(self) -> Inspection:
+        """State, fault and applied output, by reading alone.
+
+        Raises:
+            DriveConnectionError: no valid answer within the time limit.
+        """
+        values: Values = {}
+        for block in self._plan.read:
+            values |= block.decode(self.link.read(block))
+        self._follow(values)
+        is_fault = self.state is Status.FAULT
+        return Inspection(self.state, self.fault_text() if is_fault else "", *self._sampling.output(values))
 
     def fault_text(self) -> str:
         """The fault in words."""

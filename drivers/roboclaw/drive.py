@@ -1,6 +1,6 @@
 """The drive contract on one motor of a RoboClaw: signed duty in; position, applied duty, current, supply out."""
 
-from drivers.contract import Command, Description, Drive, Mode, Sample, Status
+from drivers.contract import Command, Description, Drive, Inspection, Mode, Sample, Status
 from drivers.demand import check_demand, check_mode
 from drivers.errors import DriveConnectionError
 from drivers.joint import JointScale
@@ -103,6 +103,17 @@ class RoboclawDrive(Drive):
         except DriveConnectionError:
             self._fall_silent(session.motor)
             raise
+
+    def inspect(self) -> Inspection:
+        """State, fault and applied output; questions alone are asked.
+
+        Raises:
+            DriveStateError: it is not open.
+            DriveConnectionError: no answer in time.
+        """
+        session = self._opened("inspect")
+        session.link.begin()
+        return session.inspect(self._state)
 
     def clear_fault(self) -> None:
         """Ask whether the fault is gone. The drive is left disabled.

@@ -2,7 +2,7 @@
 
 from time import perf_counter
 
-from drivers.contract import Sample, Status
+from drivers.contract import Inspection, Sample, Status
 from drivers.errors import DriveConfigurationError, DriveError
 from drivers.joint import JointScale
 from drivers.roboclaw.link import Link
@@ -61,6 +61,20 @@ class Session:
         if before and not sample.duty:  # demanded and not applied: something has switched it off
             telemetry.read_status()
         return sample
+
+    def inspect(self, status: Status) -> Inspection:
+        """State, fault and applied output, by questions alone.
+
+        Args:
+            status: as it was told last; the controller tells of faults only.
+
+        Raises:
+            DriveConnectionError: no valid answer within the time limit.
+        """
+        telemetry = self.telemetry
+        faults = telemetry.read_status()
+        duty, current_a = telemetry.read_output()
+        return Inspection(Status.FAULT if faults else status, ", ".join(faults), duty, current_a)
 
     def leave(self) -> None:
         """Stop the motor where it answers, and give the port back; otherwise its serial time-out stops it."""

@@ -133,6 +133,13 @@ class Telemetry:
         self._status_at_s = time.perf_counter()
         return self.faults
 
+    def read_output(self) -> tuple[float, float]:
+        """Ask for the applied duty, -1 .. 1, and the motor current [A] now; NaN where that is not measured."""
+        duty = self._joint.motor_sign * self._link.read(commands.APPLIED_DUTY)[self._index] / DUTY_FULL
+        if not self.has_current:
+            return duty, nan
+        return duty, self._current_a(self._link.read(commands.CURRENTS)[self._index], duty)
+
     def _ask_slow(self) -> None:
         self._cycle += 1
         if self._cycle % self._slow_every == 0:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from math import ceil, isfinite, nan
 
-from drivers.contract import Command, Description, Mode, Sample, Status
+from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
 from sim_backend.drive.description import describe
 from sim_backend.drive.overload import OverloadMeter
@@ -115,6 +115,12 @@ class SimulatedDrive:
         self._require_open("quick_stop")
         if self._status is Status.ENABLED:
             self._switch(Status.QUICK_STOP)
+
+    def inspect(self) -> Inspection:
+        """State, fault and applied output; no time passes."""
+        self._require_open("inspect")
+        stage, demand = self._held
+        return Inspection(self._status, self._fault, demand if stage == VOLTAGE else 0.0 if stage == OPEN else nan)
 
     def clear_fault(self) -> None:
         """Acknowledge a fault. The drive is left disabled.

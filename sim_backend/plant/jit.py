@@ -1,9 +1,13 @@
 """The one place where functions are handed to numba, with their types kept."""
 
 from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
+from numpy.typing import NDArray
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -32,3 +36,33 @@ def jitted_and_cached(function: Function, nogil: bool = False) -> Function:
     """
     compiled: Function = numba.njit(function, cache=True, nogil=nogil, **_LEAN)
     return compiled
+
+
+Records = NDArray[np.void]
+
+
+def pack(component: Any) -> Records:
+    """Return a dataclass, or a dataclass of dataclasses, as a structured array of shape (1,).
+
+    Leaves keep their type where it is int64 or uint64; every other number or flag becomes a float64.
+    """
+    packed: Records = np.zeros(1, dtype=_layout(type(component)))  # type: ignore[arg-type]  # a type is hashable
+    packed[0] = _values(component)
+    return packed
+
+
+# one object per type: numba knows a record by the identity of its dtype, and compares field by field otherwise
+@cache
+def _layout(kind: Any) -> np.dtype[np.void]:
+    return np.dtype([(item.name, _leaf(item.type)) for item in fields(kind)])
+
+
+def _leaf(kind: Any) -> Any:
+    if is_dataclass(kind):
+        return _layout(kind)  # type: ignore[arg-type]
+    return kind if issubclass(kind, np.integer) else np.float64
+
+
+def _values(component: Any) -> tuple[Any, ...]:
+    values = (getattr(component, item.name) for item in fields(component))
+    return tuple(_values(value) if is_dataclass(value) else value for value in values)

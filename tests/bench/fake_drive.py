@@ -4,7 +4,7 @@ from collections.abc import Callable
 from math import copysign, nan, sin
 
 from bench.config.rig import Arm, Gear, Motor, Rig, Sensor, Supply
-from drivers.contract import Command, Description, Mode, Sample, Status
+from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
 from drivers.errors import DriveStateError
 
 RATIO = 50.0
@@ -64,6 +64,10 @@ class FakeDrive:
     def quick_stop(self) -> None:
         self.calls.append("quick_stop")
         self.powered = False
+
+    def inspect(self) -> Inspection:
+        self.calls.append("inspect")
+        return Inspection(Status.ENABLED if self.powered else Status.DISABLED)
 
     def clear_fault(self) -> None:
         self.calls.append("clear_fault")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from bench import presets
+from bench.config import presets
 from bench.errors import ConfigurationError
 from bench.runs import event_log
 from bench.runs.event_log import JsonLine

@@ -5,7 +5,7 @@ from math import nan
 
 import pytest
 
-from bench.report.figure import Figure, Points
+from bench.report.section import Figure, Points
 
 
 def test_a_bar_whose_end_is_not_known_is_left_out():

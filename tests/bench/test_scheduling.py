@@ -64,7 +64,7 @@ def test_where_nothing_is_permitted_it_runs_all_the_same(monkeypatch, other):
 @pytest.mark.skipif(not is_permitted(), reason="SCHED_RR is not permitted here")
 def test_what_somebody_has_chosen_stays():
     program = (
-        "import os; from bench import scheduling; os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(3));\n"
+        "import os; from bench.control import scheduling; os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(3));\n"
         "with scheduling.undisturbed(True): print(os.sched_getscheduler(0) == os.SCHED_RR, scheduling.describe())"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.config.configuration import default_configuration
-from bench.config.drives.simulated import SimulatedDriveSettings
+from bench.drives.sim.settings import SimulatedDriveSettings
 from compensator.motor import dc_motor as motor
 from compensator.motor.dc_motor import MotorConstants
 from tests.bench.bench_run import Ran

@@ -10,11 +10,10 @@ from typer.testing import CliRunner
 
 from bench.cli.app import app
 from bench.evaluation.bench_report import campaign
-from bench.evaluation.bench_report.baseline import read_baseline, write_baseline
+from bench.evaluation.bench_report.baseline import BaselineError, read_baseline, write_baseline
 from bench.evaluation.bench_report.campaign import METRICS, SeedValues
 from bench.evaluation.bench_report.comparison import FAMILY_RATE, compare, permutation_p
 from bench.evaluation.bench_report.documents import is_bad, sections, write_junit
-from bench.evaluation.bench_report.errors import BaselineError
 from bench.report.html import html_page
 
 NAMES = [metric.name for metric in METRICS]

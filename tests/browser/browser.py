@@ -14,6 +14,11 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking",
 WITH_TOKEN = f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')"
 
 
+def imported(module: str) -> str:
+    """JavaScript that imports a module of the page, such as "plots/thin"."""
+    return f"import('/static/modules/{module}.js')"
+
+
 @contextmanager
 def browser(*arguments: str) -> Iterator[Any]:
     """A browser, for a command."""

@@ -1,6 +1,6 @@
 """Walks from a fresh service to an explained hidden effect: `python -m tests.browser.screenshots out/walk`.
 
-It does what docs/walk.md says, in the same order, and prints how long that took.
+It does what docs/tutorial/walk.md says, in the same order, and prints how long that took.
 """
 
 import sys

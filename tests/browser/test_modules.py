@@ -2,8 +2,13 @@
 
 import json
 import math
+from collections import Counter
+from pathlib import Path
 
 import pytest
+
+from bench.service.http.page import WEB
+from tests.browser.browser import imported
 
 pytestmark = pytest.mark.browser
 
@@ -14,14 +19,14 @@ def call(open_page):
 
     def called(module: str, expression: str):
         """What an expression makes of a module, there called `m`."""
-        return page.evaluate(f"import('/static/modules/{module}.js').then((m) => {expression})")
+        return page.evaluate(f"{imported(module)}.then((m) => {expression})")
 
     return called
 
 
 def test_a_ring_keeps_the_newest_rows_and_never_grows(call):
     kept = call(
-        "ring",
+        "bench/ring",
         "{ const ring = new m.Ring(['t', 'v'], 10);"
         " for (let n = 0; n < 1000; n++) ring.append([[n, n % 7 ? n : null]]);"
         " const bytes = ring.column('v').buffer.byteLength, none = ring.column('w') === undefined;"
@@ -36,7 +41,7 @@ def test_a_ring_keeps_the_newest_rows_and_never_grows(call):
 
 def test_a_copy_of_a_ring_stays_as_it_was(call):
     assert call(
-        "ring",
+        "bench/ring",
         "{ const ring = new m.Ring(['t'], 3); ring.append([[1], [2]]); const copy = ring.copy();"
         " ring.append([[3], [4], [5], [6], [7]]); return [...copy.column('t')]; }",
     ) == [1, 2]  # fmt: skip
@@ -44,7 +49,7 @@ def test_a_copy_of_a_ring_stays_as_it_was(call):
 
 def test_thinning_keeps_extremes_gaps_and_order(call):
     found = call(
-        "thin",
+        "plots/thin",
         "{ const n = 100000; const x = Float64Array.from({length: n}, (_, i) => i);"
         " const y = x.map((v) => Math.sin(v / 1000));"
         " y[777] = 50; y[70001] = -50; y[5000] = NaN; const found = m.thinned(x, y, [0, n], 500);"
@@ -56,30 +61,34 @@ def test_thinning_keeps_extremes_gaps_and_order(call):
 
 
 def test_few_points_are_all_drawn_and_the_line_leaves_the_picture(call):
-    assert call("thin", "m.thinned([0, 1, 2, 3, 4], [0, 1, NaN, 3, 4], [1.5, 3.5], 100)") == [1, -1, 3, 4]
-    assert call("thin", "m.firstFrom([1, 2, 2, 5], 2)") == 1
-    assert call("thin", "m.firstFrom([1, 2, 2, 5], 6)") == 4
+    assert call("plots/thin", "m.thinned([0, 1, 2, 3, 4], [0, 1, NaN, 3, 4], [1.5, 3.5], 100)") == [1, -1, 3, 4]
+    assert call("plots/thin", "m.firstFrom([1, 2, 2, 5], 2)") == 1
+    assert call("plots/thin", "m.firstFrom([1, 2, 2, 5], 6)") == 4
 
 
 def test_a_line_becomes_bars_that_join_and_keep_its_gaps(call):
     box = "{left: 10, right: 20}"
     low, high = call(
-        "trace", f"(({{low, high}}) => [[...low], [...high]])(m.columns({{x: [10, 13.5], y: [0, 7]}}, {box}))"
+        "plots/trace", f"(({{low, high}}) => [[...low], [...high]])(m.columns({{x: [10, 13.5], y: [0, 7]}}, {box}))"
     )
     # a slope of 2: each column reaches from where the line comes in to where it goes out
     assert low[:4] == [0, 2, 4, 6]
     assert high[:4] == [2, 4, 6, 7]
     assert all(low[at] > high[at] for at in range(4, 10))
     interrupted = "{x: [10.5, NaN, 14.5], y: [1, NaN, 1]}"
-    gap = call("trace", f"(({{low, high}}) => [...low].map((v, i) => v <= high[i]))(m.columns({interrupted}, {box}))")
+    gap = call(
+        "plots/trace", f"(({{low, high}}) => [...low].map((v, i) => v <= high[i]))(m.columns({interrupted}, {box}))"
+    )
     assert gap == [at in (0, 4) for at in range(10)]
-    outside = call("trace", f"(({{low, high}}) => [low[0], high[9]])(m.columns({{x: [0, 30], y: [0, 30]}}, {box}))")
+    outside = call(
+        "plots/trace", f"(({{low, high}}) => [low[0], high[9]])(m.columns({{x: [0, 30], y: [0, 30]}}, {box}))"
+    )
     assert outside == [10, 20]
 
 
 def test_a_spike_of_one_sample_is_drawn_however_many_there_are(call):
     painted = call(
-        "trace",
+        "plots/trace",
         "{ const canvas = document.createElement('canvas'); canvas.width = 100; canvas.height = 100;"
         " const context = canvas.getContext('2d', {willReadFrequently: true});"
         " const x = Float64Array.from({length: 5000}, (_, i) => i / 50);"
@@ -93,8 +102,8 @@ def test_a_spike_of_one_sample_is_drawn_however_many_there_are(call):
 
 def test_a_band_is_drawn_between_its_edges_and_not_where_it_is_unknown(call):
     painted = call(
-        "paint",
-        "import('/static/modules/loadcurrent.js').then((load) => {"
+        "plots/paint",
+        "import('/static/modules/bench/load.js').then((load) => {"
         " const canvas = document.createElement('canvas'); canvas.width = 300; canvas.height = 200;"
         " const context = canvas.getContext('2d', {willReadFrequently: true});"
         " const x = Float64Array.from({length: 20000}, (_, i) => i / 20000);"
@@ -118,29 +127,29 @@ def test_the_load_current_is_read_as_it_was_found_last(call):
         "(Float64Array.from(%s), Float64Array.from(%s))"
     )
     assert (
-        call("loadcurrent", read % ("[NaN, 0.4, -0.4931, NaN, NaN]", "[NaN, 0.1, 0.0034, NaN, NaN]"))
+        call("bench/load", read % ("[NaN, 0.4, -0.4931, NaN, NaN]", "[NaN, 0.1, 0.0034, NaN, NaN]"))
         == "−0.493 ± 0.003 A"
     )
-    assert call("loadcurrent", read % ("[0.5]", "[NaN]")) == "0.500 A"
-    assert call("loadcurrent", read % ("[NaN, NaN]", "[NaN, NaN]")) is None
+    assert call("bench/load", read % ("[0.5]", "[NaN]")) == "0.500 A"
+    assert call("bench/load", read % ("[NaN, NaN]", "[NaN, NaN]")) is None
 
 
 def test_ticks_are_round_and_inside(call):
-    assert call("ticks", "m.ticks(-0.31, 1.02, 5)") == [0.0, 0.5, 1.0]
-    assert call("ticks", "m.ticks(0, 0.007, 5)") == [0, 0.002, 0.004, 0.006]
-    assert call("ticks", "m.widened(-0.31, 1.02, 5)") == [-0.5, 1.5]
-    low, high = call("ticks", "m.widened(2, 2, 5)")
+    assert call("plots/axis", "m.ticks(-0.31, 1.02, 5)") == [0.0, 0.5, 1.0]
+    assert call("plots/axis", "m.ticks(0, 0.007, 5)") == [0, 0.002, 0.004, 0.006]
+    assert call("plots/axis", "m.widened(-0.31, 1.02, 5)") == [-0.5, 1.5]
+    low, high = call("plots/axis", "m.widened(2, 2, 5)")
     assert low < 2 < high
-    assert call("ticks", "m.label(-0.5, 0.1)") == "−0.5"
-    assert call("ticks", "m.label(1500000, 500000)") == "1.5e+6"
+    assert call("plots/axis", "m.label(-0.5, 0.1)") == "−0.5"
+    assert call("plots/axis", "m.label(1500000, 500000)") == "1.5e+6"
 
 
 def test_a_view_stays_within_what_there_is(call):
-    assert call("view", "m.moved([0, 2], 1, [0, 3])") == [1, 3]
-    assert call("view", "m.moved([1, 3], -2, [0, 3])") == [0, 2]
-    assert call("view", "m.zoomed([0, 4], 0.5, 1, [0, 4])") == [0.5, 2.5]
-    assert call("view", "m.zoomed([1, 3], 10, 2, [0, 4])") == [0, 4]
-    assert call("view", "m.whole([{x: [1, 5]}, {x: [0, 2]}, {x: []}])") == [0, 5]
+    assert call("plots/axis", "m.moved([0, 2], 1, [0, 3])") == [1, 3]
+    assert call("plots/axis", "m.moved([1, 3], -2, [0, 3])") == [0, 2]
+    assert call("plots/axis", "m.zoomed([0, 4], 0.5, 1, [0, 4])") == [0.5, 2.5]
+    assert call("plots/axis", "m.zoomed([1, 3], 10, 2, [0, 4])") == [0, 4]
+    assert call("plots/axis", "m.whole([{x: [1, 5]}, {x: [0, 2]}, {x: []}])") == [0, 5]
 
 
 def test_what_a_kind_shows_is_made_from_its_trials(call):
@@ -152,7 +161,7 @@ def test_what_a_kind_shows_is_made_from_its_trials(call):
         ]
     }
     trial = {"conditions": {"rate_a_s": 0.3, "dwell_s": 2}, "results": broken}
-    groups = call("figurekinds", f"m.FIGURES['breakaway-ramps']([{json.dumps(trial)}]).groups")
+    groups = call("trials/figurekinds", f"m.FIGURES['breakaway-ramps']([{json.dumps(trial)}]).groups")
     assert [(one["name"], one["x"], one["y"]) for one in groups] == [
         ("after 2 s at rest, up", [0.3], [0.2]),
         ("after 2 s at rest, down", [0.3], [0.1]),
@@ -161,7 +170,7 @@ def test_what_a_kind_shows_is_made_from_its_trials(call):
         {"conditions": {"load_kg": 0.1}, "results": {"motor_speed_rad_s": 9, "current_a": 0.2, "saturated": steady}}
         for steady in (True, False)
     ]
-    assert call("figurekinds", f"m.FIGURES['speed-sweep']({json.dumps(swept)}).groups[0].symbol") == [
+    assert call("trials/figurekinds", f"m.FIGURES['speed-sweep']({json.dumps(swept)}).groups[0].symbol") == [
         "circle",
         "circle-open",
     ]
@@ -169,21 +178,23 @@ def test_what_a_kind_shows_is_made_from_its_trials(call):
         {"conditions": {"reflect": "raw", "repeat": 1}, "results": {"reflected_error_rms_g": 50}},
         {"conditions": {}, "results": {}},
     ]
-    assert call("figurekinds", f"m.FIGURES.teleoperation({json.dumps(told)}).groups.map((one) => one.y)") == [[50]]
-    for kind in call("figurekinds", "Object.keys(m.FIGURES)"):
-        assert call("figurekinds", f"m.FIGURES['{kind}']([]).groups.every((one) => !one.x.length)"), kind
+    assert call("trials/figurekinds", f"m.FIGURES.teleoperation({json.dumps(told)}).groups.map((one) => one.y)") == [
+        [50]
+    ]
+    for kind in call("trials/figurekinds", "Object.keys(m.FIGURES)"):
+        assert call("trials/figurekinds", f"m.FIGURES['{kind}']([]).groups.every((one) => !one.x.length)"), kind
 
 
 def test_trials_are_chosen_by_what_they_differ_in(call):
     trials = [{"name": f"t{n}", "kind": "steps", "conditions": {"load_kg": n / 10, "arm_m": 0.5}} for n in range(3)]
     choice = f"const choice = new m.TrialChoice(m.used); choice.show({json.dumps(trials)});"
-    assert call("trialchoice", f"m.groupsOf({json.dumps(trials)})") == [
+    assert call("studies/trialchoice", f"m.groupsOf({json.dumps(trials)})") == [
         ["load_kg", [0, 0.1, 0.2]],
         ["trial", ["t0", "t1", "t2"]],
     ]
-    assert call("trialchoice", f"{{ {choice} return choice.unlessAll(); }}") == []
+    assert call("studies/trialchoice", f"{{ {choice} return choice.unlessAll(); }}") == []
     left_out = "choice.element.querySelector('[value=\\'load_kg=0.1\\']').checked = false;"
-    assert call("trialchoice", f"{{ {choice} {left_out} return choice.unlessAll(); }}") == ["load_kg=0,0.2"]
+    assert call("studies/trialchoice", f"{{ {choice} {left_out} return choice.unlessAll(); }}") == ["load_kg=0,0.2"]
 
 
 def test_events_become_marks(call):
@@ -196,16 +207,24 @@ def test_events_become_marks(call):
         {"time_s": 2.1, "name": "search", "detail": "done"},
         {"time_s": 3.0, "name": "end", "detail": "tripped; velocity is 9 rad/s"},
     ]
-    found = call("marks", f"m.marksOf({events}).map((mark) => [mark.x, mark.kind])")
+    found = call("plots/marks", f"m.marksOf({events}).map((mark) => [mark.x, mark.kind])")
     assert found == [[1.5, "breakaway"], [1.9, "breakaway"], [1.9, "settle"], [2.1, "estimate"], [3.0, "trip"]]
-    assert call("marks", "m.marksOf([{time_s: 1, name: 'end', detail: 'completed'}])") == []
+    assert call("plots/marks", "m.marksOf([{time_s: 1, name: 'end', detail: 'completed'}])") == []
 
 
 def test_every_equation_of_the_catalogue_is_set(open_page, service):
     page = open_page()
     equations = [one["equation"] for one in service.client.get("/effects").json()["items"]]
     shown = (
-        "(all) => import('/static/modules/equation.js')"
+        "(all) => import('/static/modules/learn/equation.js')"
         ".then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
     )
     assert page.evaluate(shown, equations) == []
+
+
+def test_every_module_is_imported_from_where_it_is(open_page):
+    page = open_page()
+    names = [str(path.relative_to(WEB / "modules").with_suffix("")) for path in (WEB / "modules").rglob("*.js")]
+    assert max(Counter(Path(name).parent for name in names).values()) <= 20
+    for name in names:
+        assert page.evaluate(f"{imported(name)}.then(() => true)"), name

@@ -51,7 +51,7 @@ def test_other_requests_that_hang_do_not_hold_up_a_stop(service, open_page):
     start(page)
     page.route("**/api/v1/effects*", lambda route: None)
     page.evaluate(
-        "import('/static/modules/api.js').then((api) => { for (let n = 0; n < 12; n++) api.get('/effects', {n}); })"
+        "import('/static/modules/app/api.js').then((api) => { for (let n = 0; n < 12; n++) api.get('/effects', {n}); })"
     )
     page.keyboard.press("Escape")
     page.get_by_text("Stop accepted and confirmed").wait_for()
@@ -60,7 +60,7 @@ def test_other_requests_that_hang_do_not_hold_up_a_stop(service, open_page):
 def test_a_failed_power_off_is_said(open_page):
     page = open_page()
     text, level = page.evaluate(
-        "import('/static/modules/stop.js').then((stop) => stop.verdict("
+        "import('/static/modules/app/stop.js').then((stop) => stop.verdict("
         "{outcome: 'stopped', experiment_id: 3, reason: 'STOP on the page; power-off failed: no answer'}))"
     )
     assert level == "unconfirmed"

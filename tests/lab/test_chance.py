@@ -27,5 +27,5 @@ def test_nothing_judged_is_no_chance():
 
 
 def test_the_page_has_the_same_bound():
-    (bound,) = re.findall(r"const LEAST_P = ([\d.]+)", (ROOT / "web/modules/format.js").read_text(encoding="utf-8"))
+    (bound,) = re.findall(r"const LEAST_P = ([\d.]+)", (ROOT / "web/modules/ui/format.js").read_text(encoding="utf-8"))
     assert float(bound) == LEAST_STATED

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bench.config.configuration import default_configuration, parse_configuration
-from bench.config.drives.simulated import SimulatedDriveSettings
 from bench.control.pair.cycle import PAIR_RECORDED
+from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import BenchError, ConfigurationError, LimitError
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.recording_set import export_experiment, read_recording_set

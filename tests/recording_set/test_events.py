@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bench.recording_set.text.events import decode, encode
+from bench.recording_set.text.values import decode, encode
 from compensator.lab.recordings.recording import Event
 
 TEXT = st.one_of(st.text(st.characters(codec="utf-8")), st.text("ab;: [\"',\\]", max_size=6))

@@ -148,7 +148,7 @@ def test_the_missing_library_is_named_before_anything_is_sent(
 
 def test_a_trial_that_is_removed_meanwhile_is_named(store: Store, trial: Trial) -> None:
     from bench.store.errors import NotFoundError
-    from bench.store.upkeep.removal import remove
+    from bench.store.upkeep.retention import remove
 
     chunks = csv_chunks(stream_of_trial(store, trial))
     next(chunks)

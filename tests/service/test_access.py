@@ -116,7 +116,7 @@ def test_our_own_page_can(service):
 
 
 def test_nothing_foreign_runs_in_the_page(service):
-    for path in ("/", "/static/modules/main.js", "/static/plotly.min.js", "/api/v1/bench"):
+    for path in ("/", "/static/modules/app/main.js", "/static/plotly.min.js", "/api/v1/bench"):
         policy = httpx.get(service.url + path).headers["content-security-policy"]
         assert "script-src 'self';" in policy
         assert "unsafe-inline" not in policy

@@ -82,7 +82,7 @@ def test_the_order_of_use_is_in_the_text(document):
 def test_the_page_and_its_files_are_served(service):
     page = httpx.get(service.url)
     assert page.headers["content-type"].startswith("text/html")
-    for part in ("/static/style.css", "/static/plots.css", "/static/modules/main.js"):
+    for part in ("/static/style.css", "/static/plots.css", "/static/modules/app/main.js"):
         assert part in page.text
         assert httpx.get(service.url + part).status_code == 200
     plotly = httpx.get(service.url + "/static/plotly.min.js")

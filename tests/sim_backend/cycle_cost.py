@@ -20,7 +20,7 @@ from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
 from bench.control.servo import current_servo
 from bench.control.stop_request import StopRequest
-from bench.evaluation.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.store import Store
@@ -219,4 +219,4 @@ def report(kind: str) -> Iterator[str]:
 if __name__ == "__main__":
     for kind_name in sys.argv[1:] or KINDS:
         for line in report(kind_name):
-            print(line, flush=True)  # noqa: T201
+            print(line, flush=True)

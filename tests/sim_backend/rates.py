@@ -19,7 +19,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from bench.evaluation.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.store import Store
 from drivers.contract import Command, Mode
 from sim_backend.drive.simulated_drive import SimulatedDrive
@@ -45,7 +45,7 @@ FIRST_CALL = """
 from time import perf_counter
 began = perf_counter()
 from drivers.contract import Command, Mode
-from sim_backend import presets
+from sim_backend.plant import presets
 from sim_backend.drive.simulated_drive import SimulatedDrive
 drive = SimulatedDrive(presets.paper())
 drive.open(0.005)
@@ -201,4 +201,4 @@ def report() -> Iterator[str]:
 
 if __name__ == "__main__":
     for line in report():
-        print(line, flush=True)  # noqa: T201
+        print(line, flush=True)

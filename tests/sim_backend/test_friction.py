@@ -4,7 +4,7 @@ import pytest
 
 from sim_backend.mechanisms.friction.friction import Friction, dry_friction
 from sim_backend.mechanisms.motor.motor import OPEN
-from sim_backend.plant.record import pack
+from sim_backend.plant.jit import pack
 from tests.sim_backend.compiled import callable_from_python
 from tests.sim_backend.plants import RATIO, RESISTANCE, SUPPLY, G, K, duty_for_torque, plant, run, settled_speed
 

@@ -203,11 +203,11 @@ def main() -> None:
             for number in range(arguments.kills):
                 ending = killer.end_one(ways[number % len(ways)])
                 endings.append(ending)
-                print(f"{number + 1:4}/{arguments.kills} {ending.in_words()}", flush=True)  # noqa: T201
+                print(f"{number + 1:4}/{arguments.kills} {ending.in_words()}", flush=True)
         except KeyboardInterrupt:
-            print(f"interrupted after {len(endings)} of {arguments.kills}")  # noqa: T201
+            print(f"interrupted after {len(endings)} of {arguments.kills}")
         finally:
-            print("\n".join(table(endings)), flush=True)  # noqa: T201
+            print("\n".join(table(endings)), flush=True)
             killer.leave()
     sys.exit(len(endings) < arguments.kills or any(ending.problems for ending in endings))
 

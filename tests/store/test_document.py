@@ -1,4 +1,4 @@
-"""What docs/store.md says: its SQL runs, its tables and views are there."""
+"""What docs/explanation/store.md says: its SQL runs, its tables and views are there."""
 
 import re
 from pathlib import Path
@@ -10,7 +10,7 @@ from bench.store import Store
 from bench.store.schema import METADATA
 from tests.store.freeze import fill
 
-DOCUMENT = (Path(__file__).parents[2] / "docs" / "store.md").read_text(encoding="utf-8")
+DOCUMENT = (Path(__file__).parents[2] / "docs" / "explanation" / "store.md").read_text(encoding="utf-8")
 STATEMENTS = re.findall(r"```sql\n(.*?)```", DOCUMENT, re.DOTALL)
 
 

@@ -6,8 +6,8 @@ from sqlalchemy import delete
 
 from bench.store import Store
 from bench.store.schema import SAMPLE_OVERVIEW
-from bench.store.tables.blocks import columns_of
 from bench.store.tables.overview import GROUP_ROWS, overview_of
+from bench.store.tables.samples import columns_of
 from tests.store.examples import CHANNELS, begin, begin_trial
 
 

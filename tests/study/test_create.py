@@ -166,6 +166,7 @@ def test_what_the_lab_is_told_of_a_rig():
             "horizontal": True,
             "motor": {"torque_constant_n_m_a": 0.05},
             "gear": {"ratio": 100.0, "backlash_rad": 0.01, "stiffness_n_m_rad": 1500.0},
+            "sensor": {"counts_per_turn": 4000},
             "arm": {"length_m": 0.4, "mass_kg": 0.2, "centre_of_mass_m": 0.1, "inertia_kg_m2": 0.02},
             "effort": {"quantity": "current"},
         }
@@ -175,6 +176,8 @@ def test_what_the_lab_is_told_of_a_rig():
     assert (facts.gear_ratio, facts.backlash_rad, facts.arm_m, facts.arm_inertia_kg_m2) == (100.0, 0.01, 0.4, 0.02)
     assert facts.stiffness_n_m_rad == 1500.0
     assert facts.arm_moment_n_m == pytest.approx(0.2 * 9.80665 * 0.1)
+    assert facts.position_count == pytest.approx(2.0 * math.pi / 400_000)
     assert (facts.joint, facts.horizontal, facts.effort) == ("rotary", True, "current")
     little = facts_of(Rig.model_validate({"name": "r", "gear": {"ratio": 100.0}, "arm": {"mass_kg": 0.2}}))
     assert (little.torque_per_current_n_m_a, little.stiffness_n_m_rad, little.arm_moment_n_m) == (None, None, None)
+    assert little.position_count is None

@@ -24,7 +24,7 @@ def doctor(
     operator: Annotated[str, typer.Option(help="Who stands at the bench; kept with the record.")] = "",
     as_json: Json = False,
 ) -> None:
-    """Connect to the drive and say what it is, what it measures and how fast it is; with --move, whether it is right.
+    """Connect to the drive and say what it is, what it measures and how fast; with --move, whether it is right.
 
     A real drive has to pass `doctor --move` before experiments are run on it, and again after a change of its section
     of bench.toml or of gear, sensor or motor of the rig.

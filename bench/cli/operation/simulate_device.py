@@ -1,129 +1,120 @@
-"""`friction-bench simulate-device`: a drive in software that speaks its wire protocol, in a process of its own."""
+"""`friction-bench simulate-device KIND`: a drive in software that speaks its wire protocol, in its own process."""
 
 import json as json_text
-from typing import TYPE_CHECKING, Annotated
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import fields
+from inspect import Parameter, getdoc, signature
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
+from typer.core import TyperGroup
 
-from bench.cli.operation.device_options import DeviceOptions, with_device_options
 from bench.cli.output import say
 
-if TYPE_CHECKING:
-    from bench.doctor.simulated_device import SimulatedDevice
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.config.drives.kind import DriveKind
+    from bench.config.drives.simulated_device import Simulated
 
-Section = dict[str, str | int | float]
+
+class _DeviceGroup(TyperGroup):
+    """One command per kind of drive that has a simulated device, made when it is asked for; and what is added here."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return [*_kinds(), *super().list_commands(ctx)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        kinds = _kinds()
+        if cmd_name in kinds:
+            return _command(kinds[cmd_name])
+        if not cmd_name.startswith("-") and cmd_name not in super().list_commands(ctx):
+            ctx.fail(f"There is no simulated device '{cmd_name}'; known are {', '.join(kinds)}.")
+        return super().get_command(ctx, cmd_name)
+
 
 app = typer.Typer(
+    cls=_DeviceGroup,
     no_args_is_help=True,
-    help="A drive in software that speaks its wire protocol, with a simulated joint on it. Start it in one terminal, "
-    "paste the section that it prints into bench.toml, and run the bench in another.",
+    help="A drive in software that speaks its wire protocol, with a simulated joint on it.\n\n"
+    "Start it in one terminal, paste the section that it prints into bench.toml, and run the bench in another.",
 )
-
-Baud = Annotated[int, typer.Option(min=0, help="Pace of the line in bits a second; 0 is as fast as the machine.")]
-
-
-@app.command()
-@with_device_options
-def roboclaw(
-    address: Annotated[int, typer.Option(min=128, max=135, help="Address of the drive.")] = 128,
-    usb: Annotated[bool, typer.Option("--usb", help="Answer to every address, as over USB.")] = False,
-    baud: Baud = 115200,
-    *,
-    options: DeviceOptions,
-) -> None:
-    """A RoboClaw on a pseudo-terminal (packet serial)."""
-    from bench.doctor.simulated_device import start_roboclaw
-
-    device = start_roboclaw(options.joint(), address=address, usb=usb, baud=baud or None, **options.place())
-    section: Section = {"kind": "roboclaw", "port": device.path, "address": address}
-    if baud:
-        section["baud_rate"] = baud
-    _serve(device, "RoboClaw", section, options.json)
-
-
-@app.command()
-@with_device_options
-def canopen(
-    family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic",
-    node: Annotated[int, typer.Option(min=1, max=127, help="Node number.")] = 5,
-    interface: Annotated[
-        str,
-        typer.Option(
-            help="slcan (a pseudo-terminal), socketcand (a TCP server here), or socketcan (the kernel's CAN)."
-        ),
-    ] = "slcan",
-    channel: Annotated[
-        str, typer.Option(help="socketcand: TCP port, 0 is any free one; socketcan: the interface, such as vcan0.")
-    ] = "0",
-    *,
-    options: DeviceOptions,
-) -> None:
-    """A CiA 402 servo drive on a CAN bus (CANopen)."""
-    from bench.doctor.simulated_device import start_canopen
-
-    device = start_canopen(
-        options.joint(), family=family, node_id=node, interface=interface, channel=channel, **options.place(),
-    )  # fmt: skip
-    section: Section = {"kind": "canopen", "interface": interface, "channel": device.path, "node_id": node}
-    if interface == "socketcand":
-        host, _, tcp_port = device.path.rpartition(":")
-        section |= {"channel": "can0", "host": host, "port": int(tcp_port)}
-    _serve(device, f"CiA 402 drive ({family})", section, options.json)
-
-
-@app.command()
-@with_device_options
-def modbus(
-    map_: Annotated[str, typer.Option("--map", help="Register map: friction-bench or roboteq.")] = "friction-bench",
-    transport: Annotated[str, typer.Option(help="rtu (a pseudo-terminal) or tcp.")] = "rtu",
-    unit: Annotated[int, typer.Option(min=1, max=247, help="Unit number.")] = 1,
-    low_word_first: Annotated[
-        bool, typer.Option("--low-word-first", help="32-bit values: low word first (friction-bench only).")
-    ] = False,
-    baud: Baud = 115200,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="TCP port; 0 is any free one.")] = 0,
-    *,
-    options: DeviceOptions,
-) -> None:
-    """A drive on Modbus RTU or TCP; docs/modbus-map.md is its manual."""
-    from bench.doctor.simulated_device import start_modbus
-
-    device = start_modbus(
-        options.joint(),
-        map=map_, transport=transport, unit=unit, low_word_first=low_word_first, baud=baud or None, port=port,
-        **options.place(),
-    )  # fmt: skip
-    section: Section = {"kind": "modbus", "map": map_, "transport": transport, "unit": unit}
-    if transport == "tcp":
-        host, number = device.path.split(":")
-        section |= {"host": host, "port": number}
-    else:
-        section |= {"port": device.path, "baud_rate": baud or 115200}
-    if map_ == "roboteq":  # its watchdog has no register
-        section |= {"watchdog_s": 1.0, "watchdog_is_set_in_drive": True}
-    _serve(device, f"Modbus drive ({map_})", section, options.json)
 
 
 @app.command()
 def eds(family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic") -> None:
     """Print the electronic data sheet of the simulated CiA 402 drive, for masters that want a file."""
-    from bench.doctor.simulated_device import electronic_data_sheet
+    from bench.drives.canopen.device import electronic_data_sheet
 
     typer.echo(electronic_data_sheet(family), nl=False)
 
 
-def _serve(device: "SimulatedDevice", name: str, section: Section, json: bool) -> None:
-    """Say where the device is, and keep it until Ctrl-C or SIGTERM."""
-    from bench.doctor.simulated_device import until_told_to_end
+def _kinds() -> "dict[str, DriveKind[Any]]":
+    from bench.config.drives.registry import drive_kinds
 
-    section |= {"side_channel": device.side_channel}
-    with until_told_to_end() as stop, device:
+    return {name: kind for name, kind in drive_kinds().items() if kind.simulate is not None}
+
+
+def _command(kind: "DriveKind[Any]") -> Any:
+    """The kind's own options and those of every device, as one command."""
+    from bench.drives.device import DeviceOptions
+
+    assert kind.simulate is not None
+    simulate = kind.simulate()
+    common = [field.name for field in fields(DeviceOptions)]
+
+    def command(**values: Any) -> None:
+        options = DeviceOptions(**{name: values.pop(name) for name in common})
+        _serve(simulate(**values, options=options), options.json)
+
+    _take_options(command, simulate, DeviceOptions)
+    made = typer.Typer(add_completion=False, rich_markup_mode="markdown", pretty_exceptions_enable=False)
+    made.command(kind.name, help=getdoc(simulate))(command)
+    return typer.main.get_command(made)
+
+
+def _take_options(command: Callable[..., None], *sources: Callable[..., Any]) -> None:
+    """Give a command the parameters of functions or classes, one after the other: typer reads its options there."""
+    parameters = [
+        parameter.replace(kind=Parameter.KEYWORD_ONLY, annotation=get_type_hints(source, include_extras=True)[name])
+        for source in sources
+        for name, parameter in signature(source).parameters.items()
+        if name != "options"
+    ]
+    command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+
+
+def _serve(simulated: "Simulated", json: bool) -> None:
+    """Say where the device is, and keep it until Ctrl-C or SIGTERM."""
+    device = simulated.device
+    drive = simulated.drive | {"side_channel": device.side_channel}
+    with _until_told_to_end() as stop, device:
         if json:
-            typer.echo(json_text.dumps({"port": device.path, "side_channel": device.side_channel, "drive": section}))
+            typer.echo(json_text.dumps({"port": device.path, "side_channel": device.side_channel, "drive": drive}))
         else:
-            say(f"{name}, simulated, on {device.path}; side channel on {device.side_channel}. For bench.toml:\n")
-            say("[drive]")
-            for key, value in section.items():
+            say(f"{simulated.title}, simulated, on {device.path}; side channel on {device.side_channel}.")
+            say("For bench.toml:\n\n[drive]")
+            for key, value in drive.items():
                 say(f"{key} = {json_text.dumps(value)}")  # a TOML value, too, where it is flat
             say("\nCtrl-C ends it.")
         device.wait(stop)
+
+
+@contextmanager
+def _until_told_to_end() -> Iterator[threading.Event]:
+    """An event that Ctrl-C, SIGTERM and SIGHUP set, while it lasts."""
+    stop = threading.Event()
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    wanted = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = {number: signal.signal(number, end) for number in wanted}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,16 +1,17 @@
 """What every real drive's settings share: signs and zero, and the joint that comes of them and the rig."""
 
-from typing import Literal
+from typing import Any, Literal
 
+from bench.config.drives.kind import DriveSettings
 from bench.config.quantities import quantity
-from bench.config.rig import Rig, Section
+from bench.config.rig import Rig
 from bench.errors import ConfigurationError
 from drivers.joint import JointScale
 
 Sign = Literal[1, -1]
 
 
-class RealDriveSettings(Section):
+class RealDriveSettings(DriveSettings):
     """Signs, zero, loads. `friction-bench doctor` prints what stands now, and checks it with a small move."""
 
     motor_sign: Sign = quantity(1, "", "-1 where a positive demand turns the joint to negative angles")
@@ -19,6 +20,11 @@ class RealDriveSettings(Section):
     side_channel: str = quantity(
         "", "", "Only of a simulated device: where its loads are hung, as host:port; left out: a person is asked"
     )
+
+
+def driver_values(settings: RealDriveSettings) -> dict[str, Any]:
+    """What the driver's own settings take: all but the kind, and what the joint's scale takes."""
+    return settings.model_dump(exclude=set(RealDriveSettings.model_fields))
 
 
 def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:

@@ -6,8 +6,9 @@ from math import nan
 from typing import Protocol
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.drive_factory import Ask, Equipment, make_equipment, make_hand, make_surroundings, nobody
+from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody
 from bench.control.pair.cycle import Reach, Truth
+from bench.drives.sim.joint import make_hand, make_surroundings
 from bench.errors import ExperimentError
 
 HOLD = (

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from bench.evaluation.bench_report.baseline import BaselineError
 from bench.evaluation.bench_report.campaign import METRICS, Metric, SeedValues
-from bench.evaluation.bench_report.errors import BaselineError
 
 FAMILY_RATE = 0.01
 LEVEL = 0.95  # of the interval of the difference, which is there to show its size

@@ -15,9 +15,8 @@ from bench.evaluation.blind.calibration import (
 from bench.evaluation.blind.confusion import rival_figures
 from bench.evaluation.blind.figures import figures
 from bench.evaluation.blind.judge import Result
-from bench.report.figure import Figure, Line, Points
 from bench.report.html import write_html
-from bench.report.section import Section, Table
+from bench.report.section import Figure, Line, Points, Section, Table
 
 
 def write_page(path: Path, results: Sequence[Result], command: str) -> None:

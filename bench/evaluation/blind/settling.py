@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.drives.simulated import SimulatedDriveSettings
+from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ExperimentError, LimitError
 from bench.evaluation.blind.lab_answer import refitted
 from bench.evaluation.challenge.session import record

@@ -4,8 +4,8 @@ from math import floor, log10
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration, parse_configuration
-from bench.config.drives.simulated import SimulatedDriveSettings
 from bench.config.rig import Rig
+from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.evaluation.challenge.hidden_plant import DrawnPlant
 
 BANDWIDTH_RAD_S = 28.0  # of the position servo: stiff enough for the motions, far below the sampling rate

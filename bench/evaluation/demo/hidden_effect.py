@@ -7,7 +7,7 @@ import numpy as np
 
 from bench import study
 from bench.config.configuration import BenchConfiguration
-from bench.evaluation.demo.bench import run_experiment
+from bench.evaluation.paper.measurements import run_experiment
 from bench.report import Bars, Figure, Line, Points, Section, Table
 from bench.store import Store
 

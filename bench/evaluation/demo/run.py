@@ -4,11 +4,35 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from bench.config.configuration import default_configuration
-from bench.evaluation.demo.at_rest import load_sweep, repeated_steps
+from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.evaluation.demo.hidden_effect import hidden_effect
+from bench.evaluation.paper import load_sweep as sweep
+from bench.evaluation.paper import repeated_steps as steps
+from bench.evaluation.paper.measurements import grams_per_ma, run_experiment
 from bench.report import Section, write_html
 from bench.store import Store
+
+
+def repeated_steps(configuration: BenchConfiguration, store: Store) -> Section:
+    """25 steps to 90 degrees at 100 g, and the current that holds the joint there (Fig. 4)."""
+    experiment_id = run_experiment(configuration, store, "steps", {})
+    return steps.fig_4(store.experiment(experiment_id), store.trials(experiment_id)).section
+
+
+def load_sweep(configuration: BenchConfiguration, store: Store) -> Section:
+    """0 to 100 g at 0 and 90 degrees (Figs 7, 8, 9 and Table 1)."""
+    experiment_id = run_experiment(configuration, store, "load-sweep", {})
+    experiment, trials = store.experiment(experiment_id), store.trials(experiment_id)
+    table = sweep.table_1(experiment, trials).section
+    hanging = sweep.fig_7(experiment, trials, grams_per_ma(configuration)).section
+    raised = sweep.fig_9(experiment, trials).section
+    return Section(
+        title="The load sweep: 0 to 100 g at 0 and 90 degrees",
+        sentences=[*hanging.sentences, *raised.sentences],
+        tables=table.tables,
+        figures=[*hanging.figures, *raised.figures],
+    )
+
 
 DEFAULT_SEED = 2
 TITLE = "friction-bench: the main job on the simulated bench"

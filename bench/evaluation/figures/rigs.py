@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.drives.simulated import SimulatedDriveSettings
+from bench.drives.sim.settings import SimulatedDriveSettings
 
 # of the preset `paper`, at the shaft where each acts
 DRIVE_SIDE = {"coulomb_n_m": 3.0e-3, "static_n_m": 5.0e-3, "viscous_n_m_s_rad": 1.05e-4}

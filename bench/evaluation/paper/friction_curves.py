@@ -9,8 +9,7 @@ import numpy as np
 from bench.calibration import curve_data, friction_of
 from bench.config.friction_curves import FrictionCurve
 from bench.config.rig import Rig
-from bench.evaluation.paper.published import FIG_2, FIG_3
-from bench.evaluation.paper.row import Row
+from bench.evaluation.paper.row import FIG_2, FIG_3, Row
 from bench.report import Figure, Line, Points, Section, Table, shades
 from bench.store import CalibrationRow
 from compensator.motor import dc_motor as motor

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from math import isclose, pi, sqrt
 
-from bench.evaluation.paper.published import FIG_7, FIG_9, TABLE_1_G
-from bench.evaluation.paper.row import Row
+from bench.evaluation.paper.row import FIG_7, FIG_9, TABLE_1_G, Row
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Experiment, Trial
 

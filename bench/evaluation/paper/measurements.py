@@ -7,9 +7,11 @@ from typing import Any
 
 from bench.calibration import calibrate
 from bench.config.configuration import BenchConfiguration
+from bench.config.reflected_load import reflected_load_kg
 from bench.control.drive_factory import is_simulated
-from bench.errors import ExperimentError
+from bench.errors import ConfigurationError, ExperimentError
 from bench.experiments.kinds.steady_speeds import PAPER_SPEEDS_RAD_S
+from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.runs.runner import Runner
 from bench.store import CalibrationRow, Experiment, Store
@@ -156,3 +158,33 @@ def calibration_of(store: Store, experiments: list[Experiment]) -> CalibrationRo
         if found.experiment_ids == ids:
             return found
     return store.calibrations.get(calibrate(store, ids, note="friction-bench paper"))
+
+
+def run_experiment(configuration: BenchConfiguration, store: Store, kind: str, parameters: dict[str, Any]) -> int:
+    """Run an experiment as fast as the simulation goes. Returns its id.
+
+    Raises:
+        ExperimentError: it did not complete.
+    """
+    runner = Runner(configuration, store)
+    try:
+        experiment_id = runner.start(kind, parameters, operator="demo", pace="fast")
+        runner.wait()
+    finally:
+        runner.close()
+    experiment = store.experiment(experiment_id)
+    if experiment.outcome != "completed":
+        raise ExperimentError(f"{kind}: {experiment.outcome}: {experiment.reason}")
+    return experiment_id
+
+
+def grams_per_ma(configuration: BenchConfiguration) -> float:
+    """Grams at the tip that a milliampere holds at 90 degrees, an arm of its own weight aside.
+
+    Raises:
+        ConfigurationError: the rig lacks what turns a current into a load.
+    """
+    one_a, nothing = (reflected_load_kg(current_a, RIGHT_ANGLE_RAD, configuration.rig) for current_a in (1.0, 0.0))
+    if one_a is None or nothing is None:
+        raise ConfigurationError("at 90 degrees gravity has a lever; a rig without one cannot reflect a load")
+    return one_a - nothing

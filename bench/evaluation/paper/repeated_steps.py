@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from bench.evaluation.paper.published import FIG_4
-from bench.evaluation.paper.row import Row
+from bench.evaluation.paper.row import FIG_4, Row
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Experiment, Trial
 

@@ -7,8 +7,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.evaluation.paper import load_sweep, repeated_steps
 from bench.evaluation.paper.accelerated import accelerated
 from bench.evaluation.paper.friction_curves import friction_curves
-from bench.evaluation.paper.measurements import Conduct, Plan, calibration_of, measure, quietly, recorded
-from bench.evaluation.paper.reflection import grams_per_ma
+from bench.evaluation.paper.measurements import Conduct, Plan, calibration_of, grams_per_ma, measure, quietly, recorded
 from bench.evaluation.paper.row import Row
 from bench.evaluation.paper.steady_speeds import fig_11
 from bench.evaluation.paper.teleoperation import teleoperation

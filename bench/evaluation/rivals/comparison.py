@@ -9,6 +9,7 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a
 from bench.control.drive_factory import seed_of
+from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from bench.evaluation.rivals import scoring
 from bench.evaluation.rivals.knowledge import calibrated, knowledge_of
@@ -114,7 +115,8 @@ def _with_method(configuration: BenchConfiguration, method: str) -> BenchConfigu
 
 
 def _with_plant(configuration: BenchConfiguration, plant: dict[str, Any]) -> BenchConfiguration:
-    merged = {**configuration.drive.plant, **plant}  # type: ignore[union-attr]  # a simulated drive, as was checked
+    assert isinstance(configuration.drive, SimulatedDriveSettings)  # as was checked
+    merged = {**configuration.drive.plant, **plant}
     return configuration.model_copy(update={"drive": configuration.drive.model_copy(update={"plant": merged})})
 
 

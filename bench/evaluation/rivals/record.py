@@ -7,11 +7,12 @@ import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.clock import VirtualClock
-from bench.control.drive_factory import make_equipment, wall_torque_n_m
+from bench.control.drive_factory import make_equipment
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop, Procedure
 from bench.control.servo import current_servo
 from bench.control.stop_request import StopRequest
+from bench.drives.sim.joint import wall_torque_n_m
 from bench.errors import ExperimentError
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.runs.in_memory import Memory

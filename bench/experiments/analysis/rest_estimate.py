@@ -6,7 +6,7 @@ from math import inf, isnan
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.parts.search import Found
-from compensator.interval import Interval
+from compensator.line_fit import Interval
 from compensator.rest.breakaway_fit import BreakawayFit, fit
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import orjson
 
 from bench.recording_set.stream import Piece, RecordingStream
-from bench.recording_set.text import events as event_cells
 from bench.recording_set.text.table import quoted
+from bench.recording_set.text.values import encode_events
 from compensator.lab.recordings.channels import EVENT_COLUMN
 from compensator.lab.recordings.recording import FloatArray
 
@@ -57,5 +57,5 @@ def _with_events(piece: Piece) -> bytes:
     if not piece.events:
         return plain.replace(NEWLINE, b"," + NEWLINE)
     rows = plain.split(NEWLINE)[:-1]
-    cells = {row: quoted(event_cells.encode(found, float(piece.time_s[row]))) for row, found in piece.events.items()}
+    cells = {row: quoted(encode_events(found, float(piece.time_s[row]))) for row, found in piece.events.items()}
     return b"".join(row + b"," + cells.get(number, "").encode() + NEWLINE for number, row in enumerate(rows))

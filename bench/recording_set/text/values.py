@@ -1,13 +1,18 @@
-"""Conditions as text: numbers, true and false, and text that stays text.
+"""Conditions and events as text: numbers, true and false, and text that stays text.
 
 Text that would be read as something else ("12", "true", "") is written with an apostrophe before it,
 as spreadsheets do. So is text that a spreadsheet would run as a formula ("=1+1"), wherever it came from.
+
+Events of a row stand in one cell: "name: detail", several with "; " between them. What cannot be written so (a time
+between two rows, a detail with "; " in it) is written as JSON, [[time_s, name, detail], ...]; both forms are read.
 """
 
+import json
 import math
 import re
+from collections.abc import Sequence
 
-from compensator.lab.recordings.recording import Condition
+from compensator.lab.recordings.recording import Condition, Event
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FLAGS = {"true": True, "false": False}
@@ -57,3 +62,28 @@ def _plain(cell: str, decimal: str) -> Condition | None:
     if _NUMBER.fullmatch(number) and math.isfinite(float(number)):
         return float(number)
     return cell
+
+
+BETWEEN = "; "
+BEFORE_DETAIL = ": "
+
+
+def encode_events(events: Sequence[Event], time_s: float) -> str:
+    """The cell for the events of a row at a time [s]; "" for none."""
+    cell = shield(BETWEEN.join(event.name + (BEFORE_DETAIL + event.detail if event.detail else "") for event in events))
+    if decode_events(cell, time_s) == list(events):
+        return cell
+    return json.dumps([list(event) for event in events], ensure_ascii=False)
+
+
+def decode_events(cell: str, time_s: float) -> list[Event]:
+    """The events of a cell in a row at a time [s]. Any text is an event's name."""
+    if cell.startswith("[["):
+        try:
+            return [Event(float(time), str(name), str(detail)) for time, name, detail in json.loads(cell)]
+        except (ValueError, TypeError):
+            pass  # somebody's own text, which happens to begin so
+    if not cell.strip():
+        return []
+    pairs = (part.partition(BEFORE_DETAIL) for part in unshield(cell).split(BETWEEN))
+    return [Event(time_s, name, detail) for name, _, detail in pairs]

@@ -1,10 +1,11 @@
 """Conditional GET (RFC 9110, section 13): what a client has already is not sent again."""
 
 import hashlib
-from importlib.metadata import version
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
+
+from bench import __version__
 
 HEADER = "If-None-Match"
 FRESH = {"Cache-Control": "private, no-cache"}  # kept by the client alone, which asks each time whether it still holds
@@ -27,7 +28,7 @@ class NotModifiedError(Exception):
 
 def tag_of(*facts: object) -> str:
     """A weak tag for all that the answer depends on, the version of this software with it."""
-    text = "\n".join(map(repr, (version("friction-bench"), *facts)))
+    text = "\n".join(map(repr, (__version__, *facts)))
     return f'W/"{hashlib.sha256(text.encode(errors="backslashreplace")).hexdigest()[:32]}"'
 
 

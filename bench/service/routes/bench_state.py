@@ -5,13 +5,13 @@
 
 import asyncio
 from contextlib import suppress
-from importlib.metadata import version
 from typing import Any
 
 from fastapi import APIRouter, Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.requests import ClientDisconnect
 
+from bench import __version__
 from bench.control.drive_factory import is_simulated
 from bench.control.limits import Limits
 from bench.service.auth.access import Viewer, allow_read, require_viewer
@@ -107,7 +107,7 @@ def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
     return Bench(
         **status_of(found, is_simulated(configuration), lease_now(lease.current())),
         name=configuration.name,
-        software_version=version("friction-bench"),
+        software_version=__version__,
         drive=None if found.description is None else _drive(found.description),
         limits=_limits(configuration.limits),
         rig=configuration.rig.model_dump(exclude_none=True),

@@ -1,6 +1,6 @@
 """Rows of the table of experiments. Each function works inside the caller's transaction."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from datetime import UTC, datetime
 from typing import Any
@@ -11,7 +11,6 @@ from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment
 from bench.store.schema import EXPERIMENT, TRIAL
 from bench.store.tables import tags
-from bench.store.tables.provenance_columns import facts_of
 
 COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment) if field.name != "tags")
 
@@ -134,3 +133,26 @@ def check_outcome(outcome: str) -> None:
     if outcome == "running" or outcome not in OUTCOMES:
         wanted = ", ".join(name for name in OUTCOMES if name != "running")
         raise StoreValueError(f"outcome is '{outcome}'; wanted {wanted}")
+
+
+PATHS = {
+    "bench": ("configuration", "name"),
+    "software_version": ("software", "version"),
+    "software_commit": ("software", "commit"),
+    "drive": ("drive", "product"),
+    "firmware": ("drive", "firmware"),
+}
+LARGEST_SEED = 2**63 - 1
+
+
+def facts_of(provenance: Mapping[str, Any]) -> dict[str, str | int | None]:
+    """Column -> value; None where the provenance does not say."""
+    seed = provenance.get("seed")
+    fits = isinstance(seed, int) and not isinstance(seed, bool) and abs(seed) <= LARGEST_SEED
+    return {**{name: _text(provenance, path) for name, path in PATHS.items()}, "seed": seed if fits else None}
+
+
+def _text(provenance: Mapping[str, Any], path: tuple[str, str]) -> str | None:
+    section = provenance.get(path[0])
+    value = section.get(path[1]) if isinstance(section, Mapping) else None
+    return None if value is None else str(value)

@@ -10,9 +10,31 @@ from sqlalchemy import Connection, bindparam, insert, select, update
 from bench.store.errors import NotFoundError, StoreValueError
 from bench.store.records import Trial
 from bench.store.schema import SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL
-from bench.store.tables.blocks import columns_of, decode, encode
 from bench.store.tables.overview import asked_by, asked_by_all, overview_of
 from compensator.lab.recordings.recording import FloatArray
+
+STORED = np.dtype("<f8")
+SAMPLE_BYTES = STORED.itemsize
+
+
+def columns_of(rows: FloatArray) -> FloatArray:
+    """Rows, shape (rows, channels), as columns in memory, shape (channels, rows)."""
+    return np.ascontiguousarray(np.asarray(rows, dtype=STORED).T)
+
+
+def encode(columns: FloatArray) -> bytes:
+    """Bytes of a block.
+
+    Args:
+        columns: shape (channels, rows).
+    """
+    return np.asarray(columns, dtype=STORED).tobytes(order="C")
+
+
+def decode(data: bytes, channels: int) -> NDArray[np.float64]:
+    """Columns of a block, shape (channels, rows), read-only."""
+    return np.frombuffer(data, dtype=STORED).reshape(channels, -1)
+
 
 BLOCK_ROWS = 8192  # larger appends are cut into blocks of this size; twice as fast to read as 65 536, measured
 LARGEST_BLOCK_ROWS = 65_536  # earlier versions cut so

@@ -22,7 +22,7 @@ from bench.store.errors import (
 )
 from bench.store.records import Experiment, Trial
 from bench.store.tables import experiments
-from bench.store.upkeep.removal import remove
+from bench.store.upkeep.retention import remove
 
 # what keeps an end out of the database, though nothing is wrong with the end
 UNWRITTEN = (StoreFileError, StoreFullError, StoreLockedError, StoreReadOnlyError, StoreUnreachableError)

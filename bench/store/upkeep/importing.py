@@ -12,7 +12,7 @@ from bench.store.records import IMPORTING
 from bench.store.schema import TRIAL
 from bench.store.tables import experiments, samples, trials
 from bench.store.tables.experiments import check_outcome, now
-from bench.store.upkeep.removal import remove
+from bench.store.upkeep.retention import remove
 from compensator.lab.recordings.recording import Recording
 
 TRANSACTION_BYTES = 16 * 2**20  # a bench that records meanwhile waits for one of these, not for the whole

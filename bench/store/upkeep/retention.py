@@ -4,14 +4,13 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, delete, select, update
 
 from bench.store.database import Database
-from bench.store.records import HIDDEN
-from bench.store.schema import CALIBRATION, EXPERIMENT, STUDY, TRIAL
-from bench.store.tables.blocks import SAMPLE_BYTES
+from bench.store.records import HIDDEN, REMOVING
+from bench.store.schema import CALIBRATION, EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
 from bench.store.tables.experiments import now
-from bench.store.upkeep.removal import remove
+from bench.store.tables.samples import SAMPLE_BYTES
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,3 +106,33 @@ def _size(connection: Connection, experiment_id: int) -> tuple[int, int]:
     query = select(TRIAL.c.rows, TRIAL.c.channels).where(TRIAL.c.experiment_id == experiment_id)
     sizes = [rows * len(channels) * SAMPLE_BYTES for rows, channels in connection.execute(query)]
     return len(sizes), sum(sizes)
+
+
+BLOCKS_AT_ONCE = 64
+
+
+def remove(database: Database, experiment_id: int) -> None:
+    """Remove an experiment, its trials and their samples. Nothing happens where it is gone."""
+    with database.writing() as connection:
+        mark = update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(outcome=REMOVING, owner=None)
+        connection.execute(mark)
+        connection.execute(update(TRIAL).where(TRIAL.c.experiment_id == experiment_id).values(outcome=REMOVING))
+    with database.reading() as connection:
+        trials = connection.execute(select(TRIAL.c.id).where(TRIAL.c.experiment_id == experiment_id)).scalars().all()
+    for trial_id in trials:
+        while _remove_blocks(database, trial_id):
+            pass
+        with database.writing() as connection:
+            connection.execute(delete(TRIAL).where(TRIAL.c.id == trial_id))  # conditions, events, overview with it
+    with database.writing() as connection:
+        connection.execute(delete(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id))
+
+
+def _remove_blocks(database: Database, trial_id: int) -> int:
+    table = SAMPLE_BLOCK.c
+    with database.writing() as connection:
+        query = select(table.first_row).where(table.trial_id == trial_id).order_by(table.first_row)
+        rows = connection.execute(query.limit(BLOCKS_AT_ONCE)).scalars().all()
+        if rows:
+            connection.execute(delete(SAMPLE_BLOCK).where(table.trial_id == trial_id, table.first_row <= rows[-1]))
+    return len(rows)

@@ -5,7 +5,7 @@ from math import ceil
 from typing import Self
 
 from bench.store.errors import StoreFullError
-from bench.store.tables.blocks import SAMPLE_BYTES
+from bench.store.tables.samples import SAMPLE_BYTES
 
 CHANNELS = 14  # of a recorded row, see bench.control.cycle.RECORDED
 OVERHEAD = 1.3  # overview, pages, indexes and the write-ahead log, beside the samples

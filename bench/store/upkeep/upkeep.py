@@ -10,8 +10,8 @@ from bench.store.database import Database
 from bench.store.errors import StoreFullError, StoreStateError
 from bench.store.migration import HEAD
 from bench.store.schema import EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
-from bench.store.tables.blocks import SAMPLE_BYTES
 from bench.store.tables.experiments import unfinished
+from bench.store.tables.samples import SAMPLE_BYTES
 from bench.store.upkeep.copying import copy_into, sqlite_copy
 
 

@@ -8,7 +8,7 @@ from math import isnan, nan, pi
 
 from bench.config.rig import Rig
 from bench.study.suggestion.dynamics import Dynamics
-from drivers.contract import Command, Description, Mode, Sample, Status
+from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
 
 STEPS = 2  # of the equation of motion per control cycle
 WATCHDOG_S = 1.0
@@ -67,6 +67,10 @@ class Twin:
     def quick_stop(self) -> None:
         """Power off: friction brakes a model."""
         self._status = Status.DISABLED
+
+    def inspect(self) -> Inspection:
+        """The state; it has no fault, and tells no output."""
+        return Inspection(self._status)
 
     def clear_fault(self) -> None:
         """There is none."""

@@ -31,7 +31,8 @@ def moments_of(dataset: Dataset, rows: BoolArray) -> Moments:
     """Cut the chosen rows of every trial into moments of MOMENT_S."""
     trial = dataset.trial_index[rows]
     times_s = [dataset.time_of(one) for one in dataset.trials]
-    widths_s = np.array([max(MOMENT_S, float(time_s[-1]) / MOST_MOMENTS) for time_s in times_s])
+    # a trial of which nothing is usable has no row, and no moment
+    widths_s = np.array([max(MOMENT_S, float(time_s.max(initial=0.0)) / MOST_MOMENTS) for time_s in times_s])
     number = np.floor(np.concatenate(times_s)[rows] / widths_s[trial]).astype(np.int64)
     found, moment = np.unique(np.stack([trial, number], axis=1), axis=0, return_inverse=True)
     return moment.reshape(-1), found[:, 0], widths_s[found[:, 0]] * found[:, 1]

@@ -23,6 +23,7 @@ class Facts:
         arm_inertia_kg_m2: of the arm without load, about the axis.
         arm_moment_n_m: weight of the arm without load, at 90 degrees; None where nobody told.
         supply_is_nominal: True where the supply voltage of the recordings is a number that nobody measured; else None.
+        position_count: what the position sensor resolves at the joint, in the position's unit; None where nobody told.
         effort: the quantity that the models predict; None takes the best that every trial has.
     """
 
@@ -36,6 +37,7 @@ class Facts:
     arm_inertia_kg_m2: float | None = None
     arm_moment_n_m: float | None = None
     supply_is_nominal: bool | None = None
+    position_count: float | None = None
     effort: EffortQuantity | None = None
 
     @property

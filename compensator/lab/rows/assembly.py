@@ -22,6 +22,7 @@ TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so th
 ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
 NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
 FEWEST_ROWS = 40
+LOWEST_STEPS = 0.01
 CONSTANT = 1e-9  # of its largest value: what changes less does not change
 WANTED_MOTION = "record trials with motion in both directions: sines or triangles of several speeds"
 FLANK_SHARE = 0.1  # of the sliding rows that must be left when those near a crossing of the free play are dropped
@@ -55,7 +56,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
             f"{' x '.join(effort.channels)} is {measured[0]:.3g} {effort.unit} all the time; check the channel's "
             "mapping, or choose trials in which it is measured"
         )
-    noise = max(_velocity_noise(s, facts, cutoff) for s in signals)
+    noise = _velocity_noise(signals, facts, cutoff)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))
     trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in signals])
@@ -212,14 +213,31 @@ def _carried(motion: Motion) -> FloatArray:
     return moment * np.sin(motion.position) + inertia * motion.acceleration
 
 
-def _velocity_noise(signals: Signals, facts: Facts, cutoff_hz: float) -> float:
-    """Standard deviation of the velocity from the position's quantisation, after the differentiation filter."""
-    raw = signals.recording.channels[f"position_{facts.position_unit}"]
-    steps = np.abs(np.diff(raw))
-    steps = steps[steps > 0]
-    if len(steps) == 0:
-        return 0.0
-    quantum = float(np.quantile(steps, 0.01))
-    wide_hz = min(DIFFERENTIATION_FACTOR * cutoff_hz, 0.5 * signals.rate_hz)
-    in_band = np.sqrt(wide_hz / (0.5 * signals.rate_hz))
-    return float(quantum / np.sqrt(12.0) * in_band * 2.0 * np.pi * wide_hz / np.sqrt(3.0))
+def _velocity_noise(signals: Sequence[Signals], facts: Facts, cutoff_hz: float) -> float:
+    """Standard deviation of the velocity from the position's quantisation, after the differentiation filter.
+
+    One sensor measures all trials, so there is one count; where the rate differs, the noisiest trial counts.
+    """
+    count = facts.position_count or _finest_step(signals, facts)
+    return max(_noise_of_count(count, s.rate_hz, cutoff_hz) for s in signals)
+
+
+def _noise_of_count(count: float, rate_hz: float, cutoff_hz: float) -> float:
+    """Of white rounding errors, uniform over one count, differentiated within the band of the wide filter."""
+    wide_hz = min(DIFFERENTIATION_FACTOR * cutoff_hz, 0.5 * rate_hz)
+    in_band = np.sqrt(wide_hz / (0.5 * rate_hz))
+    return float(count / np.sqrt(12.0) * in_band * 2.0 * np.pi * wide_hz / np.sqrt(3.0))
+
+
+def _finest_step(signals: Sequence[Signals], facts: Facts) -> float:
+    """The position's count as the recordings tell: the slowest trial shows it, a fast one steps over several at once.
+
+    The lowest percent of a trial's steps is left out, which rounding in a file can make smaller than a count.
+    """
+    found = []
+    for one in signals:
+        steps = np.abs(np.diff(one.recording.channels[f"position_{facts.position_unit}"]))
+        steps = steps[steps > 0]
+        if len(steps):
+            found.append(float(np.quantile(steps, LOWEST_STEPS)))
+    return min(found, default=0.0)

@@ -8,6 +8,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration, default_configuration, parse_configuration
+from bench.config.drives.kind import ConformanceBench, DriveKind
+from bench.config.drives.registry import drive_kinds
 from bench.control.clock import Clock, VirtualClock, WallClock
 from bench.control.drive_factory import make_equipment
 from bench.control.limits import Guard
@@ -18,7 +20,6 @@ from tests.bench.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
 
 PERIOD_S = 0.01
-WATCHDOG_S = 1.0  # a busy machine keeps a host waiting for longer than a lab's would
 ANSWER_TIMEOUT_S = 0.3
 PATIENT = ("--patience", "0.012")  # for trials whose results count: a host that is late finds the joint where it was
 
@@ -93,12 +94,6 @@ def configured(**drive: Any) -> BenchConfiguration:
 
 
 @contextmanager
-def in_process(*_device: str) -> Iterator[Bench]:
-    plant = {"current_sensor": {"present": True}, "heat": {"present": True}}
-    yield Bench("sim", configured(kind="sim", plant=plant))
-
-
-@contextmanager
 def port_name() -> Iterator[str]:
     """A name for a port that stays while the port goes and comes back."""
     with TemporaryDirectory(prefix="friction-bench-") as folder:
@@ -106,35 +101,20 @@ def port_name() -> Iterator[str]:
 
 
 @contextmanager
-def roboclaw(*device_options: str) -> Iterator[Bench]:
-    options = ["--baud", "0", *device_options]
-    with port_name() as link, device_process("roboclaw", "--link", link, *options) as device:
-        settings = {"watchdog_s": WATCHDOG_S, "answer_timeout_s": ANSWER_TIMEOUT_S}
-        yield Bench("roboclaw", configured(**device.drive, **settings), device)
-
-
-@contextmanager
-def canopen(*device_options: str) -> Iterator[Bench]:
-    with port_name() as link, device_process("canopen", "--link", link, *device_options) as device:
-        settings = {"watchdog_s": WATCHDOG_S, "answer_s": 2.0 * ANSWER_TIMEOUT_S}
-        yield Bench("canopen", configured(**device.drive, **settings), device)
-
-
-@contextmanager
-def modbus(transport: str, *device_options: str) -> Iterator[Bench]:
+def set_up(kind: DriveKind[Any], variant: ConformanceBench, *device_options: str) -> Iterator[Bench]:
+    """The bench of one variant of a kind, with its simulated device where it has one."""
+    if kind.simulate is None:
+        yield Bench(variant.name, configured(kind=kind.name, **variant.settings))
+        return
     with port_name() as link:
-        options = ["--baud", "0", "--link", link] if transport == "rtu" else []
-        with device_process("modbus", "--transport", transport, *options, *device_options) as device:
-            settings = {"watchdog_s": WATCHDOG_S, "answer_timeout_s": ANSWER_TIMEOUT_S}
-            yield Bench(f"modbus-{transport}", configured(**device.drive, **settings), device)
+        options = [*variant.device, *(("--link", link) if variant.has_link else ()), *device_options]
+        with device_process(kind.name, *options) as device:
+            yield Bench(variant.name, configured(**device.drive | variant.settings), device)
 
 
-BENCHES: dict[str, Callable[[], Any]] = {
-    "sim": in_process,
-    "roboclaw": roboclaw,
-    "canopen": canopen,
-    "modbus-rtu": partial(modbus, "rtu"),
-    "modbus-tcp": partial(modbus, "tcp"),
+# of every kind that is installed: another package's driver is held to the contract by the same tests
+BENCHES: dict[str, Callable[..., Any]] = {
+    variant.name: partial(set_up, kind, variant) for kind in drive_kinds().values() for variant in kind.conformance
 }
 
 

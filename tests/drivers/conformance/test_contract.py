@@ -165,7 +165,13 @@ def test_motion_needs_to_be_enabled(bench):
 
 def test_calls_before_opening_are_refused(bench):
     with bench.drive() as drive:
-        for call in (lambda: drive.exchange(OFF), lambda: drive.enable(Mode.DUTY), drive.quick_stop, drive.clear_fault):
+        for call in (
+            lambda: drive.exchange(OFF),
+            lambda: drive.enable(Mode.DUTY),
+            drive.quick_stop,
+            drive.clear_fault,
+            drive.inspect,
+        ):
             with pytest.raises(DriveStateError, match="open"):
                 call()
         drive.close()
@@ -196,6 +202,31 @@ def test_a_silent_host_is_switched_off_by_the_drive_itself(wired):
         # the drive's own time: no other process has to be quick
         assert wired.watched_s * 0.5 < off_s - before_s < wired.watched_s + 0.3
         assert knows_that_it_is_off(drive, Command(mode, PUSHES[mode]))
+
+
+def test_what_it_says_of_itself_when_nothing_is_written(bench):
+    with bench.opened() as drive:
+        assert drive.inspect().status is Status.DISABLED
+        assert drive.inspect().fault == ""
+        mode = push_mode(drive)
+        drive.enable(mode)
+        cycles(drive, Command(mode, PUSHES[mode]), 5)
+        found = drive.inspect()
+        assert found.status is Status.ENABLED
+        if mode is Mode.DUTY and not isnan(found.duty):
+            assert found.duty == pytest.approx(PUSHES[mode], abs=1e-3)
+
+
+def test_a_watchdog_that_ran_out_is_seen_before_anything_is_written(wired):
+    with wired.opened() as drive:
+        mode = push_mode(drive)
+        drive.enable(mode)
+        cycles(drive, Command(mode, PUSHES[mode]), 2)
+        time.sleep(1.5 * wired.watched_s)
+        found = drive.inspect()
+        assert not wired.device.truth()["powered"]
+        assert found.status is not Status.ENABLED or found.duty == 0.0
+        assert isnan(found.duty) or found.duty == 0.0
 
 
 def test_a_host_that_was_lost_leaves_nothing_for_the_next_one_to_clear(wired):

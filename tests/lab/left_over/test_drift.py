@@ -1,10 +1,18 @@
 """A coefficient that wanders is told from one that is constant as often as chance says, and no more."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from compensator.lab.left_over.drift import MEMORY_S, MOMENT_S, chance_of_drift
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.drift import MEMORY_S, MOMENT_S, chance_of_drift, moments_of
+from compensator.lab.model.fit import fit_model
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.evidence import Base
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 TRIALS, MOMENTS, ROWS = 8, 12, 10  # rows in a moment
 COLUMN = np.sign(np.sin(np.linspace(0.0, 300.0, TRIALS * MOMENTS * ROWS)))
@@ -49,3 +57,13 @@ def test_a_coefficient_that_jumps_now_and_then_is_told_where_stretches_of_its_ow
     random = np.random.default_rng(6)
     jumps = np.cumsum(random.random(TRIALS * MOMENTS) < MOMENT_S / 4.0) % 2
     assert chance(0.45 * jumps, random) < 1e-4
+
+
+def test_a_trial_without_a_usable_row_has_no_moment_and_stops_no_diagnosis():
+    made = recordings(Joint(extra=lambda x: 0.004 * np.sign(x.v) * (x.time_s > 3.0)), Bench(duration_s=6.0), plans())
+    last = made[-1]
+    off = replace(last, channels={**last.channels, "enabled": np.zeros(len(last))})  # the power stage was never on
+    dataset = make_dataset([*made[:-1], off], FACTS, Processing(cutoff_hz=8.0))
+    _, trials, _ = moments_of(dataset, dataset.counted)
+    assert set(trials) == set(range(len(made) - 1))
+    assert diagnose(fit_model(dataset, default_effects(FACTS))).sentence

@@ -1,0 +1,56 @@
+"""The top level of the command line: lists every command, and imports one when it is used.
+
+Typer wants every command at hand before it prints a list of them. Their modules take a second together, so the list is
+made from the table in `bench.cli.commands` and a command stands in for its module until it is called.
+"""
+
+from functools import cached_property
+from pkgutil import resolve_name
+from typing import Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from bench.cli.commands import COMMANDS, CommandEntry
+from bench.cli.exit_codes import errors_as_messages
+
+
+class ListedCommand(TyperCommand):
+    """A command whose module is imported when it is called, or asked for its own help or completion.
+
+    Args:
+        entry: where the command is, and its line in the help.
+    """
+
+    def __init__(self, entry: CommandEntry) -> None:
+        super().__init__(entry.name, short_help=entry.help)
+        self._entry = entry
+
+    @cached_property
+    def loaded(self) -> Any:
+        """The command itself."""
+        found = resolve_name(self._entry.place)
+        holder = typer.Typer(rich_markup_mode="markdown")
+        if isinstance(found, typer.Typer):
+            holder.add_typer(found, name=self._entry.name)
+        else:
+            holder.command(self._entry.name)(found)
+        return typer.main.get_group(holder).commands[self._entry.name]
+
+    def make_context(self, info_name: str | None, args: list[str], parent: Any = None, **extra: Any) -> Any:
+        """The context of the command itself: whatever is done with it is done with the command, not with this."""
+        return self.loaded.make_context(info_name, args, parent=parent, **extra)
+
+
+class CommandGroup(TyperGroup):
+    """The commands of the table, in its order. Errors of every command end here."""
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        for entry in COMMANDS:
+            self.add_command(ListedCommand(entry))
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; errors of ours become a message and an exit code."""
+        with errors_as_messages():
+            return super().invoke(ctx)

@@ -1,0 +1,42 @@
+"""CiA 402 drives on a CAN bus as a kind."""
+
+from bench.config.drives.kind import ConformanceBench, DriveKind
+from bench.config.drives.real import driver_values, joint_scale
+from bench.config.drives.simulated_device import Simulate
+from bench.config.rig import Rig
+from bench.drives.canopen.settings import CanopenDriveSettings
+from bench.errors import ConfigurationError
+from drivers.contract import Drive
+
+
+def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
+    """The driver.
+
+    Raises:
+        ConfigurationError: settings that contradict each other.
+    """
+    from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+    from drivers.errors import DriveConfigurationError
+
+    values = driver_values(settings)
+    bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    try:
+        return CanopenDrive(CanopenSettings(bus=bus, **values), joint_scale(settings, rig))
+    except DriveConfigurationError as error:
+        raise ConfigurationError(str(error)) from error
+
+
+def simulate() -> Simulate:
+    """The command that simulates one."""
+    from bench.drives.canopen.device import simulate
+
+    return simulate
+
+
+KIND = DriveKind(
+    title="CiA 402 servo drive, CANopen",
+    settings=CanopenDriveSettings,
+    make=make,
+    simulate=simulate,
+    conformance=(ConformanceBench("canopen", settings={"watchdog_s": 1.0, "answer_s": 0.6}),),
+)

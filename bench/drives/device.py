@@ -1,0 +1,79 @@
+"""The options that every `friction-bench simulate-device KIND` has beside its own."""
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from bench.errors import ConfigurationError
+
+Baud = Annotated[int, typer.Option(min=0, help="Pace of the line in bits a second; 0 is as fast as the machine.")]
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True)
+class DeviceOptions:
+    """The joint behind a device, and where the device is to be found."""
+
+    link: Annotated[Path | None, typer.Option(help="Symbolic link to put on the port, so that its name stays.")] = None
+    preset: Annotated[str, typer.Option(help="Plant that is simulated.")] = "paper"
+    plant: Annotated[Path | None, typer.Option(help="TOML file with plant parameters that differ from the preset.")] = (
+        None
+    )
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the plant's scatter and noise.")] = 1
+    side_port: Annotated[
+        int, typer.Option(min=0, max=65535, help="TCP port of the side channel; 0 is any free one.")
+    ] = 0
+    patience: Annotated[
+        float | None,
+        typer.Option(
+            min=0.001,
+            max=1.0,
+            metavar="SECONDS",
+            help="For a machine that is busy with other work, whose host is late at times: while the motor is powered "
+            "or the joint moves, the drive's time goes no further than this without a word of the host.",
+        ),
+    ] = None
+    json: Annotated[bool, typer.Option("--json", help="Print the addresses as one line of JSON, for programs.")] = False
+
+    def values(self) -> dict[str, Any]:
+        """As the settings of every simulated device take them.
+
+        Raises:
+            ConfigurationError: the file with plant parameters cannot be read, or is no TOML.
+        """
+        return {
+            "link": self.link,
+            "preset": self.preset,
+            "plant": self._plant_tables(),
+            "seed": self.seed,
+            "side_port": self.side_port,
+            "patience_s": self.patience,
+        }
+
+    def _plant_tables(self) -> dict[str, Any]:
+        if self.plant is None:
+            return {}
+        try:
+            return tomllib.loads(self.plant.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise ConfigurationError(f"{self.plant}: cannot be read: {error.strerror}") from error
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise ConfigurationError(f"{self.plant}: is no TOML: {error}") from error
+
+
+def started(make: Callable[[], Made]) -> Made:
+    """What `make` returns; what the simulation refuses is an error of the configuration.
+
+    Raises:
+        ConfigurationError: the joint cannot be, or a port is taken.
+    """
+    from sim_backend.errors import ParameterError
+
+    try:
+        return make()
+    except (ParameterError, OSError) as error:
+        raise ConfigurationError(f"simulated device: {error}") from error

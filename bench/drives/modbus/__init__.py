@@ -1,0 +1,1 @@
+"""Drives on Modbus RTU and TCP, by their register maps."""

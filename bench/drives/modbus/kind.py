@@ -1,0 +1,49 @@
+"""Drives on Modbus as a kind."""
+
+from bench.config.drives.kind import ConformanceBench, DriveKind
+from bench.config.drives.real import driver_values, joint_scale
+from bench.config.drives.simulated_device import Simulate
+from bench.config.rig import Rig
+from bench.drives.modbus.settings import ModbusDriveSettings
+from bench.errors import ConfigurationError
+from drivers.contract import Drive
+
+_UNHURRIED = {"watchdog_s": 1.0, "answer_timeout_s": 0.3}
+
+
+def make(settings: ModbusDriveSettings, rig: Rig) -> Drive:
+    """The driver with its register map.
+
+    Raises:
+        ConfigurationError: there is no such map, it cannot be used, or the TCP port is no number.
+    """
+    from drivers.modbus.drive import ModbusDrive
+    from drivers.modbus.map_file import MapError, load_map
+    from drivers.modbus.settings import ModbusSettings
+
+    if settings.transport == "tcp" and not settings.port.isdigit():
+        raise ConfigurationError(f"drive.port is '{settings.port}'; with drive.transport = 'tcp' a number is wanted")
+    try:
+        register_map = load_map(settings.map)
+    except MapError as error:
+        raise ConfigurationError(f"drive.map: {error}") from error
+    return ModbusDrive(ModbusSettings(**driver_values(settings)), register_map, joint_scale(settings, rig))
+
+
+def simulate() -> Simulate:
+    """The command that simulates one."""
+    from bench.drives.modbus.device import simulate
+
+    return simulate
+
+
+KIND = DriveKind(
+    title="drive on Modbus RTU or TCP, by its register map",
+    settings=ModbusDriveSettings,
+    make=make,
+    simulate=simulate,
+    conformance=(
+        ConformanceBench("modbus-rtu", ("--transport", "rtu", "--baud", "0"), _UNHURRIED),
+        ConformanceBench("modbus-tcp", ("--transport", "tcp"), _UNHURRIED, has_link=False),
+    ),
+)

@@ -1,0 +1,1 @@
+"""RoboClaw motor controllers on a serial port."""

@@ -1,0 +1,32 @@
+"""What only a simulated joint has: the operator's hand and the surroundings in software, and torques that are known."""
+
+from math import nan
+from typing import TYPE_CHECKING
+
+from drivers.contract import Drive
+
+if TYPE_CHECKING:
+    from sim_backend.environment.surroundings import Hand, Surroundings
+
+
+def wall_torque_n_m(drive: Drive) -> float:
+    """Torque [N m] with which a wall or an end stop pushes the arm of a simulated joint; NaN of a real one."""
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+
+    return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan
+
+
+def make_hand(drive: Drive) -> "Hand | None":
+    """The operator's hand on the arm of a simulated drive; None at a real one, where a person stands."""
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+    from sim_backend.environment.surroundings import Hand
+
+    return Hand(drive.plant) if isinstance(drive, SimulatedDrive) else None
+
+
+def make_surroundings(drive: Drive) -> "Surroundings | None":
+    """What the arm of a simulated drive meets; None at a real one."""
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+    from sim_backend.environment.surroundings import Surroundings
+
+    return Surroundings(drive.plant) if isinstance(drive, SimulatedDrive) else None

@@ -1,0 +1,50 @@
+// The bench: start form, drive and limits, live plot.
+
+import { get } from "../app/api.js";
+import { attempt, together } from "../ui/attempt.js";
+import { facts, h, panel, replace } from "../ui/dom.js";
+import { nameOf, number } from "../ui/format.js";
+import { leasePanel } from "./lease.js";
+import { livePlot } from "./liveplot.js";
+import { queuePanel } from "../queue/queue.js";
+import { startForm } from "./start.js";
+
+const UNITS = { degC: "°C" };
+
+export function benchView(place, { live }) {
+  const start = h("div");
+  const lease = h("div");
+  const queue = h("div");
+  const drive = h("div");
+  const plot = h("div");
+  replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
+    panel("Queue", queue), panel("Drive and limits", drive)));
+  const waiting = queuePanel(queue);
+  const form = startForm(start, live, () => waiting.refresh());
+  const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
+  let shown = live.status?.run?.experiment_id;
+  const changed = () => {
+    if (live.status?.run?.experiment_id === shown) return;
+    shown = live.status?.run?.experiment_id;
+    refresh();
+  };
+  live.addEventListener("status", changed);
+  together(place, [form, refresh()]);
+  const leave = livePlot(plot, live);
+  const leaveLease = leasePanel(lease, live);
+  return () => {
+    leaveLease();
+    waiting.leave();
+    live.removeEventListener("status", changed);
+    leave();
+  };
+}
+
+function description(bench) {
+  const { drive, limits } = bench;
+  const identity = drive
+    ? [["drive", [drive.vendor, drive.product].filter(Boolean).join(" ") || drive.device], ["firmware", drive.firmware || "not told"],
+      ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s`]]
+    : [["drive", "opens at the first start"]];
+  return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, `${number(limit.value)} ${UNITS[limit.unit] ?? limit.unit}`]), ["software", bench.software_version]]);
+}

@@ -1,0 +1,112 @@
+// Live: what the joint does, drawn whenever rows arrive (more than twenty times a second); frozen, zoomed, channel by channel.
+
+import { Chart } from "../plots/chart.js";
+import { h, replace } from "../ui/dom.js";
+import { number } from "../ui/format.js";
+import { LatestTrials } from "./latesttrials.js";
+import { around, HALF, LOAD, loadBands, newest } from "./load.js";
+import { markLegend, marksOf } from "../plots/marks.js";
+
+const STALE_EVERY_MS = 500;
+const SECONDS = [["0", "all of the trial"], ["5", "last 5 s"], ["20", "last 20 s"]];
+const CHANNELS = [
+  { name: "target_rad", text: "target", unit: "rad", colour: "orange", dash: [5, 4] },
+  { name: "position_rad", text: "position", unit: "rad", colour: "blue" },
+  { name: "velocity_rad_s", text: "speed", unit: "rad/s", colour: "green" },
+  { name: "current_a", text: "current", unit: "A", colour: "red" },
+  { name: "current_estimate_a", text: "current from duty", unit: "A", colour: "purple" },
+  { name: "current_load_a", text: "load current (band: 95 %)", unit: "A", colour: "sky", width: 3 },
+  { name: "duty", text: "duty", unit: "duty", colour: "blue" },
+  { name: "supply_v", text: "supply", unit: "V", colour: "orange", off: true },
+  { name: "temperature_c", text: "temperature", unit: "°C", colour: "red", off: true },
+];
+
+export function livePlot(place, live) {
+  const progress = h("progress", { max: "1", value: "0", "aria-label": "Progress of the experiment" });
+  const outcome = h("p", { class: "soft", role: "status" });
+  const readings = h("dl", { class: "readings" });
+  const note = h("p", { class: "soft" });
+  const loads = h("div");
+  const boxes = CHANNELS.map((one) => h("input", { type: "checkbox", checked: !one.off, value: one.name }));
+  const freeze = h("input", { type: "checkbox", id: "freeze" });
+  const seconds = h("select", { "aria-label": "Shown time" }, SECONDS.map(([value, text]) => h("option", { value }, text)));
+  const picture = h("div");
+  replace(place, progress, outcome, readings, h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), seconds,
+    h("details", {}, h("summary", {}, "Channels"), h("div", { class: "row centre" },
+      CHANNELS.map((one, index) => h("label", { class: "inline" }, boxes[index], `${one.text} [${one.unit}]`))))), picture, note, loads);
+  const chart = new Chart(picture, { label: "Position, speed, current and duty of the trial that runs", height: 520 });
+  const latest = new LatestTrials(live);
+
+  let frozen = null;
+  let shownLength = 0;
+  let load = { experiment: null, text: null }; // of the trial that runs, or of one before it in the same experiment
+  const show = () => {
+    const chosen = CHANNELS.filter((one, index) => boxes[index].checked);
+    const content = frozen ? contentOf(frozen.rows, chosen, frozen.marks, Number(seconds.value)) : contentOf(live.rows, chosen, marksOf(latest.events), Number(seconds.value));
+    if (!frozen && live.rows.length < shownLength) chart.showAll(); // another trial has begun
+    shownLength = live.rows.length;
+    chart.show(content);
+    note.textContent = content.lines.length ? markLegend(content.marks) || "\u00a0" : "No rows yet: they appear here while an experiment runs.";
+  };
+  const status = () => {
+    const run = live.status?.run;
+    progress.value = run?.progress ?? 0;
+    outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment.";
+    const before = load.experiment === run?.experiment_id ? load.text : null;
+    load = { experiment: run?.experiment_id, text: newest(live.rows) ?? before };
+    replace(readings, readingsOf(live.status?.reading, load.text));
+  };
+  const timer = setInterval(() => place.classList.toggle("stale", live.stale), STALE_EVERY_MS);
+  // the chart draws once a frame, however often it is told
+  const update = () => { if (!freeze.checked && !document.hidden) show(); };
+  const trials = () => {
+    update();
+    loadBands(loads, latest.trials);
+  };
+  freeze.addEventListener("change", () => {
+    frozen = freeze.checked ? { rows: live.rows.copy(), marks: marksOf(latest.events) } : null;
+    show();
+  });
+  for (const box of [...boxes, seconds]) box.addEventListener("change", show);
+  live.addEventListener("rows", update);
+  live.addEventListener("status", status);
+  latest.addEventListener("change", trials);
+  show();
+  status();
+  return () => {
+    clearInterval(timer);
+    latest.close();
+    chart.close();
+    live.removeEventListener("rows", update);
+    live.removeEventListener("status", status);
+  };
+}
+
+// rows of the ring -> what the chart draws; channels that are not measured have no line, units without lines no row
+function contentOf(rows, chosen, marks, seconds) {
+  const all = rows.column("time_s") ?? new Float64Array();
+  const measured = chosen.filter((one) => rows.column(one.name)?.some(Number.isFinite));
+  const units = [...new Set(measured.map((one) => one.unit))];
+  const last = all.at(-1) ?? 0;
+  const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: rows.column(one.name), colour: one.colour, dash: one.dash, width: one.width }));
+  const load = measured.find((one) => one.name === LOAD);
+  const bands = load && rows.column(HALF) ? [around(units.indexOf(load.unit), all, rows.column(LOAD), rows.column(HALF), load.colour)] : [];
+  return {
+    rows: units.length ? units.map((title) => ({ title })) : [{ title: "" }], lines, bands,
+    marks: marks.filter((one) => one.letter && one.x <= last), xTitle: "time in the trial [s]",
+    limits: seconds && all.length ? [Math.max(all[0], last - seconds), last] : undefined,
+  };
+}
+
+function sentence(run) {
+  if (run.outcome === "running") return `Running ${run.kind}: trial ${run.trial_index + 1} of ${run.trial_count}, ${number(Math.round(100 * run.progress))} %.`;
+  return `Experiment ${run.experiment_id} (${run.kind}): ${run.outcome}${run.reason ? `: ${run.reason}` : ""}`;
+}
+
+function readingsOf(values, load) {
+  const shown = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
+    ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
+  const known = shown.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
+  const read = known.map(([text, name, unit]) => [text, `${values[name].toFixed(3).replace("-", "−")} ${unit}`]);
+  return [...read, ...(load ? [["load current, as last found", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
+}

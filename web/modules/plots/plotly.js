@@ -1,0 +1,62 @@
+// Plots by plotly, with the colours of the page.
+
+import { colour, faded } from "../ui/colours.js";
+import { h } from "../ui/dom.js";
+
+// nothing of a bench leaves it: no button that sends a chart to somebody else's server
+const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"], showSendToCloud: false, plotlyServerURL: "" };
+
+function axis(extra) {
+  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, ...extra };
+}
+
+export function layout(extra = {}) {
+  const narrow = matchMedia("(max-width: 760px)").matches;
+  const base = {
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colour("text"), family: "system-ui, sans-serif", size: narrow ? 11 : 12 },
+    margin: { l: 60, r: 12, t: 12, b: 44 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 }, hovermode: "closest",
+    uirevision: "keep", modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("accent") },
+  };
+  const axes = {};
+  for (const [name, value] of Object.entries({ xaxis: {}, yaxis: {}, ...extra })) if (/^[xy]axis\d*$/.test(name)) axes[name] = axis(value);
+  return { ...base, ...extra, ...axes };
+}
+
+export async function draw(place, traces, extra = {}) {
+  place.classList.add("plot");
+  const plotly = await PLOTLY;
+  return plotly.react(place, traces, layout(extra), CONFIG);
+}
+
+// STOP and the forms must not wait for a large file; and plotly must find its style sheet when it starts (see index.html)
+async function load() {
+  const sheet = document.getElementById("plotly.js-style-global");
+  if (!sheet.sheet) await new Promise((resolve) => sheet.addEventListener("load", resolve));
+  const script = h("script", { src: "/static/plotly.min.js" });
+  await new Promise((resolve, reject) => {
+    script.addEventListener("load", resolve);
+    script.addEventListener("error", () => reject(new Error("the plots could not be loaded from the service; reload the page")));
+    document.head.append(script);
+  });
+  return window.Plotly;
+}
+
+const PLOTLY = load();
+PLOTLY.catch(() => {}); // each plot that waits for it says so itself
+
+export function forget(place) {
+  if (place && window.Plotly) window.Plotly.purge(place);
+}
+
+// a line with its band; two traces, one legend entry
+export function band(x, low, high, name, colourName, extra = {}) {
+  return {
+    x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], fill: "toself", fillcolor: faded(colourName), line: { width: 0 },
+    mode: "lines", hoverinfo: "skip", showlegend: false, name, ...extra,
+  };
+}
+
+// plots follow the page when it changes between light and dark
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  for (const place of document.querySelectorAll(".plot.js-plotly-plot")) window.Plotly.react(place, place.data, layout(place.layout), CONFIG);
+});

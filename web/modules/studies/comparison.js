@@ -1,0 +1,111 @@
+// Measured against predicted: over time with the residual beneath, over speed and load, against each driver, per trial and regime.
+
+import { get } from "../app/api.js";
+import { attempt } from "../ui/attempt.js";
+import { closedLoop } from "./closedloop.js";
+import { facts, h, panel, replace, table } from "../ui/dom.js";
+import { errorMap, momentList } from "./errormap.js";
+import { chanceCell, conditions, interval, nameOf, number, percent } from "../ui/format.js";
+import { colour } from "../ui/colours.js";
+import { band, draw } from "../plots/plotly.js";
+import { SeriesPlot } from "./seriesplot.js";
+
+const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
+
+// returns what has to be closed when the place is left
+export async function comparison(place, compared, path) {
+  const [series, loop, spots, moments, drivers] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
+  drivers.className = "cards";
+  replace(place,
+    panel("Measured against predicted", errors(compared), series),
+    panel("In closed loop", loop),
+    panel("Where the model is wrong", spots, moments),
+    panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers),
+    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), ...restTable(compared), parameterTable(compared), ...breakawayTable(compared))),
+    compared.notes.length ? panel("Notes", compared.notes.map((note) => h("p", {}, note))) : null);
+  const plot = new SeriesPlot(series, compared);
+  closedLoop(loop, path, compared.model_id);
+  const ask = (where, words) => attempt(moments, async () => {
+    const query = new URLSearchParams([...where.map((one) => ["where", one]), ["model_id", compared.model_id]]);
+    momentList(moments, words, await get(`${path}/moments?${query}`), (one) => plot.showMoment(one));
+    moments.scrollIntoView({ block: "nearest" });
+  }, { busy: "Looking …" });
+  attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask), { busy: "Looking …" });
+  for (const driver of compared.residual_against) {
+    const picture = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${nameOf(driver.driver)}` });
+    drivers.append(picture);
+    await driverPlot(picture, driver, compared.effort);
+    picture.on?.("plotly_click", ({ points }) => ask(...spotOf(driver, points[0])));
+  }
+  return plot;
+}
+
+// the bin around a point: half-way to its neighbours, on the side of its direction
+export function spotOf(driver, point) {
+  const group = driver.groups[Math.floor(point.curveNumber / 2)];
+  const at = point.pointIndex;
+  const low = at > 0 ? (group.x[at - 1] + group.x[at]) / 2 : group.x[at] - 1e9;
+  const high = at < group.x.length - 1 ? (group.x[at] + group.x[at + 1]) / 2 : group.x[at] + 1e9;
+  const side = { forward: ["direction=0..1"], backward: ["direction=-1..0"] }[group.direction] ?? [];
+  return [[`${driver.driver}=${low}..${high}`, ...side], `${nameOf(driver.driver)} near ${number(group.x[at], 3)} ${driver.unit}, ${group.direction}`];
+}
+
+function errors({ error, effort }) {
+  const text = (one) => (one ? `${percent(one.relative)} (${number(one.rms, 3)} ${effort.unit} rms)` : "unknown: needs repeated trials");
+  const kinds = { "hold-out": "held-out trials", "leave-one-trial-out": "each trial left out in turn", "leave-one-block-out": "stretches left out in turn" };
+  return facts([["training error", text(error.training)], [kinds[error.held_out?.kind] ?? "held-out", text(error.held_out)], ["floor from repeats", text(error.floor)]]);
+}
+
+function driverPlot(plot, driver, effort) {
+  const traces = driver.groups.flatMap((group) => {
+    const name = DIRECTIONS[group.direction] ?? "blue";
+    const marker = { symbol: group.direction === "backward" ? "diamond" : "circle", size: 6 };
+    return [band(group.x, group.low, group.high, group.direction, name),
+      { x: group.x, y: group.mean, name: group.direction, mode: "lines+markers", marker, line: { color: colour(name) }, customdata: group.count, hovertemplate: "%{x:.4g}: %{y:.4g} (%{customdata} rows)" }];
+  });
+  return draw(plot, traces, { height: 270, xaxis: { title: { text: `${nameOf(driver.driver)}${driver.unit ? ` [${driver.unit}]` : ""}` } },
+    yaxis: { title: { text: `residual [${effort.unit}]` } } });
+}
+
+function trialTable({ trials }) {
+  return table("Error per trial", [
+    { title: "Trial", cell: (trial) => [trial.name, h("div", { class: "hint" }, conditions(trial.conditions))] },
+    { title: "Role", cell: (trial) => trial.role.replace("_", "-") },
+    { title: "Error", number: true, cell: (trial) => percent(trial.relative) },
+  ], trials);
+}
+
+function regimeTable({ regimes, effort }) {
+  return table("Error per regime", [
+    { title: "Regime", cell: (regime) => nameOf(regime.name) },
+    { title: "Rows", number: true, cell: (regime) => regime.rows },
+    { title: `rms [${effort.unit}]`, number: true, cell: (regime) => number(regime.rms, 3) },
+    { title: "Error", number: true, cell: (regime) => percent(regime.relative) },
+  ], regimes);
+}
+
+function restTable({ at_rest: atRest, effort }) {
+  if (!atRest) return [];
+  return [table(`At rest, ${atRest.stretches} stretches of 0.1 s: beyond what friction holds`, [
+    { title: "Side", cell: (one) => one.side },
+    { title: "Outside", number: true, cell: (one) => percent(one.outside) },
+    { title: `Largest [${effort.unit}]`, number: true, cell: (one) => number(one.largest, 3) },
+    { title: "p", number: true, cell: (one) => chanceCell(one.p_value) },
+    { title: "Surest in", cell: (one) => one.trial },
+  ], atRest.sides), h("p", { class: "soft" }, atRest.sentence)];
+}
+
+function breakawayTable({ breakaway }) {
+  if (!breakaway) return [];
+  const errors = `error ${percent(breakaway.training.relative)}, held out ${percent(breakaway.held_out.relative)}`;
+  return [parameterTable(breakaway, `Breakaway: ${breakaway.starts} starts from rest, ${errors}`)];
+}
+
+function parameterTable({ parameters }, title = "Parameters") {
+  return table(title, [
+    { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
+    { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
+    { title: "Unit", cell: (one) => one.unit },
+    { title: "Note", cell: (one) => one.note },
+  ], parameters);
+}

@@ -1,0 +1,52 @@
+// The ladder: relative error of each model, training and held-out, down towards the floor.
+// The name of a model in the ladder: its number, and what it was changed by.
+
+import { h, replace, table } from "../ui/dom.js";
+import { interval, number, percent } from "../ui/format.js";
+import { colour } from "../ui/colours.js";
+import { draw } from "../plots/plotly.js";
+
+export async function ladderPlot(place, ladder, current) {
+  const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });
+  const floor = floorValue(ladder.floor);
+  replace(place, plot, rungTable(ladder, current),
+    floor !== null && h("p", { class: "soft" }, `Floor: repeated trials differ by ${percent(floor)} among themselves; no model can be better than that.`));
+  const names = ladder.rungs.map(rungName);
+  const held = ladder.rungs.map((rung) => 100 * rung.held_out);
+  const traces = [
+    { x: names, y: held, name: "held-out", mode: "lines+markers", marker: { size: 10, symbol: "circle" }, line: { color: colour("blue"), width: 3 },
+      error_y: spread(ladder.rungs) },
+    { x: names, y: ladder.rungs.map((rung) => 100 * rung.training), name: "training", mode: "lines+markers", marker: { size: 8, symbol: "diamond" },
+      line: { color: colour("orange"), width: 2, dash: "dash" } },
+  ];
+  const shapes = floor === null ? [] : [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 100 * floor, y1: 100 * floor, line: { color: colour("green"), dash: "dot", width: 2 } }];
+  const annotations = floor === null ? [] : [{ xref: "paper", x: 1, y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];
+  await draw(plot, traces, { height: 280, shapes, annotations, xaxis: { type: "category" }, yaxis: { title: { text: "relative error [%]" }, rangemode: "tozero" } });
+}
+
+function spread(rungs) {
+  if (rungs.some((rung) => rung.held_out_low === null || rung.held_out_low === undefined)) return undefined;
+  return { type: "data", symmetric: false, array: rungs.map((rung) => 100 * Math.max(0, rung.held_out_high - rung.held_out)),
+    arrayminus: rungs.map((rung) => 100 * Math.max(0, rung.held_out - rung.held_out_low)), color: colour("blue"), thickness: 1.5 };
+}
+
+function floorValue(floor) {
+  if (floor === null || floor === undefined) return null;
+  return typeof floor === "number" ? floor : floor.relative;
+}
+
+function rungTable(ladder, current) {
+  const rows = ladder.rungs.map((rung) => ({ ...rung, chosen: rung.model_id === current }));
+  return table("Ladder", [
+    { title: "Model", cell: rungName },
+    { title: "Training error", number: true, cell: (rung) => percent(rung.training) },
+    { title: "Held-out error", number: true, cell: (rung) => interval(rung.held_out, rung.held_out_low, rung.held_out_high) },
+    ...(rows.some((rung) => rung.breakaway) ? [{ title: "Breakaway, held out", number: true, cell: (rung) => percent(rung.breakaway?.held_out) }] : []),
+    ...(rows.some((rung) => rung.motion) ? [{ title: "Position in closed loop, rms", number: true, cell: (rung) => (rung.motion ? `${number(rung.motion.position, 3)} ${rung.motion.unit}` : "") }] : []),
+  ], rows);
+}
+
+export function rungName(rung) {
+  const change = [...[rung.added ?? []].flat().map((name) => `+ ${name}`), ...[rung.removed ?? []].flat().map((name) => `− ${name}`)];
+  return `${rung.model_id}: ${change.join(", ").replaceAll("_", " ") || "base"}`;
+}

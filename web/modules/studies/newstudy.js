@@ -1,0 +1,62 @@
+// A new study: which experiments, which of their trials, and which conditions are held out of the fit.
+
+import { get, post } from "../app/api.js";
+import { attempt } from "../ui/attempt.js";
+import { h, replace } from "../ui/dom.js";
+import { when } from "../ui/format.js";
+import { heldOut, TrialChoice, used } from "./trialchoice.js";
+
+const MOST = 500;
+
+export async function newStudy(place, wanted = null) {
+  const experiments = await attempt(place, async () => (await get("/experiments", { limit: MOST })).items);
+  if (!experiments) return;
+  const usable = experiments.filter((one) => one.outcome !== "refused" && one.outcome !== "running");
+  if (!usable.length) {
+    replace(place, h("p", { class: "soft" }, "There are no trials yet: start an experiment on the Bench, or import a recording set under Trials."));
+    return;
+  }
+  const name = h("input", { id: "study-name", required: true, value: `study ${new Date().toLocaleDateString()}` });
+  const boxes = usable.map((one) => h("input", { type: "checkbox", value: String(one.experiment_id), checked: one.experiment_id === wanted }));
+  const labels = usable.map((one, index) => h("label", { class: "inline" }, boxes[index], words(one)));
+  const find = h("input", { type: "search", id: "study-find", placeholder: "kind, tag, note, outcome …", oninput: () => {
+    const asked = find.value.toLowerCase().split(/\s+/);
+    // what is chosen stays in sight: it would be used
+    labels.forEach((label, index) => { label.hidden = !boxes[index].checked && !asked.every((word) => label.textContent.toLowerCase().includes(word)); });
+  } });
+  const [choice, answer] = [h("div", { class: "form" }), h("div")];
+  const [using, holding] = [new TrialChoice(used), new TrialChoice(heldOut)];
+  const button = h("button", { class: "primary" }, "Create study");
+  const chosen = () => boxes.filter((box) => box.checked).map((box) => Number(box.value));
+  const change = () => attempt(choice, async () => {
+    const trials = await trialsOf(chosen());
+    using.show(trials);
+    holding.show(trials);
+    replace(choice, using.element, holding.element);
+  });
+  for (const box of boxes) box.addEventListener("change", change);
+  const submit = async (event) => {
+    event.preventDefault();
+    const body = { name: name.value, experiment_ids: chosen(), where: using.unlessAll(), hold_out: holding.chosen() };
+    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …" });
+    if (study) location.hash = `#study/${study.study_id}`;
+  };
+  replace(place, h("form", { class: "form", onsubmit: submit }, h("label", { for: "study-name" }, "Name", name),
+    h("fieldset", {}, h("legend", {}, "Experiments whose trials are used"), usable.length > 5 && h("label", { for: "study-find" }, "Find experiments", find),
+      h("div", { class: "choices" }, labels)), choice, h("div", { class: "row" }, button), answer));
+  if (chosen().length) {
+    change();
+    place.scrollIntoView({ block: "start" });
+  }
+}
+
+function words(one) {
+  const note = one.note || one.parameters.name;
+  const tags = one.tags?.length ? `, ${one.tags.join(", ")}` : "";
+  return `${one.experiment_id}: ${one.kind}, ${one.source}, ${one.outcome}, ${when(one.started_utc)}${tags}${note ? ` (${note})` : ""}`;
+}
+
+async function trialsOf(experiment_ids) {
+  const pages = await Promise.all(experiment_ids.map((experiment_id) => get("/trials", { experiment_id, limit: MOST })));
+  return pages.flatMap((page) => page.items);
+}

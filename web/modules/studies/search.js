@@ -1,0 +1,28 @@
+// The search: the lab adds, exchanges and drops effects by itself; every step is told.
+
+import { post } from "../app/api.js";
+import { attempt } from "../ui/attempt.js";
+import { h, replace, table } from "../ui/dom.js";
+import { percent } from "../ui/format.js";
+
+// done(model_id): the search ended at this model
+export function searchButton(place, path, model_id, done) {
+  const answer = h("div");
+  const button = h("button", { type: "button" }, "Search by itself");
+  button.addEventListener("click", async () => {
+    const busy = "Adding effects until nothing is missing; this takes a while …";
+    const found = await attempt(answer, () => post(`${path}/search`, { model_id: model_id() }), { button, busy });
+    if (!found) return;
+    await done(found.model_id, (target) => told(target, found));
+  });
+  replace(place, button, h("span", { class: "soft" }, "adds, exchanges and drops effects until nothing is missing; every model on the way is kept"), answer);
+}
+
+function told(place, found) {
+  replace(place, h("div", { class: "good", role: "status" }, found.steps.length ? `${found.steps.length} steps. ${found.sentence}` : found.sentence),
+    found.steps.length > 0 && table("Steps of the search", [
+      { title: "Step", cell: (step) => step.sentence },
+      { title: "Held-out before", number: true, cell: (step) => percent(step.before) },
+      { title: "after", number: true, cell: (step) => percent(step.after) },
+    ], found.steps));
+}

@@ -1,0 +1,49 @@
+// Measured and predicted effort of a trial over time, the residual beneath; moments can be pointed at.
+
+import { Chart } from "../plots/chart.js";
+import { h, replace } from "../ui/dom.js";
+
+const AROUND_S = 1.5;
+const numbers = (values) => Float64Array.from(values, (value) => value ?? NaN);
+
+export class SeriesPlot {
+  // series: of the model that is shown; earlier: of the model before, or nothing
+  constructor(place, { series, earlier = [], effort, label = "Measured and predicted effort over time, residual beneath" }) {
+    Object.assign(this, { series, earlier, effort });
+    this.choice = h("select", { id: `series-${label.length}` }, series.map((one) => h("option", { value: String(one.trial_id) }, one.name)));
+    const picture = h("div");
+    replace(place, h("label", { class: "inline" }, "Trial", this.choice), picture);
+    this.chart = new Chart(picture, { label, height: 440 });
+    this.choice.addEventListener("change", () => this.show(Number(this.choice.value)));
+    if (series.length) this.show(series[0].trial_id);
+  }
+
+  show(trial_id, shades = []) {
+    const one = this.series.find((each) => each.trial_id === trial_id);
+    if (!one) return;
+    this.choice.value = String(trial_id);
+    const before = this.earlier.find((each) => each.trial_id === trial_id);
+    const unit = this.effort.unit;
+    const line = (source, key, extra) => ({ x: numbers(source.time_s), y: numbers(source[key]), ...extra });
+    const lines = [
+      line(one, "measured", { row: 0, name: "measured", colour: "blue" }),
+      before && line(before, "predicted", { row: 0, name: "predicted before", colour: "purple", dash: [2, 3] }),
+      line(one, "predicted", { row: 0, name: "predicted", colour: "orange", dash: [6, 4], width: 2 }),
+      before && line(before, "residual", { row: 1, name: "residual before", colour: "purple", dash: [2, 3] }),
+      line(one, "residual", { row: 1, name: "residual", colour: "red" }),
+    ].filter(Boolean);
+    this.chart.show({ rows: [{ title: `effort [${unit}]` }, { title: `residual [${unit}]` }], lines, shades, xTitle: "time in the trial [s]" });
+    this.chart.showAll();
+  }
+
+  showMoment({ trial_id, from_s, to_s }) {
+    this.show(trial_id, [{ from: from_s, to: to_s }]);
+    this.chart.look(from_s - AROUND_S, to_s + AROUND_S);
+    this.chart.element.scrollIntoView({ block: "center" });
+    this.chart.canvas.focus({ preventScroll: true });
+  }
+
+  close() {
+    this.chart.close();
+  }
+}

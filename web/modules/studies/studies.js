@@ -1,0 +1,30 @@
+// Studies: the list, a new one, or the one that is open.
+
+import { get } from "../app/api.js";
+import { attempt, together } from "../ui/attempt.js";
+import { h, panel, replace, table } from "../ui/dom.js";
+import { when } from "../ui/format.js";
+import { newStudy } from "./newstudy.js";
+import { studyView } from "./study.js";
+
+export function studiesView(place, { rest }) {
+  const wanted = rest[0] === "new" ? Number(rest[1]) : null; // an experiment to make a study of
+  if (rest[0] && rest[0] !== "new") return studyView(place, rest[0]);
+  const list = h("div");
+  const create = h("div");
+  replace(place, panel("Studies", h("p", { class: "soft" },
+    "A study compares measured trials with a model, names the physical effect that is missing, and shows the error fall when it is added."), list),
+  panel("New study", create));
+  const listed = attempt(list, async () => replace(list, studyTable((await get("/studies")).items)));
+  together(place, [listed, newStudy(create, wanted)]);
+  return () => {};
+}
+
+function studyTable(items) {
+  if (!items.length) return h("p", { class: "soft" }, "No studies yet. Choose trials below.");
+  return table("Studies", [
+    { title: "Study", number: true, cell: (study) => study.study_id },
+    { title: "Name", cell: (study) => h("a", { href: `#study/${study.study_id}` }, study.name) },
+    { title: "Created", cell: (study) => when(study.created_utc) },
+  ], items);
+}

@@ -1,0 +1,61 @@
+// Which trials would separate the rivals of a diagnosis: ask, queue them or start one, and add them to the study; or
+// round by round, a few at a time.
+
+import { post } from "../app/api.js";
+import { attempt } from "../ui/attempt.js";
+import { h, replace, table } from "../ui/dom.js";
+import { number, withUnit } from "../ui/format.js";
+
+// model_id(): the model that is shown; extended(sentence): the study has more trials now
+export function suggestions(place, path, model_id, extended) {
+  const answer = h("div");
+  const button = h("button", { type: "button" }, "Suggest trials");
+  button.addEventListener("click", async () => {
+    const found = await attempt(answer, () => post(`${path}/suggest`, { model_id: model_id() }), { button, busy: "Simulating what each trial would tell …" });
+    if (found) show(answer, path, found, extended);
+  });
+  const round = h("button", { type: "button", title: "The joint moves when it is the queue's turn" }, "Record the next round");
+  round.addEventListener("click", async () => {
+    const made = await attempt(answer, () => post(`${path}/rounds`, {}), { button: round, busy: "Adding what was recorded, diagnosing, and simulating what each trial would tell …" });
+    if (!made) return;
+    const told = `${made.suggested.diagnosis} ${made.suggested.sentence} ${queued(made.item_ids.length)}`;
+    if (made.extended) await extended(`${made.extended.sentence} ${told}`);
+    else replace(answer, h("div", { class: "good", role: "status" }, told), ...keptOut(made.suggested));
+  });
+  replace(place, h("div", { class: "row centre" }, button, round, h("span", { class: "soft" }, "which trials would tell apart what these cannot")), answer);
+}
+
+function queued(count) {
+  return count ? `${count} in the queue. When they have ended, record the next round.` : "Nothing is queued.";
+}
+
+function keptOut(found) {
+  return found.kept_out.map((one) => h("p", { class: "soft" }, `Kept out: ${one.kind}, experiment ${one.experiment_id}, ${one.outcome}: ${one.reason}`));
+}
+
+function show(place, path, found, extended) {
+  const [started, added] = [h("div"), h("div")];
+  const start = (one) => async ({ currentTarget: button }) => {
+    const made = await attempt(started, () => post("/experiments", { kind: one.kind, parameters: one.parameters, note: found.note }), { button });
+    if (made) replace(started, h("div", { class: "good", role: "status" }, `Experiment ${made.experiment_id} has started. When it has ended, start the next, or add what was recorded.`));
+  };
+  const items = found.trials.map(({ kind, parameters }) => ({ kind, parameters, note: found.note }));
+  const queue = h("button", { type: "button", class: "primary", onclick: async ({ currentTarget: button }) => {
+    const queued = await attempt(started, () => post("/queue", { items }), { button });
+    if (queued) replace(started, h("div", { class: "good", role: "status" }, `${queued.item_ids.length} in the queue. When they have ended, add what was recorded.`));
+  } }, "Queue all of them");
+  const add = h("button", { type: "button", onclick: async ({ currentTarget: button }) => {
+    const result = await attempt(added, () => post(`${path}/trials`, {}), { button, busy: "Fitting …" });
+    if (result) await extended(result.sentence);
+  } }, "Add the recorded trials to the study");
+  replace(place, h("p", { class: "sentence", role: "status" }, found.sentence), found.trials.length > 0 && table("Suggested trials", [
+    { title: "Trial", cell: (one) => [one.kind, h("div", { class: "hint" }, words(one.parameters))] },
+    { title: "Minutes", number: true, cell: (one) => number(one.minutes, 2) },
+    { title: "Why", cell: (one) => one.sentence },
+    { title: "", cell: (one) => h("button", { type: "button", class: "small", "aria-label": `Start ${one.kind}: ${words(one.parameters)}`, onclick: start(one) }, "Start") },
+  ], found.trials), found.trials.length > 0 && h("div", { class: "row" }, queue, add), ...keptOut(found), started, added);
+}
+
+function words(parameters) {
+  return Object.entries(parameters).map(([name, value]) => `${withUnit(name)} ${[value].flat().map((one) => number(one, 3)).join(", ")}`).join("; ");
+}
