@@ -4,7 +4,7 @@ from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.friction_curves import FrictionCurve, FrictionSettings, StudiedModel
-from bench.config.rest_knowledge import RestSettings
+from bench.config.sections import RestSettings
 from bench.errors import ConfigurationError
 from bench.store import CalibrationRow, Experiment, Store
 

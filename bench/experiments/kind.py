@@ -7,12 +7,12 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.loop import OutcomeName
+from bench.control.ending import OutcomeName
 from compensator.lab.recordings.recording import Condition
 from drivers.contract import Mode
 
 AnyProcedure = Generator[Any, Any, dict[str, Any]]
-"""Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.cycle.PairProcedure`)."""
+"""Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.PairProcedure`)."""
 
 
 class Parameters(BaseModel):
@@ -70,7 +70,7 @@ class ExperimentKind:
         duration_s: estimate of the time it takes in real time [s].
         summarise: results of the whole from those of its trials; JSON-able, units in the names.
         modes: that the drive has to close itself; position and current are done without.
-        pair: it moves a master and a slave; its procedures are those of `bench.control.pair.cycle`.
+        pair: it moves a master and a slave; its procedures are those of `bench.control.pair`.
     """
 
     name: str

@@ -10,10 +10,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.control.loop import Outcome, OutcomeName, Reading
+from bench.control.cycle import Reading
+from bench.control.ending import Outcome, OutcomeName, StopRequest
+from bench.control.loop import ControlLoop
 from bench.control.recorder import Event, Sink
 from bench.control.station import Station
-from bench.control.stop_request import StopRequest
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.runs import event_log, session
@@ -50,6 +51,7 @@ class Prepared:
     plans: list[TrialPlan]
     duration_s: float
     station: Station
+    loop: ControlLoop[Any, Any]
     space: SpaceNeed
     session: Session
     real_time: bool
@@ -110,7 +112,7 @@ class ExperimentRun:
     @property
     def reading(self) -> Reading | None:
         """The last one."""
-        return self._prepared.station.loop.last_reading if self._prepared is not None else None
+        return self._prepared.loop.last_reading if self._prepared is not None else None
 
     @property
     def trial_count(self) -> int:
@@ -182,7 +184,7 @@ class ExperimentRun:
         """Have the load hung, with the power off; False where a stop came before it hung."""
         if not self.is_stopped():
             try:
-                station.prepare(plan)
+                station.prepare(plan.load_kg, plan.balanced, plan.wall_rad)
             except ExperimentError:
                 if not self.is_stopped():
                     raise
@@ -190,7 +192,7 @@ class ExperimentRun:
 
     def _run_trial(self, plan: TrialPlan, prepared: Prepared, store: Store, live: LiveBuffer) -> Outcome:
         conditions = {**plan.conditions, session.CONDITION: prepared.session.seconds()}
-        loop = prepared.station.loop
+        loop = prepared.loop
         writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, loop.channels)
         live.begin_trial(loop.channels, writer.trial_id)
         outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self.stop_request)

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from bench.calibration import with_friction
+from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.config.configuration import BenchConfiguration
+from bench.config.limits import Limits
 from bench.control import commissioned
 from bench.control.clock import VirtualClock, WallClock
+from bench.control.cycle import Reading
 from bench.control.drive_factory import has_hardware, is_simulated, seed_of
-from bench.control.limits import Limits
-from bench.control.loop import RECORDED, OutcomeName, Reading
-from bench.control.pair.cycle import PAIR_RECORDED
+from bench.control.ending import OutcomeName
 from bench.control.prompt import Prompt, PromptDesk
 from bench.control.station import Station, make_station
 from bench.errors import BenchError, BusyError, ParameterError
@@ -250,20 +251,19 @@ class Runner:
             station.assume(*run.request.hung)
         self._descriptions = ()
         try:
-            station.open()
+            loop = station.open()
             self._descriptions = tuple(drive.describe() for drive in station.drives)
             refuse_modes(kind.name, kind.modes(parameters), self._descriptions[0])
             if kind.name != commissioned.KIND:
-                self._require_commissioned(configuration, station)
+                self._require_commissioned(station)
         except BaseException:
             station.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, station, space, session, real_time)
+        return Prepared(kind, parameters, plans, duration_s, station, loop, space, session, real_time)
 
-    def _require_commissioned(self, configuration: BenchConfiguration, station: Station) -> None:
+    def _require_commissioned(self, station: Station) -> None:
         """Refuse a real drive that has not passed the commissioning move."""
-        benches = (configuration,) if len(station.drives) == 1 else (configuration, configuration.of_master())
-        for bench, drive in zip(benches, station.drives, strict=True):
+        for bench, drive in zip(station.benches, station.drives, strict=True):
             if not is_simulated(bench):
                 commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
 

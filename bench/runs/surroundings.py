@@ -5,7 +5,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any
 
-from bench.control.stop_request import StopRequest
+from bench.control.ending import StopRequest
 
 
 @dataclass(frozen=True)

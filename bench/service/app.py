@@ -27,6 +27,7 @@ from bench.service.routes import (
     closed_loop,
     effects,
     error_map,
+    experiment_plan,
     experiments,
     leases,
     live,
@@ -85,6 +86,7 @@ A missing effect, found and added:
 _ROOMS = (
     bench_state,
     leases,
+    experiment_plan,
     experiments,
     queue,
     live,

@@ -61,7 +61,7 @@ class Trial:
 
     Attributes:
         conditions: what was held constant; the keys carry units.
-        channels: names of the recorded channels (compensator.lab.recordings.channels).
+        channels: names of the recorded channels (`bench.config.channels`).
         rows: committed rows.
         outcome: one of `OUTCOMES`; `reason` says why.
     """

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from bench.config.rig import Rig
-from bench.control.servo import ServoSettings
+from bench.config.sections import ServoSettings
 from bench.store import Store
 from bench.store.records import Experiment, ModelRow
 from bench.study.errors import StudyError, lab_errors

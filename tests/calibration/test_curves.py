@@ -9,7 +9,7 @@ from bench.calibration.points import friction_points
 from bench.config.configuration import default_configuration
 from compensator.errors import CalibrationError, LookupRangeError
 from compensator.motor.dc_motor import MotorConstants
-from tests.bench.bench_run import Ran
+from tests.experiments.bench_run import Ran
 
 CONFIGURATION = default_configuration()
 MOTOR = MotorConstants(8.0, 0.05)  # of the preset

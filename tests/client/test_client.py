@@ -10,7 +10,7 @@ from bench.client import Bench, Refused, Unreachable, connection
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from tests.control.fake_drive import FakeDrive
 from tests.service.running_service import TOKEN
 
 

@@ -12,7 +12,7 @@ from bench.study.errors import StudyError
 from bench.study.use import studied_model
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.online import works_online
-from tests.bench.calibrated import CURVES, REST, calibrated_configuration
+from tests.experiments.calibrated import CURVES, REST, calibrated_configuration
 from tests.study.test_suggest import run
 
 BASE = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction")

@@ -5,15 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.errors import BenchError
+from bench.errors import BaselineError
 from bench.evaluation.bench_report.campaign import SeedValues, fingerprint
 from bench.evaluation.bench_report.comparison import mean_interval
 from bench.provenance import software
-
-
-class BaselineError(BenchError, ValueError):
-    """Raised when there is no baseline, or one that these measurements cannot be held against."""
-
 
 HOW = "make it with: friction-bench bench-report --update-baseline"
 

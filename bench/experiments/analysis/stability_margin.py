@@ -3,7 +3,7 @@
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.pair.cycle import Reach
+from bench.control.pair import Reach
 from bench.experiments.analysis.reflection_results import widest_swing
 from bench.experiments.parts.pair_joints import PairJoints, PairPart
 

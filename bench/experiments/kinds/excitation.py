@@ -9,7 +9,7 @@ from pydantic import Field, field_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
+from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.joint import Joint

@@ -6,7 +6,7 @@ from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
+from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.followed_motion import FollowedJoint, errors, refuse_unknown_joint

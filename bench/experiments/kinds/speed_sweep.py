@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
+from bench.control.cycle import Procedure
 from bench.errors import LimitError, quantity_message
 from bench.experiments.analysis.saturation import Ending, next_run_up, remaining_rad_s
 from bench.experiments.analysis.steady_speed import steady_speed_results

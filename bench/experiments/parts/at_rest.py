@@ -5,7 +5,7 @@ from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import arm_angle_rad, reflected_load_kg
-from bench.control.loop import Procedure
+from bench.control.cycle import Procedure
 from bench.experiments.analysis.rest_estimate import RestFinding, finding
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.search import Found

@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
-from bench.control.loop import Reading
+from bench.control.cycle import Reading
 from bench.experiments.analysis.rest_estimate import finding
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower

@@ -6,7 +6,7 @@ from math import ceil, inf, nan
 from typing import TypeVar
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.loop import OFF, Action, Reading
+from bench.control.cycle import OFF, Action, Reading
 from bench.control.servo import PositionServo
 from bench.errors import ExperimentError
 from bench.experiments.parts.profile import Halt, SetPoint, Trapezoid

@@ -5,9 +5,9 @@ from math import nan, pi
 from bench.config.configuration import BenchConfiguration
 from bench.config.friction_curves import FrictionCurve, StudiedModel
 from bench.config.reflected_load import load_current_a, torque_n_m_a
-from bench.config.rest_knowledge import RestSettings
 from bench.config.rig import Rig
-from bench.control.loop import Reading
+from bench.config.sections import RestSettings
+from bench.control.cycle import Reading
 from bench.errors import ConfigurationError
 from bench.experiments.analysis.rest_estimate import RestFinding
 from bench.experiments.parts.resolution import resolution_rad

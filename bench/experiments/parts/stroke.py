@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.loop import Reading
+from bench.control.cycle import Reading
 from bench.errors import LimitError, quantity_message
 from bench.experiments.analysis.saturation import LEAST_READINGS, Stroke, motion_of
 from bench.experiments.parts.joint import Joint, Part

@@ -3,8 +3,8 @@
 import threading
 from dataclasses import replace
 
-from bench.control.cycle import RECORDED
-from bench.control.limits import Limits
+from bench.config.channels import RECORDED
+from bench.config.limits import Limits
 from bench.runs.bench_process.messages import Seen
 from bench.runs.live import LiveBuffer
 from bench.runs.runner import RunnerStatus

@@ -4,10 +4,12 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
-from bench.control.loop import Reading
+from bench.control.cycle import Reading
 from bench.runs.runner import RunnerStatus
 from bench.service.http.json_numbers import plain
 from bench.service.routes.leases import LeaseNow
+
+FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run
 
 
 class Run(BaseModel):
@@ -23,6 +25,9 @@ class Run(BaseModel):
     duration_s: float = Field(description="estimate of the whole, in the joint's time; a simulated one may be faster")
     left_s: float = Field(description="what is left of it")
     pausing: str = Field(description="asked: it stands still after the trial that runs; paused: it does; else empty")
+    power_off: Literal["confirmed", "failed"] | None = Field(
+        description="whether the drive took its power off at the end; null while it runs"
+    )
 
 
 class ReadingNow(BaseModel):
@@ -35,7 +40,9 @@ class ReadingNow(BaseModel):
     duty: float | None
     supply_v: float | None
     temperature_c: float | None
-    power: str = Field(description="state of the power stage: disabled, enabled, quick_stop or fault")
+    power: str = Field(
+        description="of the power stage: disabled, enabled, quick_stop or fault; unknown after a failed power-off"
+    )
 
 
 class PromptNow(BaseModel):
@@ -65,12 +72,19 @@ def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> d
             "experiment_id", "kind", "outcome", "reason", "trial_index", "trial_count", "progress",
             "duration_s", "left_s", "pausing",
         )  # fmt: skip
-        run = {name: getattr(found, name) for name in names}
+        run = {name: getattr(found, name) for name in names} | {"power_off": None if running else _power_off(found)}
     reading = None if found.reading is None else _reading(found.reading)
+    if reading is not None and not running:  # the last sample was taken before the power went
+        reading["power"] = "disabled" if _power_off(found) == "confirmed" else "unknown"
     prompt = None if found.prompt is None else {"number": found.prompt.number, "sentence": found.prompt.sentence}
     state = "running" if running else "idle"
     holder = None if lease is None else lease.model_dump()
     return {"state": state, "simulated": simulated, "run": run, "reading": reading, "prompt": prompt, "lease": holder}
+
+
+def _power_off(found: RunnerStatus) -> Literal["confirmed", "failed"]:
+    """What the control loop noted of the power-off that ends every run."""
+    return "failed" if any(note in found.reason for note in FAILED_POWER_OFF) else "confirmed"
 
 
 def _reading(reading: Reading) -> dict[str, Any]:

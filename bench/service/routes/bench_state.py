@@ -12,8 +12,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.requests import ClientDisconnect
 
 from bench import __version__
+from bench.config.channels import CHANNELS
+from bench.config.limits import Limits
 from bench.control.drive_factory import is_simulated
-from bench.control.limits import Limits
 from bench.service.auth.access import Viewer, allow_read, require_viewer
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench
@@ -64,6 +65,18 @@ class Bench(Status):
     rig: dict[str, Any]
 
 
+class RecordedChannel(BaseModel):
+    """One channel of the recorded rows."""
+
+    model_config = ConfigDict(from_attributes=True)
+    name: str
+    unit: str = Field(description="SI, angles in rad, temperatures in degC; 1 where there is none")
+    label: str = Field(description="short, for plots")
+    description: str
+    plotted: bool = Field(description="whether a plot shows it unless asked otherwise")
+    exported: bool = Field(description="whether recording sets, CSV and Parquet files hold it")
+
+
 class Stop(BaseModel):
     """Why it is stopped; kept with the record."""
 
@@ -112,6 +125,12 @@ def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
         limits=_limits(configuration.limits),
         rig=configuration.rig.model_dump(exclude_none=True),
     )
+
+
+@router.get("/channels", summary="What trials record", dependencies=[Depends(allow_read)])
+def channels() -> list[RecordedChannel]:
+    """Name, unit and meaning of every channel, in the order of the columns. A trial names those that it has."""
+    return [RecordedChannel.model_validate(channel) for channel in CHANNELS.values()]
 
 
 # async on purpose: it runs on the event loop itself and never waits for a free worker thread

@@ -11,7 +11,6 @@ from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.background import BackgroundTask
 
-from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
 from bench.recording_set import export_experiment, export_parquet
 from bench.runs.bench_control import BenchControl
@@ -24,7 +23,7 @@ from bench.service.http import conditional
 from bench.service.http.attachment import attachment
 from bench.service.http.json_numbers import plain
 from bench.service.http.pages import Limit, Offset, Page, cut
-from bench.service.http.problems import FieldProblem, InvalidFieldsError, field_problems, problems
+from bench.service.http.problems import InvalidFieldsError, field_problems, problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.models.queue_models import Note, Tags
 from bench.service.routes.leases import LeaseOf
@@ -167,16 +166,15 @@ def _begun(
 ) -> int:
     """The experiment that has begun, now or with the same key before."""
 
+    refuse_mistyped(body)  # a typing error is no failed start: nothing is recorded
+
     def begin() -> dict[str, Any]:
         with lease.starting(caller.name):
             begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
         return {"experiment_id": begun}
 
-    try:
-        answer = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
-    except ParameterError as error:
-        raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
+    answer = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
     experiment_id = int(answer["experiment_id"])
     if body.tags:
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
@@ -184,13 +182,20 @@ def _begun(
     return experiment_id
 
 
-def _fields_of(body: NewExperiment) -> list[FieldProblem]:
-    """The fields that the parameters' model refuses."""
+def refuse_mistyped(body: NewExperiment) -> None:
+    """Refuse parameters that the kind's model does not take, before anything is recorded.
+
+    Raises:
+        UnknownKindError: no such kind.
+        InvalidFieldsError: with each field, its value and what is allowed.
+    """
+    kind = find_kind(body.kind)
     try:
-        find_kind(body.kind).parameters.model_validate(body.parameters)
+        kind.parameters.model_validate(body.parameters)
     except ValidationError as error:
-        return field_problems(error, prefix="parameters")
-    return []
+        fields = field_problems(error, prefix="parameters")
+        words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
+        raise InvalidFieldsError(f"{body.kind}: {words}", "ParameterError", fields) from error
 
 
 @router.get("/experiments", summary="What has been run", responses=problems(422))

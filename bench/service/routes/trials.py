@@ -2,7 +2,7 @@
 
 import math
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
@@ -18,6 +18,7 @@ from bench.service.http.problems import problems
 from bench.service.http.written_samples import samples_json
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
+from bench.store.tables.trial_search import TrialQuery
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
@@ -27,6 +28,7 @@ PARQUET_ANSWER = {
     "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
     "headers": attachment("trial-1.parquet"),
 }
+Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
 
 
@@ -97,6 +99,35 @@ def trials(
     found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
     items, page = cut(found, limit, offset)
     return Trials(items=[Trial.model_validate(represent(trial)) for trial in items], **page)
+
+
+class FoundTrials(Page):
+    """One page of the trials that were looked for."""
+
+    total: int = Field(description="how many there are in all", examples=[1])
+    items: list[Trial]
+
+
+@router.get("/search", summary="Trials by words, sorted, page by page", responses=problems(422))
+def search(
+    store: StoreOf,
+    words: Annotated[str, Query(max_length=200, description="each is in the name, kind, outcome or a condition")] = "",
+    experiment_id: Annotated[int | None, Query(ge=1)] = None,
+    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
+    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    sort: Annotated[Sorting, Query(description="what they are sorted by")] = "trial",
+    descending: Annotated[bool, Query(description="the highest, or newest, first")] = True,
+    limit: Limit = 50,
+    offset: Offset = 0,
+) -> FoundTrials:
+    """For a list that a person looks through; a page of 100 000 trials comes as quickly as one of ten."""
+    wanted = TrialQuery(
+        experiment_id, kind or None, outcome or None, tuple(words.split()), sort=sort, descending=descending
+    )
+    found, total = store.search_trials(wanted, limit, offset)
+    more = offset + limit if offset + limit < total else None
+    items = [Trial.model_validate(represent(trial)) for trial in found]
+    return FoundTrials(items=items, total=total, limit=limit, offset=offset, next_offset=more)
 
 
 @router.get("/{trial_id}", summary="One trial with its events", responses=problems(404) | conditional.ANSWER)

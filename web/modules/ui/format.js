@@ -1,5 +1,7 @@
 // Numbers, units and names as people read them.
 
+import { withShownUnit } from "./units.js";
+
 const UNITS = [
   ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
   ["_s", "s"], ["_a", "A"], ["_v", "V"], ["_c", "°C"], ["_m", "m"], ["_n", "N"], ["_g", "g"],
@@ -28,6 +30,11 @@ export function number(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// a value whose name tells its unit, in the units that are shown
+export function quantity(name, value) {
+  return typeof value === "number" ? withShownUnit(value, unitOf(name)) : number(value);
+}
+
 const ROUNDING = 1e-7;
 
 // a small one by its first two digits: those after the point would say next to nothing of it
@@ -51,7 +58,7 @@ export function conditions(values) {
   return Object.entries(values ?? {}).map(([name, value]) => {
     if (value === true) return nameOf(name);
     if (value === false) return `not ${nameOf(name)}`;
-    return `${nameOf(name)} ${number(value)}${unitOf(name) ? " " + unitOf(name) : ""}`;
+    return `${nameOf(name)} ${quantity(name, value)}`;
   }).join(", ");
 }
 
