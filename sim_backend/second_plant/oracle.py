@@ -1,8 +1,8 @@
 """How far a mechanism stands out of recordings, from the truth: what an ideal judge could know.
 
-The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true motion
-takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of the
-difference D. (The joint moves a little otherwise without the mechanism, so D alone holds what no model has of either.)
+The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true
+motion takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of
+the difference D. (The joint moves a little otherwise without it, so D alone holds what no model has of either.)
 
     s = rms that the base model leaves of the noisy joint without the mechanism, in steady motion, near reversals, and
         where the current is commanded, each for itself
@@ -140,4 +140,6 @@ def _orthonormal(columns: FloatArray) -> FloatArray:
     if scaled.shape[1] == 0:
         return scaled
     left, values, _ = np.linalg.svd(scaled, full_matrices=False)
-    return np.asarray(left[:, values > 1e-8 * values[0]])
+    count = int(np.count_nonzero(values > 1e-8 * values[0]))
+    basis: FloatArray = np.ascontiguousarray(left[:, :count])
+    return basis

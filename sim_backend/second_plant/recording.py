@@ -65,7 +65,7 @@ def _recorded(joint: DrawnJoint, trial: Trial, quiet: bool, without: frozenset[s
         trial = replace(trial, friction_factor=1.0)
     _, traces = simulated(joint, trial, without)
     random = np.random.default_rng((trial.seed, 3))
-    sensors, times = joint.sensors, np.arange(len(traces.reading_rad)) * TICK_S
+    sensors, times = joint.sensors, np.arange(len(traces.reading_rad), dtype=np.float64) * TICK_S
     stamps = _stamps(joint, float(times[-1]), random)
     # values are as old as the drive's last update
     taken = np.floor(stamps / sensors.hold_s + 1e-9) * sensors.hold_s if sensors.hold_s > 0.0 else stamps
@@ -95,7 +95,9 @@ def _stamps(joint: DrawnJoint, last_s: float, random: np.random.Generator) -> Fl
 def _filtered(values: FloatArray, hertz: float) -> FloatArray:
     """First order, from the steady state of the first value on."""
     fade = float(np.exp(-2.0 * pi * hertz * TICK_S))
-    return np.asarray(lfilter([1.0 - fade], [1.0, -fade], values - values[0])) + values[0]
+    filtered: FloatArray = lfilter([1.0 - fade], [1.0, -fade], values - values[0])
+    filtered += values[0]
+    return filtered
 
 
 def _efforts(

@@ -1,4 +1,4 @@
-"""One trial of the joint in its fine steps: power stage, current, bristles, motion, and the drive's controller between."""
+"""One trial of the joint in fine steps: power stage, current, bristles, motion, and the drive's controller between."""
 
 from math import cos, exp, floor, pi, sin
 from typing import NamedTuple
@@ -110,7 +110,7 @@ def _impact_n_m(p: Physics, angle: float, speed: float) -> float:
 
 
 @compiled
-def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:
+def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:  # noqa: C901 - one compiled loop
     step_s = TICK_S / STEPS
     start = plan.target_rad[0]
     at, speeds = Places(start, start, start, 0.0), Speeds(0.0, 0.0, 0.0, 0.0)
