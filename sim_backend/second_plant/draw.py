@@ -68,7 +68,7 @@ def sensors_drawn(random: np.random.Generator, needs: set[Need]) -> Sensors:
         effort = "current"
     elif "voltage" in needs and effort not in ("duty", "estimate"):
         effort = "duty" if random.random() < 0.5 else "estimate"
-    rate_hz = float(random.choice(RATES_HZ, p=[0.1, 0.2, 0.15, 0.2, 0.15, 0.15, 0.05]))
+    rate_hz = float(random.choice(RATES_HZ, p=[0.12, 0.22, 0.18, 0.22, 0.16, 0.08, 0.02]))
     return Sensors(
         effort=effort,
         supply_measured="nominal" not in needs and bool(random.random() < 0.5),
@@ -96,7 +96,7 @@ def told_drawn(random: np.random.Generator, needs: set[Need]) -> Told:
 
 def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[Need], level: Level) -> tuple[Trial, ...]:
     """Kinds in turn from a shuffled list, loads, temperatures and the time between trials drawn."""
-    count, levels = int(random.integers(16, 31)), int(random.integers(2, 5))
+    count, levels = int(random.integers(16, 27)), int(random.integers(2, 5))
     loads_kg = np.linspace(0.0, scales.heaviest_kg, levels)
     kinds = [str(kind) for _ in range(4) for kind in random.permutation(list(KINDS))][:count]
     if "starts" in needs:
@@ -107,7 +107,7 @@ def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[Need], 
     scatter = float(random.uniform(0.0, 0.01)) if level == "textbook" else float(random.uniform(0.0, 0.03))
     session_s, trials = 0.0, []
     for number, kind in enumerate(kinds):
-        seconds = round(float(random.uniform(6.0, 10.0)), 1)
+        seconds = round(float(random.uniform(6.0, 9.0)), 1)
         warm = 22.0 + 8.0 * (1.0 - np.exp(-session_s / 900.0)) + spread_k * float(random.standard_normal())
         factor = 1.0 + scatter * float(random.standard_normal())
         load_kg = round(float(random.choice(loads_kg)), 3)

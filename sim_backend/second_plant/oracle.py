@@ -141,5 +141,6 @@ def _orthonormal(columns: FloatArray) -> FloatArray:
         return scaled
     left, values, _ = np.linalg.svd(scaled, full_matrices=False)
     count = int(np.count_nonzero(values > 1e-8 * values[0]))
-    basis: FloatArray = np.ascontiguousarray(left[:, :count])
+    basis: FloatArray = np.zeros((len(left), count))
+    basis[:] = left[:, :count]
     return basis
