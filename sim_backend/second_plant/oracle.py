@@ -116,8 +116,8 @@ def _ratio(rows: Rows, remainder: FloatArray, difference: FloatArray, floor: Flo
         without = floor.rows.moving & (floor.rows.stratum == stratum)
         if with_it.any() and without.any():
             more = float(np.mean(remainder[with_it] ** 2) - np.mean(floor.remainder[without] ** 2))
-            power += min(max(more, 0.0), float(np.mean(difference[with_it] ** 2))) * np.count_nonzero(with_it)
-    return float(np.sqrt(power / np.count_nonzero(rows.moving)))
+            power += min(more, float(np.mean(difference[with_it] ** 2))) * np.count_nonzero(with_it)
+    return float(np.sqrt(max(power, 0.0) / np.count_nonzero(rows.moving)))
 
 
 def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:
