@@ -25,7 +25,7 @@ class SecondRecording:
         load_kg, gear_c, session_s: its conditions.
         channels: name with unit -> samples, shape (n,).
         effort: the one that stands for the effort, in N m, A or V, shape (n,).
-        truth: without counts, at the stamps of the samples.
+        truth: without counts, filtered and delayed like the effort, at the stamps of the samples.
     """
 
     name: str
@@ -79,7 +79,8 @@ def _recorded(joint: DrawnJoint, trial: Trial, quiet: bool, without: frozenset[s
     if sensors.temperature_told:
         channels["temperature_c"] = np.round(np.interp(taken, times, traces.winding_c), 1)
     product = np.prod([values for name, values in effort.items()], axis=0)
-    truth = Traces(*(np.interp(taken, times, values) for values in traces))
+    seen_as = taken - sensors.skew_s
+    truth = Traces(*(np.interp(seen_as, times, _filtered(values, sensors.filter_hz)) for values in traces))
     return SecondRecording(
         trial.name, trial.kind, trial.load_kg, trial.gear_c, trial.session_s, channels, product, truth
     )

@@ -77,7 +77,7 @@ def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
 
     assert large > 3.0 * small
     assert evidence(winding, "hot_winding").detectability > 10.0
-    assert evidence(by_current, "hot_winding").ratio < 0.05
+    assert evidence(by_current, "hot_winding").ratio < 0.02
 
 
 def test_an_unknown_mechanism_is_refused_by_name():
