@@ -10,10 +10,10 @@ from pydantic import Field, ValidationError
 from bench.config.drives.real import RealDriveSettings
 from bench.config.drives.registry import AnyDriveSettings, default_drive_settings
 from bench.config.friction_curves import FrictionSettings
-from bench.config.limits import Limits
 from bench.config.rig import Rig, Section
 from bench.config.sections import (
     ControlSettings,
+    Limits,
     MasterSettings,
     MotionSettings,
     RestSettings,

@@ -3,11 +3,13 @@
 Every value is optional: what is unknown is left out, and whoever needs it says so.
 """
 
+from math import pi
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.config.quantities import quantity
+from bench.errors import ConfigurationError
 
 
 class Section(BaseModel):
@@ -86,3 +88,18 @@ class Rig(Section):
     sensor: Sensor = Sensor()
     supply: Supply = Supply()
     effort: Effort | None = None
+
+
+def resolution_rad(rig: Rig) -> float:
+    """The joint angle of one encoder count [rad].
+
+    Raises:
+        ConfigurationError: the rig leaves out counts or gear ratio.
+    """
+    counts, ratio = rig.sensor.counts_per_turn, rig.gear.ratio
+    if counts is None or ratio is None:
+        raise ConfigurationError(
+            f"rig '{rig.name}': sensor.counts_per_turn and gear.ratio are needed to tell motion from rest; add them to "
+            "the rig"
+        )
+    return 2.0 * pi / (counts * ratio)

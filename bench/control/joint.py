@@ -11,7 +11,7 @@ from drivers.errors import DriveStateError
 
 _OFF, _DUTY, _CURRENT, _ENABLED = Mode.OFF, Mode.DUTY, Mode.CURRENT, Status.ENABLED  # at hand, see cycle.py
 _IDLE = Action(OFF)
-_NO_SAMPLE = Sample(nan, nan, nan, nan, nan, nan, nan, nan, Status.DISABLED)
+_NOTHING = Reading(0.0, Sample(nan, nan, nan, nan, nan, nan, nan, nan, Status.DISABLED), 0.0, nan)
 POWER_OFF_TRIES = 3
 
 
@@ -39,13 +39,10 @@ class ControlledJoint:
         self.prefix = f"{name}: " if name else ""
         self._lacks_current_mode = Mode.CURRENT not in drive.describe().modes
         self.action = _IDLE
-        self.reading = Reading(0.0, _NO_SAMPLE, 0.0, nan)
+        self.reading = _NOTHING
         self.demanded = Mode.OFF
         self._mode = Mode.OFF  # of the power stage
-        self._sent = OFF
         self._origin_s = 0.0
-        self._previous: Sample | None = None
-        self._velocity_rad_s = 0.0
 
     @property
     def is_powered(self) -> bool:
@@ -54,20 +51,19 @@ class ControlledJoint:
 
     def begin(self) -> None:
         """Begin a trial with a sample taken with the power off: its time counts from there."""
-        self.action = _IDLE
-        self._previous, self._velocity_rad_s = None, 0.0
-        sample = self._drive.exchange(OFF)
-        self._origin_s = sample.time_s
-        self._take(sample)
+        self.reading, self._origin_s = _NOTHING, 0.0
+        self.coast()
+        self._origin_s = self.reading.time_s
+        self.reading = self.reading._replace(time_s=0.0)
 
     def is_stale(self) -> bool:
         """Whether something in the last sample is older than allowed."""
         return self._guard.is_stale(self.reading.sample)
 
     def coast(self) -> None:
-        """One exchange without a demand: of a drive that brakes by itself."""
+        """One exchange without a demand: before motion, or of a drive that brakes by itself."""
         self.action = _IDLE
-        self._take(self._drive.exchange(OFF))
+        self.exchange()
 
     def require_mode(self) -> None:
         """Refuse an action that neither the drive nor eq. (3) can do.
@@ -97,11 +93,18 @@ class ControlledJoint:
 
     def exchange(self) -> None:
         """Send the action, in a mode that the drive closes itself, and take the reading that answers it."""
-        command = self.action[0]
-        if self._lacks_current_mode and command[0] is _CURRENT:
-            command = self._duty_command(command[1])
-        self._sent = command
-        self._take(self._drive.exchange(command))
+        command, servo = self.action[0], self._current_servo
+        if self._lacks_current_mode and command[0] is _CURRENT and servo is not None:
+            _, previous, velocity_rad_s, _, _ = self.reading
+            command = Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
+        sample = self._drive.exchange(command)
+        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _ = sample
+        if velocity_rad_s != velocity_rad_s:  # NaN
+            velocity_rad_s = self._derived_velocity(sample)
+        estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
+        if current_a != current_a:  # NaN
+            current_a = estimate_a
+        self.reading = Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a, estimate_a)
 
     def check(self, target_rad: float) -> None:
         """Compare the reading with the limits, and the drive's state with what was asked of it.
@@ -135,42 +138,22 @@ class ControlledJoint:
         self.demanded = self._mode = Mode.OFF
         return notes
 
-    def _take(self, sample: Sample) -> None:
-        """Make the reading of a sample."""
-        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _ = sample
-        if velocity_rad_s != velocity_rad_s:  # NaN
-            velocity_rad_s = self._derived_velocity(sample)
-        self._velocity_rad_s = velocity_rad_s
-        self._previous = sample
-        servo = self._current_servo
-        estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
-        if current_a != current_a:  # NaN
-            current_a = estimate_a
-        self.reading = Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a, estimate_a)
-
     def _wire_mode(self) -> Mode:
         """The mode that the drive is sent the action in."""
         mode = self.action.command.mode
         return _DUTY if mode is _CURRENT and self._lacks_current_mode else mode
 
-    def _duty_command(self, current_a: float) -> Command:
-        servo, previous = self._current_servo, self._previous
-        if servo is None or previous is None:
-            raise RuntimeError("a current is demanded before the stage was switched for it; see switch()")
-        return Command(_DUTY, servo.duty(current_a, previous, self._velocity_rad_s))
-
     def _derived_velocity(self, sample: Sample) -> float:
-        previous = self._previous
-        if previous is None:
-            return 0.0
+        """By the sample before; as it was where no time has passed, and 0 at the first."""
+        _, previous, velocity_rad_s, _, _ = self.reading
         elapsed_s = sample.time_s - previous.time_s
-        if elapsed_s <= 0.0:
-            return self._velocity_rad_s
+        if not elapsed_s > 0.0:  # NaN, too
+            return velocity_rad_s
         return (sample.position_rad - previous.position_rad) / elapsed_s
 
     def _refuse_state(self, status: Status) -> None:
         if status is Status.FAULT:
-            self._drive.exchange(self._sent)  # a drive in fault refuses it, and says what the fault is
+            self.exchange()  # a drive in fault refuses the command, and says what the fault is
         raise DriveStateError(
             self._drive.describe().device,
             f"{self.prefix}status is {status.name} during motion; ENABLED is wanted. See the drive's own display",

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from bench.config.channels import CHANNELS
-from bench.config.limits import Limits
+from bench.config.sections import Limits
 from bench.errors import LimitTrip, quantity_message
 from drivers.contract import ALL_NEW, Sample
 

@@ -8,7 +8,7 @@ from typing import Protocol
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody
 from bench.control.pair import Reach, Truth
-from bench.drives.sim.joint import make_hand, make_surroundings
+from bench.drives.sim.joint import make_environment, make_hand
 from bench.errors import ExperimentError
 
 HOLD = (
@@ -30,7 +30,7 @@ class Hand(Protocol):
         """What the hand does to the arm; NaN where nobody knows."""
 
 
-class Surroundings(Protocol):
+class Environment(Protocol):
     """What the slave's arm meets."""
 
     def put_wall(self, angle_rad: float | None) -> None:
@@ -67,7 +67,7 @@ class PersonHand:
         return nan
 
 
-class PersonSurroundings:
+class PersonEnvironment:
     """Round a real slave: a person puts a wall there, and takes it away.
 
     Args:
@@ -103,7 +103,7 @@ class PairEquipment:
     slave: Equipment
     master: Equipment
     hand: Hand
-    surroundings: Surroundings
+    environment: Environment
 
     def prepare(self, load_kg: float, balanced: bool, wall_rad: float | None) -> None:
         """Before a trial, with the power off: the slave's wall and load, the operator's hand on the master.
@@ -111,10 +111,10 @@ class PairEquipment:
         Raises:
             ExperimentError: something of it was not done.
         """
-        self.surroundings.put_wall(None)
+        self.environment.put_wall(None)
         self.slave.technician.hang_load(load_kg, balanced)
         if wall_rad is not None:
-            self.surroundings.put_wall(wall_rad)
+            self.environment.put_wall(wall_rad)
         self.hand.take_hold()
 
     def operate(self, reach: Reach) -> None:
@@ -123,7 +123,7 @@ class PairEquipment:
 
     def truth(self) -> Truth:
         """What acts on the arms now."""
-        return Truth(self.surroundings.interaction_n_m(), self.hand.torque_n_m())
+        return Truth(self.environment.interaction_n_m(), self.hand.torque_n_m())
 
 
 def make_pair(configuration: BenchConfiguration, ask: Callable[[str], bool] = nobody) -> PairEquipment:
@@ -138,7 +138,7 @@ def make_pair(configuration: BenchConfiguration, ask: Callable[[str], bool] = no
         slave,
         master,
         make_hand(master.drive) or PersonHand(ask),
-        make_surroundings(slave.drive) or PersonSurroundings(ask),
+        make_environment(slave.drive) or PersonEnvironment(ask),
     )
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from bench.config.channels import PAIR_RECORDED, RECORDED
-from bench.config.limits import Limits
 from bench.config.rig import Rig
+from bench.config.sections import Limits
 from bench.control.clock import Clock, VirtualClock
-from bench.control.cycle import Action, Reading
+from bench.control.cycle import OFF, Action, Reading
 from bench.control.ending import Outcome, StopRequest
 from bench.control.joint import ControlledJoint
 from bench.control.joint_group import SingleJoint
@@ -19,9 +19,11 @@ from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
 from bench.control.pair import JointPair, PairAction
 from bench.control.servo import CurrentServo
+from drivers.contract import Command, Mode
 from tests.control.fake_drive import RIG, FakeDrive, ListSink
 
 PERIOD_S = 0.005
+PUSH = Action(Command(Mode.CURRENT, 0.1), target_rad=0.0)
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,14 @@ class Ran:
     def channel(self, name: str) -> Any:
         """Of the joint of the test."""
         return self.rows[self.setup.channel(name)]
+
+
+def push(setup: Setup, cycles: int = 20, action: Action = PUSH) -> Any:
+    """A procedure that does one thing again and again, after a cycle without power."""
+    reading = yield setup.action(Action(OFF))
+    for _ in range(cycles):
+        reading = yield setup.action(action)
+    return {"last_position_rad": setup.reading(reading).sample.position_rad}
 
 
 class StillPowered(AssertionError):

@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 
 from bench.config.channels import PAIR_RECORDED
-from bench.config.limits import Limits
+from bench.config.sections import Limits
 from bench.control.clock import VirtualClock
 from bench.control.cycle import OFF, Action
 from bench.control.ending import StopRequest

@@ -6,7 +6,7 @@ import pytest
 from bench.config.configuration import default_configuration
 from bench.config.rig import Arm
 from bench.errors import ConfigurationError, LimitError
-from bench.experiments.parts.slip import comparing_cycles, slip_index
+from bench.experiments.parts.excursion import comparing_cycles, slip_index
 from bench.experiments.registry import find_kind, parse_parameters
 from tests.experiments.bench_run import Ran
 from tests.experiments.plants import bench_with

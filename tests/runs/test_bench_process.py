@@ -17,7 +17,7 @@ from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.errors import BusyError, LimitError, ParameterError, PromptError, UnknownKindError
 from bench.runs.bench_process import RemoteRunner, process
 from bench.runs.bench_process.errors import BenchProcessError
-from bench.runs.bench_process.failures import error_of, failure_of
+from bench.runs.bench_process.messages import error_of, failure_of
 from bench.runs.bench_process.stop_line import LineStop, StopLine
 from bench.runs.runner import Runner
 from bench.store import Store

@@ -56,7 +56,7 @@ class Result:
     withheld: LabAnswer | None = None
     withheld_left: Standing | None = None
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Nested dicts."""
         return asdict(self)
 

@@ -7,8 +7,8 @@ from drivers.canopen.cia301.pdo_setup import ProcessData
 from drivers.canopen.cia402.set_point import SetPointHandshake
 from drivers.canopen.cia402.state_machine import ENABLE_OPERATION
 from drivers.contract import Command, Mode
-from drivers.demand import check_demand
 from drivers.errors import DriveConfigurationError
+from drivers.refusal import check_demand
 
 
 class Demand:
