@@ -6,12 +6,13 @@ from dataclasses import replace
 from bench.config.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
+from bench.study.base_model import base_model
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import keep_model
 from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models.study import ModelName, Study, StudyName
 from bench.study.selection import keep, split
-from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
@@ -43,16 +44,30 @@ def create_study(
     Raises:
         StudyError: no usable trials, a criterion that fits none, different rigs, an unknown effect.
     """
+    definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows)
+    return _create(store, name, definition)
+
+
+def definition_of(
+    store: Store,
+    experiment_ids: Sequence[int],
+    hold_out: Sequence[str] = (),
+    base: Sequence[str] | None = None,
+    where: Sequence[str] = (),
+    cutoff_hz: float | None = None,
+    rows: RowChoice = "sliding",
+) -> Definition:
+    """What a study is made of; arguments and errors as `create_study`."""
     if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
         raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
     trials = keep(_trials(store, experiment_ids), where)
     held = split(trials, hold_out)
     facts = _facts(store, experiment_ids)
     with lab_errors():
-        effects = _base_effects(base, facts)
+        effects = _base_effects(base) if base else base_model(store, experiment_ids, facts)
         recordings = [store.recording(trial.id) for trial in trials]
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
-    definition = Definition(
+    return Definition(
         trial_ids=tuple(trial.id for trial in trials),
         held_out=tuple(held),
         base=effects,
@@ -63,7 +78,6 @@ def create_study(
         hold_out=tuple(hold_out),
         where=tuple(where),
     )
-    return _create(store, name, definition)
 
 
 def describe(store: Store, study_id: int) -> Study:
@@ -104,9 +118,7 @@ def _describe(store: Store, material: Material) -> Study:
     )
 
 
-def _base_effects(base: Sequence[str] | None, facts: Facts) -> tuple[str, ...]:
-    if not base:
-        return default_effects(facts)
+def _base_effects(base: Sequence[str]) -> tuple[str, ...]:
     for effect in base:
         if base.count(effect) > 1:
             raise StudyError(f"{effect} stands twice in the base model {', '.join(base)}; name each effect once")
