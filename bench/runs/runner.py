@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from bench.calibration import with_friction
@@ -25,7 +25,7 @@ from bench.runs.live import LiveBuffer, LiveRows
 from bench.runs.session import session_of
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
-from drivers.contract import Description
+from drivers.contract import Description, Watchdog
 from drivers.errors import DriveError
 
 
@@ -186,7 +186,10 @@ class Runner(BenchControl):
         self._descriptions = ()
         try:
             loop = station.open()
-            self._descriptions = tuple(drive.describe() for drive in station.drives)
+            self._descriptions = tuple(
+                self._as_proven(bench, drive.describe())
+                for bench, drive in zip(station.benches, station.drives, strict=True)
+            )
             refuse_modes(kind.name, kind.modes(parameters), self._descriptions[0])
             if kind.name != commissioned.KIND:
                 self._require_commissioned(station)
@@ -200,6 +203,13 @@ class Runner(BenchControl):
         for bench, drive in zip(station.benches, station.drives, strict=True):
             if not is_simulated(bench):
                 commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
+
+    def _as_proven(self, bench: BenchConfiguration, found: Description) -> Description:
+        """What the drive says of itself, with what `doctor --move` has seen of its watchdog."""
+        if is_simulated(bench) or found.watchdog is not Watchdog.CONFIGURED:
+            return found
+        seen = commissioned.watchdog_of(self._store, provenance(bench, found))
+        return found if seen is None else replace(found, watchdog=seen)
 
     def _is_real_time(self, pace: Pace | None) -> bool:
         simulated = is_simulated(self.configuration)

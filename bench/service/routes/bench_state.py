@@ -44,6 +44,8 @@ class DriveDescription(BaseModel):
     resolution: dict[str, float] = Field(description="smallest step of a quantity, in its unit")
     max_rate_hz: float
     watchdog_s: float = Field(description="time without a command after which the drive stops by itself")
+    watchdog: str = Field(description="how sure that is: 'proven', 'configured, not proven' or 'none'")
+    notes: list[str] = Field(description="what was noticed of line and host, and what to do about it")
 
 
 class Limit(BaseModel):
@@ -199,7 +201,7 @@ async def token(caller: Viewer) -> Token:
 
 
 def _drive(found: Description) -> DriveDescription:
-    names = ("device", "vendor", "product", "firmware", "serial", "max_rate_hz", "watchdog_s")
+    names = ("device", "vendor", "product", "firmware", "serial", "max_rate_hz", "watchdog_s", "watchdog", "notes")
     fields: dict[str, Any] = {name: plain(getattr(found, name)) for name in names}
     modes = sorted(mode.value for mode in found.modes)
     return DriveDescription(**fields, modes=modes, measured=sorted(found.measured), resolution=plain(found.resolution))
