@@ -9,9 +9,10 @@ from typing import Any
 from bench.calibration import with_friction
 from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.config.configuration import BenchConfiguration
-from bench.control import commissioned
+from bench.control import commissioned, drive_faults
 from bench.control.clock import VirtualClock, WallClock
 from bench.control.drive_factory import has_hardware, is_simulated, seed_of
+from bench.control.drive_faults import DriveState
 from bench.control.ending import StopRequest
 from bench.control.prompt import PromptDesk
 from bench.control.station import Station, make_station
@@ -96,6 +97,18 @@ class Runner(BenchControl):
     def answer(self, prompt_number: int) -> None:
         """See `BenchControl`."""
         self._desk.answer(prompt_number)
+
+    def read_drives(self) -> tuple[DriveState, ...]:
+        """See `BenchControl`."""
+        with self._starting:
+            self._refuse_when_busy()
+            return drive_faults.read_drives(self.configuration)
+
+    def clear_faults(self, shown: str) -> tuple[DriveState, ...]:
+        """See `BenchControl`."""
+        with self._starting:
+            self._refuse_when_busy()
+            return drive_faults.clear_faults(self.configuration, shown)
 
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
         """See `BenchControl`."""

@@ -25,6 +25,7 @@ from bench.service.routes import (
     calibrations,
     challenges,
     closed_loop,
+    drive,
     effects,
     error_map,
     experiment_plan,
@@ -85,6 +86,7 @@ A missing effect, found and added:
 
 _ROOMS = (
     bench_state,
+    drive,
     leases,
     experiment_plan,
     experiments,

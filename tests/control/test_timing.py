@@ -31,9 +31,7 @@ def test_what_was_noticed_of_line_and_host_stands_in_place_of_general_advice():
     with pytest.raises(ConfigurationError, match=r"is wanted\. Choose a longer period or a faster line"):
         check_timing(DRIVE, 0.002)
     noted = replace(DRIVE, notes=("the USB adapter holds each answer back. Set it to 1 ms",))
-    with pytest.raises(
-        ConfigurationError, match=r"is wanted\. the USB adapter holds each answer back\. Set it to 1 ms"
-    ):
+    with pytest.raises(ConfigurationError, match=r"is wanted\. the USB adapter holds .* back\. Set it to 1 ms"):
         check_timing(noted, 0.002)
 
 
