@@ -25,6 +25,7 @@ html_show_sphinx = False
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence", "attrs_inline"]
 
+smartquotes = False
 default_role = "literal"  # a name between single backquotes in a docstring
 napoleon_use_ivar = True
 suppress_warnings = ["ref.python"]  # two classes may have an attribute of one name

@@ -6,6 +6,7 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 from bench.config.channels import JOINT_CHANNELS, Channel
+from bench.json_types import Value
 from drivers.contract import Command, Mode, Sample, Status
 
 OFF = Command(Mode.OFF)
@@ -49,7 +50,7 @@ class Action(NamedTuple):
     current_load_half_width_a: float = nan
 
 
-Procedure = Generator[Action, Reading, dict[str, Any]]
+Procedure = Generator[Action, Reading, dict[str, Value]]
 """Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
 VALUES = (

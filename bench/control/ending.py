@@ -2,7 +2,9 @@
 
 import threading
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Literal
+
+from bench.json_types import Value
 
 OutcomeName = Literal["running", "completed", "stopped", "tripped", "failed", "interrupted", "refused"]
 UNNAMED = "stop was asked for"
@@ -40,7 +42,7 @@ class Outcome:
 
     outcome: OutcomeName
     reason: str = ""
-    results: dict[str, Any] = field(default_factory=dict)
+    results: dict[str, Value] = field(default_factory=dict)
     cycles: int = 0
     overruns: int = 0
 

@@ -21,6 +21,7 @@ from bench.control.limits import Guard
 from bench.control.recorder import Recorder, Sink
 from bench.control.servo import CurrentServo
 from bench.errors import LimitTrip
+from bench.json_types import Value
 from drivers.contract import Drive, Status
 
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
@@ -49,7 +50,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         self.cycles = 0
         self.last_reading: Reading | None = None
 
-    def run(self, procedure: Generator[ActionT, ReadingT, dict[str, Any]], sink: Sink, stop: StopRequest) -> Outcome:
+    def run(self, procedure: Generator[ActionT, ReadingT, dict[str, Value]], sink: Sink, stop: StopRequest) -> Outcome:
         """Run one trial to its end.
 
         Args:
@@ -79,7 +80,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
 
     def _run_guarded(
-        self, procedure: Generator[ActionT, ReadingT, dict[str, Any]], recorder: Recorder, stop: StopRequest
+        self, procedure: Generator[ActionT, ReadingT, dict[str, Value]], recorder: Recorder, stop: StopRequest
     ) -> Outcome:
         """Run the cycles, and turn every way they can end into an outcome."""
         try:
@@ -122,7 +123,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
                 joint.begin()
 
     def _run_cycles(
-        self, procedure: Generator[ActionT, ReadingT, dict[str, Any]], recorder: Recorder, stop: StopRequest
+        self, procedure: Generator[ActionT, ReadingT, dict[str, Value]], recorder: Recorder, stop: StopRequest
     ) -> Outcome:
         # at hand: each look-up of an attribute takes a per cent of a cycle
         joints, group, wait, stopping = self._joints, self._group, self._clock.wait, stop.is_set

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from bench.config.channels import PAIR_CHANNELS, PAIR_RECORDED
 from bench.control.cycle import OFF, VALUES, Action, Reading, Row, row_reader, values_of
 from bench.control.joint import ControlledJoint
+from bench.json_types import Value
 
 
 class Reach(NamedTuple):
@@ -56,7 +57,7 @@ class PairReading(NamedTuple):
     truth: Truth
 
 
-PairProcedure = Generator[PairAction, PairReading, dict[str, Any]]
+PairProcedure = Generator[PairAction, PairReading, dict[str, Value]]
 """Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
 PAIR_VALUES = (

@@ -8,10 +8,11 @@ from pydantic import BaseModel, ConfigDict
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.ending import OutcomeName
+from bench.json_types import Value
 from compensator.lab.recordings.recording import Condition
 from drivers.contract import Mode
 
-AnyProcedure = Generator[Any, Any, dict[str, Any]]
+AnyProcedure = Generator[Any, Any, dict[str, Value]]
 """Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.PairProcedure`)."""
 
 
@@ -48,7 +49,7 @@ class FinishedTrial:
     name: str
     conditions: dict[str, Condition]
     outcome: OutcomeName
-    results: dict[str, Any]
+    results: dict[str, Value]
 
 
 def any_drive(_parameters: Any) -> frozenset[Mode]:
@@ -80,7 +81,7 @@ class ExperimentKind:
     plan: Callable[[Any, BenchConfiguration], list[TrialPlan]]
     refuse: Callable[[Any, BenchConfiguration], None]
     duration_s: Callable[[Any, BenchConfiguration], float]
-    summarise: Callable[[Any, list[FinishedTrial]], dict[str, Any]]
+    summarise: Callable[[Any, list[FinishedTrial]], dict[str, Value]]
     modes: Callable[[Any], frozenset[Mode]] = any_drive
     pair: bool = False
 

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.sections import Limits
@@ -10,6 +10,7 @@ from bench.control.cycle import Reading
 from bench.control.drive_faults import DriveState
 from bench.control.ending import OutcomeName
 from bench.control.prompt import Prompt
+from bench.json_types import Values
 from bench.runs.live import LiveRows
 from drivers.contract import Description
 
@@ -23,7 +24,7 @@ class Request:
     """An experiment that a user asks for; see `BenchControl.start`."""
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Values
     operator: str = ""
     note: str = ""
     pace: Pace | None = None
@@ -84,7 +85,7 @@ class BenchControl(ABC):
     def start(
         self,
         kind: str,
-        parameters: dict[str, Any],
+        parameters: Values,
         operator: str = "",
         note: str = "",
         pace: Pace | None = None,

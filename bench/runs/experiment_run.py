@@ -17,6 +17,7 @@ from bench.control.recorder import Event, Sink
 from bench.control.station import Station
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.json_types import Value
 from bench.runs import event_log, session
 from bench.runs.bench_control import Pausing, Request
 from bench.runs.live import LiveBuffer
@@ -131,7 +132,7 @@ class ExperimentRun:
             prepared.station.close()
         except Exception as error:
             outcome, reason = _worse(outcome, reason, f"closing the drive: {error}")
-        results: dict[str, Any] = {}
+        results: dict[str, Value] = {}
         try:
             results = prepared.kind.summarise(prepared.parameters, self._finished)
         except Exception as error:
@@ -185,9 +186,16 @@ class ExperimentRun:
         self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
         writer.finish(outcome.outcome, outcome.reason, results)
-        facts: dict[str, Any] = {"name": plan.name, "outcome": outcome.outcome, "reason": outcome.reason}
-        counts = {"cycles": outcome.cycles, "overruns": outcome.overruns}
-        event_log.note("trial ended", experiment_id=self.experiment_id, trial_id=writer.trial_id, **facts, **counts)
+        event_log.note(
+            "trial ended",
+            experiment_id=self.experiment_id,
+            trial_id=writer.trial_id,
+            name=plan.name,
+            outcome=outcome.outcome,
+            reason=outcome.reason,
+            cycles=outcome.cycles,
+            overruns=outcome.overruns,
+        )
         return outcome
 
     def _id(self) -> int:

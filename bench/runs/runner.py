@@ -19,6 +19,7 @@ from bench.control.station import Station, make_station
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiments.parts.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
+from bench.json_types import Values
 from bench.provenance import provenance
 from bench.runs.bench_control import PACES, BenchControl, Pace, Request, RunnerStatus
 from bench.runs.experiment_run import ExperimentRun, Prepared
@@ -232,7 +233,7 @@ class Runner(BenchControl):
             raise ParameterError("pace is 'fast'; a real drive runs in real time")
         return pace == "real-time" or not simulated
 
-    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: dict[str, Any]) -> int:
+    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: Values) -> int:
         drives, benches = self._descriptions, [configuration]
         if find_kind(request.kind).pair and configuration.master is not None:
             benches.append(configuration.of_master())

@@ -106,7 +106,7 @@ def _answers(responses: Schema) -> Iterator[str]:
         for _, one in _media(answer):
             if "example" in one:
                 yield folded("Example", "json", json.dumps(one["example"], indent=2, ensure_ascii=False))
-    problems = [f"{status} {answer['description']}" for status, answer in responses.items() if status >= "300"]
+    problems = [f"{status} {answer['description']}" for status, answer in sorted(responses.items()) if status >= "300"]
     yield "Otherwise: " + "; ".join(problems) + ".\n"
 
 

@@ -50,7 +50,7 @@ def _allowed(schema: Schema, link: Link) -> str:
     if "enum" in schema:
         return ", ".join(code(as_json(one)) for one in schema["enum"])
     bounds = [f"{words} {schema[key]}" for key, words in _BOUNDS if key in schema]
-    kind = schema.get("type", "")
+    kind = str(schema.get("type", ""))
     if kind == "array":
         first = schema.get("items") or (schema.get("prefixItems") or [{}])[0]
         return "; ".join([f"list of {allowed(first, link) or 'values'}", *bounds])
@@ -68,7 +68,8 @@ def keys(schema: Schema, link: Link = str) -> str:
         default = "required" if name in required else code(as_json(one["default"])) if "default" in one else ""
         default = "left out" if default == "`null`" else default
         meaning = one.get("description", "")
-        rows.append((code(name), code(one.get("unit", "")), default, allowed(one, link), meaning))
+        unit = one.get("unit", "").replace(" ", "\u00a0")  # stays on one line
+        rows.append((code(name), code(unit), default, allowed(one, link), meaning))
     filled = [column for column in range(len(COLUMNS)) if any(row[column] for row in rows)]
     return table([COLUMNS[one] for one in filled], [[row[one] for one in filled] for row in rows])
 

@@ -51,8 +51,9 @@ def _sections(path: str, schema: Schema, models: dict[str, Schema], seen: dict[s
         seen: the path at which each model was described; filled here.
     """
     values, tables = _split(schema)
-    if values["properties"]:
-        yield f"## {_title(path, values)}\n\n{schema.get('description', '')}\n\n{keys(values)}"
+    if path or values["properties"]:
+        table = keys(values) if values["properties"] else ""
+        yield f"## {_title(path, values)}\n\n{schema.get('description', '')}\n\n{table}"
     for name, one in tables.items():
         place = f"{path.strip('[]')}.{name}".lstrip(".")
         place = f"[{place}]" if one.get("type") == "array" else place

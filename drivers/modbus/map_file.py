@@ -21,6 +21,8 @@ from drivers.modbus.register_map import (
 
 MAPS = resources.files("drivers.modbus") / "maps"
 _MODE_WORDS = tuple(mode.value for mode in DEMANDS)
+Table = dict[str, Any]
+"""A table of TOML."""
 _SECTIONS = {
     "identity", "control", "mode", "status", "fault", "demand", "measured", "watchdog", "register", "text", "name",
     "source", "low_word_first", "low_byte_first", "read_write", "longest_gap", "limits", "write_function",
@@ -74,7 +76,7 @@ def parse_map(text: str, source: str) -> RegisterMap:
 class _Reader:
     """One file; its errors name the section, the file is named outside."""
 
-    def __init__(self, values: dict[str, Any]) -> None:
+    def __init__(self, values: Table) -> None:
         unknown = values.keys() - _SECTIONS
         if unknown:
             raise ValueError(f"{', '.join(sorted(unknown))}: unknown; known are {', '.join(sorted(_SECTIONS))}")
@@ -103,8 +105,8 @@ class _Reader:
             write_function=self._write_function(),
         )
 
-    def _section(self, name: str) -> dict[str, Any]:
-        found: dict[str, Any] = self._values.get(name, {})
+    def _section(self, name: str) -> Table:
+        found: Table = self._values.get(name, {})
         return found
 
     def _read_registers(self) -> dict[str, Register]:
@@ -116,7 +118,7 @@ class _Reader:
             found[register.name] = register
         return found
 
-    def _one_register(self, row: dict[str, Any]) -> Register:
+    def _one_register(self, row: Table) -> Register:
         name = row.pop("name", "")
         place = f"register '{name}'"
         if not name:

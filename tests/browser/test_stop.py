@@ -4,8 +4,7 @@ import re
 
 import pytest
 
-from bench.service.auth.roles import Role
-from bench.service.auth.tokens import digest_of, make_token
+from bench.service.auth.tokens import Role, digest_of, make_token
 from tests.browser.browser import imported
 from tests.service.running_service import running_service
 

@@ -11,7 +11,7 @@ from bench.parallel import cluster
 from bench.parallel.cluster import ClusterError
 from bench.parallel.over_cores import as_they_end, over_cores
 from bench.store import Store
-from bench.study import create_study
+from bench.study.create import create_study
 from bench.study.diagnose_many import diagnose_many
 from tests.lab.synthetic import plans
 from tests.study.conftest import imported
@@ -87,7 +87,7 @@ def test_without_the_extra_it_is_said_how_to_have_it(monkeypatch):
 def test_diagnoses_are_the_same_as_here(address, tmp_path):
     with Store.open(f"sqlite:///{tmp_path / 'bench.sqlite'}") as store:
         experiment = imported(store, plans(loads_kg=(0.0, 0.2), repeats=1))
-        made = [create_study(store, name, [experiment], cutoff_hz=6.0)["study_id"] for name in ("one", "two")]
+        made = [create_study(store, name, [experiment], cutoff_hz=6.0).study_id for name in ("one", "two")]
         shown = []
         there = diagnose_many(store, made, lambda *done: shown.append(done), cluster=address)
         assert there == diagnose_many(store, made, lambda *_: None, workers=1)

@@ -11,7 +11,7 @@ import numpy as np
 
 from bench.evaluation.challenge import difficulty
 from bench.evaluation.challenge.difficulty import Difficulty
-from bench.service.http.examples import FILE, key
+from bench.service.http.openapi import FILE, key
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
 from tests.service.running_service import RunningService, running_service

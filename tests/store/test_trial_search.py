@@ -28,6 +28,7 @@ def names(found):
         (("nlgi", "sweep"), lambda n: n % 3 > 0),
         (("balanced", "load-sweep"), lambda n: n % 2 == 0 and n % 3 == 1),
         (("0.05",), lambda n: n % 11 == 5),
+        (("load", "50"), lambda n: n % 11 == 5 or n == 49 or "50" in str(n)),  # grams, or a number
         (("100%",), lambda n: False),
         (("trial_",), lambda n: False),  # an underscore is no wildcard
         (("zzz",), lambda n: False),

@@ -1,7 +1,7 @@
 """`friction-bench campaign`: many experiments over a grid of parameters, from a TOML file."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -54,8 +54,8 @@ def start(context: typer.Context, file: File, url: Url = DEFAULT_URL, as_json: J
     say(f"campaign '{found['name']}': {len(found['item_ids'])} experiments in the queue, about {minutes:.1f} min")
 
 
-def _fields(name: str, found: "CampaignPlan") -> dict[str, Any]:
-    from bench.service.models.queue_models import planned
+def _fields(name: str, found: "CampaignPlan") -> dict[str, object]:
+    from bench.service.routes.queue_models import planned
 
     items = [planned(item).model_dump() for item in found.items]
     return {"name": name, "items": items, "duration_s": found.duration_s, "load_changes": found.load_changes}

@@ -36,7 +36,7 @@ def doctor(
     found = connect(session.configuration())
     if not as_json:
         _show(found)
-    answer: dict[str, Any] = {"connection": _represent(found)}
+    answer: dict[str, object] = {"connection": _represent(found)}
     passed = True
     if move:
         passed = _move(session, operator, answer, as_json)
@@ -48,7 +48,7 @@ def doctor(
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
-def _move(session: BenchSession, operator: str, answer: dict[str, Any], quiet: bool) -> bool:
+def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet: bool) -> bool:
     """The proof of the watchdog and the commissioning move. Returns whether both are as wanted."""
     from bench.cli.operation.run import carry_out
     from bench.control.commissioned import KIND, WATCHDOG_FACT
@@ -57,7 +57,7 @@ def _move(session: BenchSession, operator: str, answer: dict[str, Any], quiet: b
     from drivers.contract import Watchdog
 
     configuration = session.configuration()
-    facts: dict[str, Any] = {}
+    facts: dict[str, object] = {}
     if not is_simulated(configuration):  # nobody is silent in virtual time
         proof = prove_watchdog(configuration)
         answer["watchdog_proof"] = facts[WATCHDOG_FACT] = asdict(proof)

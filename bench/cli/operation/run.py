@@ -16,6 +16,7 @@ from bench.cli.output import print_json, say, table
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.experiments.kind import ExperimentKind
+    from bench.json_types import Values
     from bench.runs.bench_control import RunnerStatus
     from bench.store import Experiment
 
@@ -97,12 +98,12 @@ def _run(
 def carry_out(
     session: BenchSession,
     kind: str,
-    parameters: dict[str, Any],
+    parameters: "Values",
     operator: str,
     note: str,
     pace: Pace | None,
     quiet: bool,
-    facts: Mapping[str, Any] | None = None,
+    facts: Mapping[str, object] | None = None,
 ) -> "tuple[Experiment, int | None]":
     """Run it to its end, whatever that is; `facts` are kept with its record.
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
 from bench.config.rig import resolution_rad
 from bench.experiments.parts.pair_joints import Conveyed
+from bench.json_types import Value
 from compensator.reflection.reflection_quality import FloatArray, Swing, delay_s, swing
 
 SWING_COUNTS = 8.0  # of the encoder; what turns back by less does not swing
@@ -32,7 +32,7 @@ def truth_n_m(
 
 def error_results(
     conveyed: Sequence[Conveyed], truth: FloatArray, force_scale: float, configuration: BenchConfiguration
-) -> dict[str, Any]:
+) -> dict[str, Value]:
     """How far the reflected load is from the true one.
 
     Returns:
@@ -60,7 +60,7 @@ def error_results(
     }
 
 
-def rest_results(rests: Sequence[tuple[Swing, float]]) -> dict[str, Any]:
+def rest_results(rests: Sequence[tuple[Swing, float]]) -> dict[str, Value]:
     """Of the rests of a trial.
 
     Args:

@@ -3,7 +3,7 @@
 from functools import partial
 from itertools import product
 from math import ceil, sin
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -18,6 +18,7 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.json_types import Value, objects
 from drivers.contract import Command, Mode
 
 Rate = Annotated[float, Field(ge=0.005, le=100)]
@@ -113,7 +114,7 @@ def _ramp(
 def _result(
     readings: list[Reading], slipped: bool, direction: int, stood_s: float,
     parameters: BreakawayRampsParameters, configuration: BenchConfiguration,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Value]:  # fmt: skip
     """One breakaway.
 
     Returns:
@@ -127,7 +128,7 @@ def _result(
     way_rad = direction * np.array([reading.sample.position_rad for reading in readings])
     way_rad -= way_rad[0]
     moved = np.flatnonzero(np.abs(way_rad) > ONSET_COUNTS * resolution_rad(configuration.rig))
-    result: dict[str, Any] = {
+    result: dict[str, Value] = {
         "direction": direction,
         "stood_s": stood_s,
         "travel_rad": float(way_rad[-1]),
@@ -204,11 +205,11 @@ def _duration_s(parameters: BreakawayRampsParameters, configuration: BenchConfig
     return 2.0 * parameters.repeats * sum(one_way_s)
 
 
-def _summarise(_parameters: BreakawayRampsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: BreakawayRampsParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [
-        {name: trial.conditions[name] for name in ("rate_a_s", "dwell_s", "repeat")} | breakaway
+        {**{name: trial.conditions[name] for name in ("rate_a_s", "dwell_s", "repeat")}, **breakaway}
         for trial in trials
-        for breakaway in trial.results.get("breakaways", [])
+        for breakaway in objects(trial.results.get("breakaways"))
     ]
     slipped = [row for row in rows if row["current_a"] is not None]
     return {"rows": rows, "breakaways": len(slipped), "without_slip": len(rows) - len(slipped)}

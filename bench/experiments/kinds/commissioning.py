@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from functools import partial
 from math import ceil
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
@@ -14,6 +13,7 @@ from bench.experiments.analysis.commissioning_checks import Finding, Push, findi
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
+from bench.json_types import Value
 from drivers.contract import Command, Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
@@ -144,7 +144,7 @@ def _duration_s(parameters: CommissioningParameters, _configuration: BenchConfig
     return 2.0 * (1.0 / parameters.rate_a_s + 1.0)
 
 
-def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     return dict(trials[0].results) if trials else {}
 
 

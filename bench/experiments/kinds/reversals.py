@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise, product
 from math import ceil
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -19,6 +19,7 @@ from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.json_types import Value, numbers
 
 Amplitude = Annotated[float, Field(gt=0)]
 OVERSHOOT_RAD = 0.1  # of the servo, at most
@@ -93,7 +94,7 @@ def _way(
     return [way.at(cycle * period_s) for cycle in range(1, cycles + 1)]
 
 
-def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Any]:
+def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Value]:
     means_a: dict[bool, list[float]] = {True: [], False: []}
     reached_rad, errors_rad = [], []
     for way, readings in parts:
@@ -106,7 +107,7 @@ def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Any
             means_a[bool(target_rad[-1] > target_rad[0])].append(float(np.mean(current_a[middle])))
         reached_rad.append(float(np.ptp(position_rad)) / 2.0)
         errors_rad.append(position_rad - target_rad)
-    results: dict[str, Any] = {"strokes": len(parts), "reached_rad": sum(reached_rad) / len(reached_rad)}
+    results: dict[str, Value] = {"strokes": len(parts), "reached_rad": sum(reached_rad) / len(reached_rad)}
     both = means_a[True] and means_a[False]
     forward_a, backward_a = (float(np.mean(means_a[way])) if both else None for way in (True, False))
     if forward_a is not None and backward_a is not None:
@@ -158,13 +159,13 @@ def _duration_s(parameters: ReversalsParameters, _configuration: BenchConfigurat
     return parameters.repeats * (each * sum(strokes_s) + RESTS_S * len(parameters.amplitudes_rad))
 
 
-def _summarise(_parameters: ReversalsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: ReversalsParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [
-        {name: trial.conditions[name] for name in ("amplitude_rad", "repeat")} | trial.results
+        {**{name: trial.conditions[name] for name in ("amplitude_rad", "repeat")}, **trial.results}
         for trial in trials
         if "reached_rad" in trial.results
     ]
-    return {"rows": rows, "strokes": sum(row["strokes"] for row in rows)}
+    return {"rows": rows, "strokes": sum(numbers(rows, "strokes"))}
 
 
 KIND = ExperimentKind(

@@ -13,6 +13,7 @@ from bench.experiments.parts.injection import RESTS_S, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
 from bench.experiments.parts.waveform_csv import Waveform, read_waveform
+from bench.json_types import Value
 from drivers.contract import Mode
 
 LARGEST_CSV = 2_000_000  # characters
@@ -91,7 +92,7 @@ def _modes(parameters: WaveformParameters) -> frozenset[Mode]:
     return frozenset({Mode.DUTY}) if parameters.waveform.quantity == "duty" else frozenset()
 
 
-def _summarise(parameters: WaveformParameters, trials: Any) -> dict[str, Any]:
+def _summarise(parameters: WaveformParameters, trials: Any) -> dict[str, Value]:
     return {"quantity": parameters.waveform.quantity, **summarise_injection(parameters, trials)}
 
 

@@ -6,6 +6,7 @@ else can reach. STOP is no message: it goes by the stop line, past everything he
 
 import pickle
 import traceback
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -79,7 +80,7 @@ class Failure:
     number: int
     kind: type[BaseException]
     text: str
-    attributes: dict[str, Any]
+    attributes: Mapping[str, object]
     trace: str
 
 

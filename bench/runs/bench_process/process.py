@@ -12,7 +12,6 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.control import scheduling
@@ -50,7 +49,7 @@ class BenchProcess:
         facts = {"control_loop": {"process": "its own", "scheduling": scheduling.describe()}}
         host = HostProcess(lambda: LineStop(line, self._before), scheduling.undisturbed, facts)
         runner = self._runner = Runner(configuration, store, host)
-        self._methods: dict[Method, Callable[..., Any]] = {
+        self._methods: dict[Method, Callable[..., object]] = {
             "begin": runner.begin,
             "answer": runner.answer,
             "pause": runner.pause,

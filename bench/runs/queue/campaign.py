@@ -13,6 +13,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.validation import problems
 from bench.control.drive_factory import has_hardware
 from bench.errors import ConfigurationError, ParameterError
+from bench.json_types import Json
 from bench.runs.bench_control import Pace
 from bench.runs.queue.items import HANG_S, Order, checked_item, fewest_changes, load_changes
 from bench.store.tables.queue import NewItem
@@ -46,7 +47,7 @@ class Campaign(BaseModel):
     )
     name: str = Field(min_length=1, max_length=200)
     kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
-    parameters: dict[str, Any] = Field(default={}, description="parameters that all share")
+    parameters: Json = Field(default={}, description="parameters that all share")
     grid: dict[str, list[Any]] = Field(
         default={}, description="parameters that differ: name -> values; every combination is run"
     )
@@ -112,9 +113,9 @@ def plan_campaign(campaign: Campaign, configuration: BenchConfiguration) -> Camp
     return CampaignPlan(ordered, sum(item.duration_s for item in ordered) + hanging_s, changes)
 
 
-def _item(campaign: Campaign, chosen: dict[str, Any], configuration: BenchConfiguration) -> NewItem:
+def _item(campaign: Campaign, chosen: Json, configuration: BenchConfiguration) -> NewItem:
     order = Order(
-        campaign.kind, campaign.parameters | chosen, campaign.operator, campaign.note, campaign.tags, campaign.pace
+        campaign.kind, {**campaign.parameters, **chosen}, campaign.operator, campaign.note, campaign.tags, campaign.pace
     )
     try:
         return checked_item(order, configuration)
@@ -123,12 +124,14 @@ def _item(campaign: Campaign, chosen: dict[str, Any], configuration: BenchConfig
         raise ParameterError(f"campaign '{campaign.name}'{f', at {where}' if where else ''}: {error}") from error
 
 
-def _combinations(campaign: Campaign) -> list[dict[str, Any]]:
+def _combinations(campaign: Campaign) -> list[Json]:
     """Every combination, each as often as it is repeated, in the wanted order; loads change slowest."""
     names = sorted(campaign.grid, key=lambda name: name not in LOADS)
     axes = [campaign.grid[name] for name in names]
     snake = campaign.order == "boustrophedon"
-    found = [dict(zip(names, values, strict=True)) for values in _product(axes, snake) for _ in range(campaign.repeats)]
+    found: list[Json] = [
+        dict(zip(names, values, strict=True)) for values in _product(axes, snake) for _ in range(campaign.repeats)
+    ]
     if campaign.order == "random":
         random.Random(campaign.seed).shuffle(found)  # noqa: S311  an order, no secret
     return found

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.json_types import Json
 from bench.runs.bench_control import Pace
 from bench.store.tables.queue import NewItem, QueueItem
 from bench.store.tables.tags import checked
@@ -25,7 +25,7 @@ class Order:
     """
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     operator: str = ""
     note: str = ""
     tags: list[str] = field(default_factory=list)

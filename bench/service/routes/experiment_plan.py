@@ -24,7 +24,9 @@ class PlannedStart(BaseModel):
     trials: int
     duration_s: float = Field(description="estimate, in the joint's time; a simulated one may be faster")
     angles_rad: list[float] = Field(description="lowest and highest angle that a trial names; empty: none is named")
-    position_limits_rad: tuple[float, float] = Field(description="of the bench; the joint never leaves them")
+    position_limits_rad: list[float] = Field(
+        min_length=2, max_length=2, description="lowest and highest of the bench; the joint never leaves them"
+    )
     speed_rad_s: float | None = Field(description="highest speed that a trial names; null: none is named")
     loads_kg: list[float] = Field(description="loads that are hung on the arm, lightest first")
     balanced: bool = Field(description="whether a balanced arm is needed")
@@ -64,7 +66,7 @@ def _motion(kind: str, plans: list[TrialPlan], duration_s: float, configuration:
         trials=len(plans),
         duration_s=duration_s,
         angles_rad=[min(angles), max(angles)] if angles else [],
-        position_limits_rad=(limits.position_min_rad, limits.position_max_rad),
+        position_limits_rad=[limits.position_min_rad, limits.position_max_rad],
         speed_rad_s=max(speeds, default=None),
         loads_kg=sorted({plan.load_kg for plan in plans}),
         balanced=any(plan.balanced for plan in plans),

@@ -1,5 +1,6 @@
 """Trials found by words and conditions, sorted, a page at a time: for a list that a person looks through."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -16,6 +17,8 @@ SORTED_BY: dict[str, Column[object]] = {
 }  # fmt: skip
 MOST_WORDS = 8
 ESCAPE = "\\"
+ROUNDING = 5e-4  # relative: numbers are shown with four digits
+SHOWN_AS = {"_kg": 1e-3, "_rad": math.radians(1.0), "_rad_s": math.radians(1.0)}  # SI of what the page shows as 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +27,8 @@ class TrialQuery:
 
     Attributes:
         experiment_id, kind, outcome: exact; None: any.
-        words: each has to be in the name, kind, outcome, reason or a condition's text, or be the number of the trial
-            or the value of a condition.
+        words: each has to be in the name, kind, outcome, reason, a condition's name or text, or be the number of the
+            trial or the value of a condition.
         conditions: value, or lowest and highest number, by condition.
         sort: a key of `SORTED_BY`; trials that are alike come in the order in which they were made.
         descending: the highest, or newest, first.
@@ -84,10 +87,12 @@ def _has(connection: Connection, word: str, keys: list[str]) -> ColumnElement[bo
     for key, text in connection.execute(texts).all():
         by_key.setdefault(key, []).append(text)
     told = [and_(table.key == key, table.text.in_(found)) for key, found in by_key.items()]
-    told += [and_(table.key == key, table.flag.is_(True)) for key in keys if word.lower() in key.lower()]
+    named = [key for key in keys if word.lower() in key.lower()]
+    if named:  # a flag that is not set is no sign of what it is called
+        told.append(and_(table.key.in_(named), or_(table.flag.is_(None), table.flag.is_(True))))
     number = _number(word)
     if number is not None:
-        told.append(and_(table.key.in_(keys), table.number == number))
+        told += [and_(table.key == key, or_(*_about(table.number, number, key))) for key in keys]
         hits.append(TRIAL.c.id == number)
     return or_(*hits, *(TRIAL.c.id.in_(select(table.trial_id).where(one)) for one in told))
 
@@ -108,6 +113,13 @@ def _like(connection: Connection, column: ColumnElement[str], word: str) -> Colu
     escaped = word.replace(ESCAPE, 2 * ESCAPE).replace("%", f"{ESCAPE}%").replace("_", f"{ESCAPE}_")
     compare = column.like if connection.dialect.name == "sqlite" else column.ilike
     return compare(f"%{escaped}%", escape=ESCAPE)
+
+
+def _about(column: ColumnElement[float], number: float, key: str) -> list[ColumnElement[bool]]:
+    """A condition is the number, as it is rounded where it is shown: in SI, or in grams and degrees."""
+    scale = next((scale for suffix, scale in SHOWN_AS.items() if key.endswith(suffix)), 1.0)
+    spans = [sorted((value * (1 - ROUNDING), value * (1 + ROUNDING))) for value in {number, number * scale}]
+    return [column.between(low, high) for low, high in spans]
 
 
 def _number(word: str) -> float | None:

@@ -7,6 +7,7 @@ from sqlalchemy import Connection, Row, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from bench.config.channels import KEPT
+from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
@@ -53,7 +54,7 @@ def add(
     return trial_id
 
 
-def finish(connection: Connection, trial_id: int, outcome: str, reason: str, results: dict[str, Any]) -> None:
+def finish(connection: Connection, trial_id: int, outcome: str, reason: str, results: Values) -> None:
     """Close a trial.
 
     Raises:

@@ -16,7 +16,16 @@ import { statusBar } from "./status.js";
 import { stopButton } from "./stop.js";
 import { tokenForm } from "./token.js";
 
-const VIEWS = { "": homeView, home: homeView, bench: benchView, queue: queueView, trials: trialsView, study: studiesView, learn: learnView };
+// by the name in the address; a view with a tab stands in the row at the top
+const VIEWS = {
+  "": { open: homeView },
+  home: { open: homeView },
+  bench: { open: benchView, tab: "Bench" },
+  queue: { open: queueView, tab: "Queue" },
+  trials: { open: trialsView, tab: "Trials" },
+  study: { open: studiesView, tab: "Study" },
+  learn: { open: learnView, tab: "Learn" },
+};
 const live = new Live();
 const state = new BenchState(live);
 let leave = () => {};
@@ -31,7 +40,11 @@ function show() {
   leave();
   const place = replace(document.getElementById("view"));
   place.className = "";
-  leave = (Object.hasOwn(VIEWS, view) ? VIEWS[view] : unknownView)(place, { live, state, rest, query }) ?? (() => {});
+  leave = (Object.hasOwn(VIEWS, view) ? VIEWS[view].open : unknownView)(place, { live, state, rest, query }) ?? (() => {});
+}
+
+function tabs(row) {
+  row.prepend(...Object.entries(VIEWS).filter(([, { tab }]) => tab).map(([name, { tab }]) => h("a", { href: `#${name}` }, tab)));
 }
 
 function unknownView(place) {
@@ -43,6 +56,7 @@ statusBar(document.getElementById("status"), state);
 promptBar(document.getElementById("prompt"), live);
 tokenForm(document.getElementById("token"));
 unitSwitch(document.getElementById("units"), show);
+tabs(document.getElementById("tabs"));
 addEventListener("hashchange", show);
 show();
 live.run();

@@ -4,7 +4,7 @@ import { readingNote } from "../app/state.js";
 import { liveJoint } from "../joint/livejoint.js";
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
-import { number } from "../ui/format.js";
+import { axisTitle, number } from "../ui/format.js";
 import { shownUnit } from "../ui/units.js";
 import { LatestTrials } from "./latesttrials.js";
 import { around, HALF, LOAD, loadBands, newest } from "./load.js";
@@ -23,7 +23,6 @@ const CHANNELS = [
   { name: "temperature_c", text: "temperature", unit: "°C", colour: "red", off: true },
 ];
 
-const AXES = { rad: "position", "rad/s": "speed", A: "current", V: "supply", "°C": "temperature" };
 // the least that an axis spans, in SI: a joint at rest is a flat line, not its sensor's noise over the whole height
 const LEAST_SPAN = { rad: 0.05, "rad/s": 0.2, A: 0.05, "": 0.02, V: 1, "°C": 1 };
 
@@ -108,7 +107,7 @@ function contentOf(rows, chosen, marks, seconds) {
   const load = measured.find((one) => one.name === LOAD);
   const bands = load && rows.column(HALF) ? [around(units.indexOf(load.unit), all, rows.column(LOAD), rows.column(HALF), load.colour)] : [];
   return {
-    rows: units.length ? units.map((unit) => ({ title: AXES[unit] ? `${AXES[unit]} [${shownUnit(unit).unit}]` : "duty", least: (LEAST_SPAN[unit] ?? 0) * shownUnit(unit).factor })) : [{ title: "" }], lines, bands,
+    rows: units.length ? units.map((unit) => ({ title: axisTitle(unit, "duty"), least: (LEAST_SPAN[unit] ?? 0) * shownUnit(unit).factor })) : [{ title: "" }], lines, bands,
     marks: marks.filter((one) => one.letter && one.x <= last), xTitle: "time in the trial [s]",
     limits: seconds && all.length ? [Math.max(all[0], last - seconds), last] : undefined,
   };

@@ -1,6 +1,6 @@
 // Numbers, units and names as people read them.
 
-import { withShownUnit } from "./units.js";
+import { shownUnit, withShownUnit } from "./units.js";
 
 const UNITS = [
   ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
@@ -15,11 +15,19 @@ export function unitOf(name) {
 export function nameOf(name) {
   const found = UNITS.find(([suffix]) => name.endsWith(suffix));
   const bare = found ? name.slice(0, -found[0].length) : name;
-  return bare.replaceAll("_", " ");
+  return bare.replace(/\bvelocity(?=_|$)/, "speed").replaceAll("_", " ");
+}
+
+const AXES = { rad: "angle", "rad/s": "speed", m: "position", "m/s": "speed", A: "current", "N m": "torque", N: "force", V: "supply", "°C": "temperature" };
+
+// title of an axis for all that has an SI unit, in the unit that is shown
+export function axisTitle(si, other = "") {
+  const { unit } = shownUnit(si);
+  return unit ? `${AXES[si] ? `${AXES[si]} ` : ""}[${unit}]` : other;
 }
 
 export function withUnit(name) {
-  const unit = unitOf(name);
+  const { unit } = shownUnit(unitOf(name));
   return unit ? `${nameOf(name)} [${unit}]` : nameOf(name);
 }
 

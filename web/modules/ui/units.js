@@ -37,7 +37,7 @@ export function withShownUnit(value, si, digits = 4) {
 
 // changed(): everything that is shown has to be drawn again
 export function unitSwitch(place, changed) {
-  const button = h("button", { type: "button", class: "small", title: "Units: degrees and grams, or SI", onclick: () => {
+  const button = h("button", { type: "button", class: "small", title: "Units: degrees and grams, or SI", "aria-label": "Units: degrees and grams, or SI", onclick: () => {
     localStorage.setItem(KEY, inSi() ? "people" : "SI");
     button.textContent = words();
     changed();
@@ -46,5 +46,5 @@ export function unitSwitch(place, changed) {
 }
 
 function words() {
-  return inSi() ? "in SI units" : "in ° and g";
+  return inSi() ? "SI" : "° g";
 }
