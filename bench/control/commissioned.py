@@ -6,8 +6,10 @@ from typing import Any
 
 from bench.errors import NotCommissionedError
 from bench.store import Store
+from drivers.contract import Watchdog
 
 KIND = "commissioning"
+WATCHDOG_FACT = "watchdog_proof"  # in the provenance of a pass that began with the proof
 _IDENTITY = ("device", "vendor", "product", "firmware", "serial")
 _RIG = ("gear", "sensor", "motor")
 _REMEMBERED = 100  # newest passes that are looked through
@@ -38,6 +40,16 @@ def is_commissioned(store: Store, provenance: dict[str, Any]) -> bool:
         for found in passes
         if {"drive", "configuration"} <= found.provenance.keys()
     )
+
+
+def watchdog_of(store: Store, provenance: dict[str, Any]) -> Watchdog | None:
+    """How sure the drive's watchdog was at its newest pass; None where there is none, or nobody tried it then."""
+    wanted = fingerprint(provenance)
+    for found in store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED):
+        kept = found.provenance
+        if {"drive", "configuration", WATCHDOG_FACT} <= kept.keys() and fingerprint(kept) == wanted:
+            return Watchdog(kept[WATCHDOG_FACT]["watchdog"])
+    return None
 
 
 def require_commissioned(store: Store, provenance: dict[str, Any]) -> None:

@@ -15,8 +15,8 @@ from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.transport.bus_port import BusPort
 from sim_backend.devices.canopen.transport.stream_port import SlcanPort, SocketcandPort
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
-from sim_backend.devices.plant_tables import behind_a_drive
 from sim_backend.devices.process import Port, RunningDevice, Workplace
 from sim_backend.errors import ParameterError
 
