@@ -90,7 +90,7 @@ def _family(name: str) -> Family:
     return FAMILIES[name]
 
 
-def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, Any]]:
+def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, str | int]]:
     """Interface, channel and whatever else python-can is told."""
     if settings.interface != "join":
         return settings.interface, settings.channel, {}
