@@ -2,9 +2,9 @@
 
 import hashlib
 import json
-from typing import Any
 
 from bench.errors import NotCommissionedError
+from bench.provenance import Provenance
 from bench.store import Store
 from drivers.contract import Watchdog
 
@@ -15,7 +15,7 @@ _RIG = ("gear", "sensor", "motor")
 _REMEMBERED = 100  # newest passes that are looked through
 
 
-def fingerprint(provenance: dict[str, Any]) -> str:
+def fingerprint(provenance: Provenance) -> str:
     """What a pass holds for: the drive's identity, its section of bench.toml, and gear, sensor and motor of the rig.
 
     Args:
@@ -31,7 +31,7 @@ def fingerprint(provenance: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def is_commissioned(store: Store, provenance: dict[str, Any]) -> bool:
+def is_commissioned(store: Store, provenance: Provenance) -> bool:
     """Whether the store holds a pass for it."""
     wanted = fingerprint(provenance)
     passes = store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED)
@@ -42,7 +42,7 @@ def is_commissioned(store: Store, provenance: dict[str, Any]) -> bool:
     )
 
 
-def watchdog_of(store: Store, provenance: dict[str, Any]) -> Watchdog | None:
+def watchdog_of(store: Store, provenance: Provenance) -> Watchdog | None:
     """How sure the drive's watchdog was at its newest pass; None where there is none, or nobody tried it then."""
     wanted = fingerprint(provenance)
     for found in store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED):
@@ -52,7 +52,7 @@ def watchdog_of(store: Store, provenance: dict[str, Any]) -> Watchdog | None:
     return None
 
 
-def require_commissioned(store: Store, provenance: dict[str, Any]) -> None:
+def require_commissioned(store: Store, provenance: Provenance) -> None:
     """Refuse a drive that has not passed.
 
     Raises:

@@ -35,6 +35,7 @@ from bench.service.routes import (
     recording_sets,
     studies,
     study_answers,
+    study_check,
     study_rounds,
     trials,
 )
@@ -95,6 +96,7 @@ _ROOMS = (
     trials,
     recording_sets,
     calibrations,
+    study_check,
     studies,
     study_answers,
     study_rounds,

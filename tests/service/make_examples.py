@@ -118,6 +118,7 @@ def studies(asking: Asking, service: RunningService) -> None:
     imported = service.client.post("/recording-sets?name=bench+3", **body).json()
     asking.kept["POST /api/v1/recording-sets"] = imported
     new = {"name": "arm, winter", "experiment_ids": [imported["experiment_id"]], "hold_out": ["amplitude_rad=0.9"]}
+    ask("POST /studies/check", {"experiment_ids": new["experiment_ids"]})
     number = ask("POST /studies", new)["study_id"]
     ask("GET /studies")
     for route in ("", "/compare", "/closed-loop", "/diagnose", "/error-map"):

@@ -36,6 +36,7 @@ CHANGES = [
     ("POST", "/calibrations/1/use"),
     ("DELETE", "/calibrations/in-use"),
     ("POST", "/studies"),
+    ("POST", "/studies/check"),
     ("POST", "/studies/1/models"),
     ("POST", "/studies/1/search"),
     ("POST", "/studies/1/use"),
