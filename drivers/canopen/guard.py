@@ -108,9 +108,7 @@ class Guard:
             WatchdogError: it has nothing of the kind, or the objects cannot be set; with each reason.
         """
         self._reaction = self._prepare_reaction()
-        self._table.try_set(
-            BEHAVIOUR_ON_COMMUNICATION_ERROR, _STAY_OPERATIONAL, "the fault is still told by PDO"
-        )
+        self._table.try_set(BEHAVIOUR_ON_COMMUNICATION_ERROR, _STAY_OPERATIONAL, "the fault is still told by PDO")
         refusals = []
         for kind in (Kind.HEARTBEAT, Kind.LIFE, Kind.RPDO):
             why = self._try(kind)

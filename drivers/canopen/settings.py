@@ -13,6 +13,8 @@ from drivers.errors import DriveConfigurationError
 _WITHOUT_BITRATE = ("socketcan", "virtual", "udp_multicast")  # the bus has it already, or has none
 _NAMED_CHANNELS = ("virtual", "socketcan", "socketcand", "slcan")
 
+PositionMode = Literal["auto", "cyclic", "profile", "velocity"]
+
 BITRATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000)
 """Bit rates of CiA 301 that every interface here knows [bit/s]."""
 
@@ -24,7 +26,7 @@ class BusSettings:
     Attributes:
         interface: of python-can, by its name: "socketcan" (Linux network interface), "slcan" (serial adapter),
             "socketcand" (TCP server), "pcan", "kvaser", "gs_usb", "udp_multicast", "virtual" (inside one process) ...
-        channel: as the interface has it: "can0"; "/dev/ttyACM0"; the server's name of the bus; "PCAN_USBBUS1"; a number.
+        channel: as the interface has it: "can0"; "/dev/ttyACM0"; the server's name of the bus; "PCAN_USBBUS1"; "0".
         bitrate: of the bus [bit/s]. With socketcan and socketcand the interface has it already: it must be the same.
         host, port: of the socketcand server.
         tty_baudrate: of the serial line of an slcan adapter [bit/s].
@@ -88,7 +90,7 @@ class CanopenSettings:
         duty_sign_from_current: the profile's duty has no sign: take the current's. Else the duty counts as not
             measured.
         watchdog_s: time after the host's last sign of life at which the drive stops by itself [s].
-        watchdog_is_set_in_drive: the drive has a watchdog that its own tool has set; it is tried before the first motion.
+        watchdog_is_set_in_drive: the drive's own tool has set a watchdog; it is tried before the first motion.
         answer_s: longest silence of the drive in a row of cycles [s].
         sdo_answer_s: longest wait for one answer to a read or write of an object [s].
         enable_s: longest time from switching on to operation enabled [s]; brakes and finding the phase take some.
@@ -103,7 +105,7 @@ class CanopenSettings:
     bus: BusSettings
     node_id: int
     profile: str = "auto"
-    position_mode: Literal["auto", "cyclic", "profile", "velocity"] = "auto"
+    position_mode: PositionMode = "auto"
     velocity_unit: str | None = None
     units_from_configuration: bool = False
     rated_current_a: float | None = None
@@ -148,13 +150,17 @@ class CanopenSettings:
         positive = ("rated_current_a", "torque_constant_n_m_a", "current_limit_a", "profile_speed_rad_s",
                     "profile_acceleration_rad_s2")  # fmt: skip
         times = ("sdo_answer_s", "enable_s", "fault_reset_s", "mode_s")
-        modes = get_args(CanopenSettings.__annotations__["position_mode"])
+        modes = get_args(PositionMode)
         return [
             ("interface", f"one of {', '.join(sorted(can.VALID_INTERFACES))}", bus.interface in can.VALID_INTERFACES),
             ("channel", "a name", bool(bus.channel)),
             ("bitrate", f"one of {', '.join(map(str, BITRATES))} [bit/s]", bus.bitrate in BITRATES),
             ("node_id", "1 .. 127", 1 <= self.node_id <= 127),
-            ("host_node_id", "1 .. 127, not the drive's", host_id is None or (1 <= host_id <= 127 and host_id != self.node_id)),
+            (
+                "host_node_id",
+                "1 .. 127, not the drive's",
+                host_id is None or (1 <= host_id <= 127 and host_id != self.node_id),
+            ),
             ("profile", f"auto or {' or '.join(PROFILES)}", self.profile in ("auto", *PROFILES)),
             ("position_mode", " or ".join(modes), self.position_mode in modes),
             ("velocity_unit", f"one of {', '.join(VELOCITY_UNITS)}", self.velocity_unit in (None, *VELOCITY_UNITS)),

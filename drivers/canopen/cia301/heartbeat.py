@@ -1,4 +1,4 @@
-"""What the drive's heartbeats, or its answers to node guarding, tell (CiA 301, 7.2.8.2). Pure: who calls knows the time."""
+"""What the drive's heartbeats, or its answers to node guarding, tell (CiA 301, 7.2.8.2). Pure."""
 
 from enum import IntEnum
 

@@ -12,7 +12,6 @@ from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.objects import DataType, DriveObject
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 
-ANSWER_S: Final = 0.2  # longest wait for one answer
 _ATTEMPTS: Final = 2
 _BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (CiA 301, 7.2.4.3)
 _NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
@@ -52,11 +51,13 @@ class ObjectAccess:
         link: open.
         node_id: of the drive.
         device: named in errors.
+        answer_s: longest wait for one answer [s].
     """
 
-    def __init__(self, link: CanLink, node_id: int, device: str) -> None:
+    def __init__(self, link: CanLink, node_id: int, device: str, answer_s: float) -> None:
         self._device = device
-        self._client = _Client(link, node_id)
+        self._answer_s = answer_s
+        self._client = _Client(link, node_id, answer_s)
 
     def take(self, data: bytes) -> None:
         """Receive an answer of the drive's SDO server."""
@@ -118,7 +119,7 @@ class ObjectAccess:
                 problem = error
         raise DriveConnectionError(
             self._device,
-            f"{what} {item}: {problem} (SDO, {_ATTEMPTS} times {ANSWER_S:g} s); is the drive on, the cable in, "
+            f"{what} {item}: {problem} (SDO, {_ATTEMPTS} times {self._answer_s:g} s); is the drive on, the cable in, "
             "node ID and bit rate right?",
         )
 
@@ -130,12 +131,12 @@ class _Client(SdoClient):
     by this host or by the one before it: it is let go.
     """
 
-    RESPONSE_TIMEOUT = ANSWER_S
     RETRY_DELAY = 0.0
 
-    def __init__(self, link: CanLink, node_id: int) -> None:
+    def __init__(self, link: CanLink, node_id: int, answer_s: float) -> None:
         super().__init__(0x600 + node_id, 0x580 + node_id, canopen.ObjectDictionary())  # type: ignore[no-untyped-call]
         self.network = link
+        self.RESPONSE_TIMEOUT = answer_s
         self._link = link
         self._asked = b""  # index and subindex of the transfer
 

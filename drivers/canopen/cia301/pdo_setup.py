@@ -10,7 +10,6 @@ from drivers.canopen.cia301.pdo import INVALID, Pdo, communication, mapping_entr
 from drivers.errors import DriveConfigurationError
 
 MOST_PDOS: Final = 4  # of each kind that a drive has enabled by default (CiA 402)
-_PLACES: Final = 8
 _INHIBIT_TIME, _EVENT_TIMER = 3, 5  # subindices of a TPDO's communication record
 
 
@@ -23,14 +22,12 @@ class Slot:
         transmit: True where the drive sends it.
         cob_id: as it reads.
         mapped: the mapping as it reads.
-        places: how many objects can be mapped, as far as the drive tells.
     """
 
     number: int
     transmit: bool
     cob_id: int
     mapped: tuple[int, ...]
-    places: int
 
 
 def read_slots(access: ObjectAccess, transmit: bool) -> list[Slot]:
@@ -44,13 +41,8 @@ def _read_slot(access: ObjectAccess, number: int, transmit: bool) -> Slot | None
     count = access.read_if_present(mapping_entry(number, transmit, 0))
     if cob_id is None or count is None:
         return None
-    words: list[int] = []
-    for place in range(1, _PLACES + 1):
-        word = access.read_if_present(mapping_entry(number, transmit, place))
-        if word is None:
-            break
-        words.append(word)
-    return Slot(number, transmit, cob_id, tuple(words[:count]), max(len(words), 1))
+    words = (access.read_if_present(mapping_entry(number, transmit, place)) for place in range(1, count + 1))
+    return Slot(number, transmit, cob_id, tuple(word or 0 for word in words))
 
 
 def configure(access: ObjectAccess, device: str, pdo: Pdo, slot: Slot) -> None:

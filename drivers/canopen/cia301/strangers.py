@@ -7,7 +7,7 @@ python-can hands a host its own frames, so each of these was sent by somebody el
 
 import itertools
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Final
 
 from drivers.canopen.cia301.link import CanLink
@@ -57,11 +57,13 @@ class Strangers:
         if configured is not None and configured in self.heard:
             raise DriveConnectionError(
                 self._device,
-                f"another node sends heartbeats as node {configured}, which host_node_id claims for this host: it would "
-                "keep the drive alive without this host. Choose another host_node_id, or leave it out",
+                f"another node sends heartbeats as node {configured}, which host_node_id claims for this host: it "
+                "would keep the drive alive without it. Choose another host_node_id, or leave it out",
             )
         if configured is None and not free:
-            raise DriveConnectionError(self._device, "every node ID 64 .. 127 is in use; set host_node_id to a free one")
+            raise DriveConnectionError(
+                self._device, "every node ID 64 .. 127 is in use; set host_node_id to a free one"
+            )
         self._host_id = free[0] if configured is None else configured
         return self._host_id
 
@@ -82,17 +84,17 @@ class Strangers:
                 "each joint a bus of its own; then open the drive again",
             )
 
-    def _named(self, what: str):  # type: ignore[no-untyped-def]
-        def take(_cob_id: int, _data: bytes, _timestamp: float) -> None:
+    def _named(self, what: str) -> Callable[[int, bytearray, float], None]:
+        def take(_cob_id: int, _data: bytearray, _timestamp: float) -> None:
             self._seen = self._seen or what
 
         return take
 
-    def _take_nmt(self, _cob_id: int, data: bytes, _timestamp: float) -> None:
+    def _take_nmt(self, _cob_id: int, data: bytearray, _timestamp: float) -> None:
         if len(data) == 2 and data[1] in (0, self._node_id):
             self._seen = self._seen or "NMT commands to this drive (COB-ID 0x000)"
 
-    def _take_heartbeat(self, cob_id: int, _data: bytes, _timestamp: float) -> None:
+    def _take_heartbeat(self, cob_id: int, _data: bytearray, _timestamp: float) -> None:
         number = cob_id - _HEARTBEAT
         self.heard.add(number)
         if number == self._host_id:

@@ -139,8 +139,8 @@ def _check_positions(told: list[_Told], settings: CanopenSettings, counts_per_tu
         return
     raise DriveConfigurationError(
         settings.device,
-        f"counts per motor turn are {_words(told)}; the rig says {counts_per_turn:g}. Correct sensor.counts_per_turn of "
-        "the rig, or the objects of the drive; with units_from_configuration = true the rig is believed",
+        f"counts per motor turn are {_words(told)}; the rig says {counts_per_turn:g}. Correct sensor.counts_per_turn "
+        "of the rig, or the objects of the drive; with units_from_configuration = true the rig is believed",
     )
 
 

@@ -1,4 +1,4 @@
-"""Which PDOs carry what: each demand with the controlword in one RPDO, measurements in as few TPDOs as the drive has."""
+"""Which PDOs carry what: each demand with the controlword in one RPDO, measurements in as few TPDOs as will do."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -31,7 +31,8 @@ class ProcessData:
     """The PDOs in use.
 
     Attributes:
-        demands: the RPDO of each target; the controlword travels with it, so that neither comes before the other.
+        demands: the RPDO of each target; the controlword travels with it, so that neither comes before the other. Of a
+            drive without any target, that of the controlword alone.
         tpdos: what the drive tells at every SYNC.
         lost: objects that found no room in a TPDO.
     """
@@ -45,9 +46,10 @@ class ProcessData:
         """The RPDO for cycles that demand nothing."""
         return next(iter(self.demands.values()))
 
-    def nothing(self, controlword: int, position: int) -> bytes:
-        """Payload of `idle`: no torque, no speed, the position where the drive stands [counts]."""
-        return rest_payload(self.idle.layout, controlword, position)
+    @staticmethod
+    def nothing(pdo: Pdo, controlword: int, position: int) -> bytes:
+        """Payload of an RPDO: no torque, no speed, the position where the drive stands [counts]."""
+        return rest_payload(pdo.layout, controlword, position)
 
     def place(self, item: DriveObject) -> tuple[int, int] | None:
         """Which TPDO tells an object, and where in it; None where none does."""
@@ -79,8 +81,8 @@ def rest_payload(layout: PdoLayout, controlword: int, position: int, mode: int =
 class Arrangement:
     """Finds room for demands and measurements in the PDOs that a drive has, and configures them.
 
-    Each layout is tried where it fits by what the drive tells, then anywhere; then what the drive has mapped by itself
-    is taken, where it carries what is needed.
+    Each layout is tried where the drive has it already, then anywhere: drives differ in how many objects a PDO takes.
+    Then what the drive has mapped by itself is taken, where it carries what is needed.
 
     Args:
         access: to the drive, PRE-OPERATIONAL.
@@ -111,6 +113,8 @@ class Arrangement:
         """
         self._slots = read_slots(self._access, transmit=False)
         demands = {target: self._place_demand(target, offsets) for target in targets}
+        if not demands:
+            demands = {CONTROLWORD: self._place_controlword()}
         self._slots = read_slots(self._access, transmit=True)
         lost = self._place_measured(groups)
         release(self._access, self._used)
@@ -123,6 +127,12 @@ class Arrangement:
         made = made or self._take_fixed((CONTROLWORD, target), _DEMANDED)
         if made is None:
             raise self._no_room(f"{CONTROLWORD} and {target}", "RPDO")
+        return made
+
+    def _place_controlword(self) -> Pdo:
+        made = self._place([CONTROLWORD]) or self._take_fixed((CONTROLWORD,), _DEMANDED)
+        if made is None:
+            raise self._no_room(str(CONTROLWORD), "RPDO")
         return made
 
     def _place_measured(self, groups: Sequence[Sequence[DriveObject]]) -> tuple[DriveObject, ...]:
@@ -154,7 +164,7 @@ class Arrangement:
         except ValueError:
             return None
         wanted = tuple(entry.mapping for entry in entries)
-        ranked = sorted(self._free(), key=lambda slot: (slot.mapped != wanted, slot.places < len(wanted), slot.number))
+        ranked = sorted(self._free(), key=lambda slot: (slot.mapped != wanted, slot.number))
         return next(filter(None, (self._configure(slot, layout) for slot in ranked)), None)
 
     def _take_fixed(self, needed: Sequence[DriveObject], known: Sequence[DriveObject] | None) -> Pdo | None:

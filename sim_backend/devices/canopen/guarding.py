@@ -1,4 +1,4 @@
-"""How a node notices that its host is gone without heartbeats: life guarding, and the event timer of RPDOs (CiA 301)."""
+"""How a node notices without heartbeats that its host is gone: life guarding, event timer of RPDOs (CiA 301)."""
 
 from sim_backend.devices.canopen.dictionary import Dictionary
 

@@ -41,7 +41,7 @@ class Measured:
         self._current_a += share * (self.current_a() - self._current_a)
         self._counts_per_s += share * (self._axis.counts_per_s() - self._counts_per_s)
 
-    def counts_per_s(self, velocity: int) -> float:
+    def counts_per_s(self, velocity: float) -> float:
         """Return the speed of a number in the drive's unit of velocity."""
         return velocity * self._unit_counts_per_s
 

@@ -110,7 +110,8 @@ class Node:
         if self._consumer.loses(time_s) or self._guard.loses(time_s):
             self._lose(ErrorCode.HEARTBEAT)
         if self.state is NmtState.OPERATIONAL:
-            if any([deadline.passes(time_s) for deadline in self._deadlines]):
+            late = [deadline for deadline in self._deadlines if deadline.passes(time_s)]  # each is asked
+            if late:
                 self._lose(ErrorCode.RPDO_TIMEOUT)
             for tpdo in self._tpdos:
                 self._send(tpdo.poll(time_s))

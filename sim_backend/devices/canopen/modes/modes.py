@@ -12,9 +12,7 @@ from sim_backend.devices.canopen.modes.profile_torque import ProfileTorque
 from sim_backend.devices.canopen.modes.velocity import Velocity
 
 
-def make_modes(
-    numbers: Iterable[int], dictionary: Dictionary, loop: PositionLoop, units: Units
-) -> dict[int, Mode]:
+def make_modes(numbers: Iterable[int], dictionary: Dictionary, loop: PositionLoop, units: Units) -> dict[int, Mode]:
     """Return those of the numbers (0x6060) that make the motor turn.
 
     Args:

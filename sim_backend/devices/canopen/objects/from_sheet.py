@@ -27,7 +27,7 @@ def family_of(sheet: DataSheet) -> Family:
         name=sheet.name,
         device_name=name,
         modes=_modes(sheet) or base.modes,
-        objects=lambda rating: _objects(sheet, base, rating, name),
+        objects=lambda rating: _objects(sheet, base, rating),
         velocity_rad_s=_velocity_unit(sheet),
         torque_unit_n_m=base.torque_unit_n_m,
         peak=base.peak,
@@ -42,14 +42,14 @@ def _modes(sheet: DataSheet) -> frozenset[int]:
     return frozenset(mode for mode in range(1, 12) if bits >> (mode - 1) & 1)
 
 
-def _objects(sheet: DataSheet, base: Family, rating: Rating, name: str) -> list[Object]:
+def _objects(sheet: DataSheet, base: Family, rating: Rating) -> list[Object]:
     """The file's objects, and hidden ones for whatever the drive works with beside them."""
     inside = {one.index: one for one in base.objects(rating)}
-    made = [_visible(one, inside.pop(one.index, None), sheet, name) for one in sheet.objects]
+    made = [_visible(one, inside.pop(one.index, None), sheet) for one in sheet.objects]
     return [*made, *(_hidden(one) for one in inside.values())]
 
 
-def _visible(one: Object, base: Object | None, sheet: DataSheet, name: str) -> Object:
+def _visible(one: Object, base: Object | None, sheet: DataSheet) -> Object:
     behind = {entry.subindex: entry for entry in base.entries} if base is not None else {}
     entries = [_entry(one.index, entry, behind.pop(entry.subindex, None), sheet) for entry in one.entries]
     if one.index == _DEVICE_NAME:  # no record of it may be taken for one of hardware
