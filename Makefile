@@ -4,60 +4,43 @@ VENV := .venv
 VM_KERNEL ?= out/vm/kernel
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo paper serve report screenshots test test-vm benchmark kills schema check format clean help
+.PHONY: help demo paper serve test check format docs report screenshots pictures benchmark kills schema test-vm dist \
+        dist-test clean
 
 help:            ## this list
-	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/'
+	@awk -F ':.*## *' '/^[a-z-]+:.*##/ { printf "%-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null \
 	    || { echo "Python 3.11 is needed, found '$(PYTHON)'; if it is elsewhere: make PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,test]'
+	$(PIP) --editable '.[dev,docs,test]'
 	touch $@
 
-demo: $(STAMP)   ## the main job, end to end: tables on the terminal, one HTML report in out/
+# To try it
+
+demo: $(STAMP)   ## the main job, end to end, in a minute: tables here, a report in out/demo.html
 	$(BIN)/friction-bench demo --report out/demo.html
 
-paper: $(STAMP)  ## every figure and table of the paper, ours beside it: one HTML report in out/
+paper: $(STAMP)  ## every figure and table of the paper, ours beside it, in minutes: a report in out/paper.html
 	mkdir -p out
 	$(BIN)/friction-bench --store out/paper.sqlite paper --report out/paper.html
 
 serve: $(STAMP)  ## the service and the page on the simulated bench
 	$(BIN)/friction-bench serve
 
-test: $(STAMP)   ## the tests: on all cores, and then those that the wall clock times, which mostly wait; drives on a wire by themselves
+# To work on it
+
+test: $(STAMP)   ## the tests: first on all cores, then those that the wall clock times
 	@failed=0; \
 	$(BIN)/pytest --numprocesses auto --dist loadfile -m 'not wall_clock' || failed=1; \
 	$(BIN)/pytest --numprocesses 2 --dist loadfile -m wall_clock --ignore=tests/drivers || failed=1; \
 	$(BIN)/pytest tests/drivers -m wall_clock || failed=1; \
 	exit $$failed
 
-report: $(STAMP) ## has a change made the bench worse? beside bench-baseline.json, as table, JUnit XML and HTML in out/
-	$(BIN)/friction-bench bench-report --junit out/bench-report.xml --html out/bench-report.html
-
-screenshots: $(STAMP) ## the walk of docs/tutorial/walk.md in Chromium, every view, light and dark: pictures in out/walk
-	$(BIN)/python -m tests.browser.screenshots out/walk
-
-test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
-	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)
-
-benchmark: $(STAMP) ## how fast plant, bench and start are, plant beside MuJoCo, store and export beside pandas, drivers beside their libraries, diagnosis and rows
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[bench]'
-	$(BIN)/python -m tests.sim_backend.rates
-	$(BIN)/python -m tests.store.rates
-	$(BIN)/python -m tests.service.rates
-	$(BIN)/python -m tests.drivers.rates
-	$(BIN)/python -m tests.lab.rates
-
-kills: $(STAMP)  ## 200 runs ended at random moments, in every way, on a drive in a process of its own: what is left of each
-	$(BIN)/python -m tests.stopping.kills --kills 200
-
-schema: $(STAMP) ## every route of the interface asked with many requests that fit its description, and many that do not
-	SCHEMA_EXAMPLES=100 $(BIN)/pytest tests/service/test_schema.py --timeout=3600
-
-check: $(STAMP)  ## style, types and walls
+check: $(STAMP)  ## style, types and walls; .pre-commit-config.yaml runs the same
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -67,5 +50,45 @@ format: $(STAMP) ## rewrite in the project's style
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
+docs: $(STAMP)   ## the documents as a site in out/docs, without network; a warning or a broken link is an error
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going --doctree-dir out/doctrees docs out/docs
+	$(BIN)/python -m docs.generate.site out/docs
+
+report: $(STAMP) ## has a change made the bench worse? beside bench-baseline.json: table, JUnit XML and HTML in out/
+	$(BIN)/friction-bench bench-report --junit out/bench-report.xml --html out/bench-report.html
+
+screenshots: $(STAMP) ## the walk of docs/tutorial/walk.md in Chromium, every view, light and dark: out/walk
+	$(BIN)/python -m tests.browser.screenshots out/walk
+
+pictures: $(STAMP) ## the pictures of README.md, taken in Chromium: docs/pictures
+	$(BIN)/python -m tests.browser.pictures docs/pictures
+
+benchmark: $(STAMP) ## rates of plant, store, service, drivers, lab and command line, beside other libraries
+	$(PIP) --editable '.[bench]'
+	$(BIN)/python -m tests.cli.start_times
+	$(BIN)/python -m tests.sim_backend.rates
+	$(BIN)/python -m tests.store.rates
+	$(BIN)/python -m tests.service.rates
+	$(BIN)/python -m tests.drivers.rates
+	$(BIN)/python -m tests.lab.rates
+
+kills: $(STAMP)  ## 200 runs ended at random moments in every way: what is left of each
+	$(BIN)/python -m tests.stopping.kills --kills 200
+
+schema: $(STAMP) ## every route asked with many requests that fit its description, and many that do not
+	SCHEMA_EXAMPLES=100 $(BIN)/pytest tests/service/test_schema.py --timeout=3600
+
+test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
+	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)
+
+# To release it
+
+dist: $(STAMP)   ## wheel and sdist in dist/
+	rm -rf dist
+	$(BIN)/python -m build --no-isolation
+
+dist-test: dist  ## demo and service from the wheel alone, in a new environment outside the checkout
+	$(BIN)/python -m tests.release.from_wheel dist
+
 clean:           ## remove the environment and everything made
-	rm -rf $(VENV) out .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) out dist docs/reference/generated .mypy_cache .ruff_cache .pytest_cache .hypothesis

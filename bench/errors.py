@@ -70,3 +70,7 @@ def quantity_message(quantity: str, found: float, allowed: str, unit: str, next_
     suffix = f" {unit}" if unit else ""
     message = f"{quantity} is {found:.6g}{suffix}; allowed is {allowed}{suffix}"
     return f"{message}. {next_step}" if next_step else message
+
+
+class BaselineError(BenchError, ValueError):
+    """Raised when there is no baseline, or one that these measurements cannot be held against."""

@@ -7,11 +7,11 @@ import platform
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel
 
 from bench import __version__
+from bench.json_types import Value
 from drivers.contract import Description
 
 LIBRARIES = (
@@ -27,13 +27,13 @@ def provenance(
     drive: Description | None = None,
     seed: int | None = None,
     master: Description | None = None,
-) -> dict[str, Any]:
+) -> dict[str, Value]:
     """What an experiment was made with, JSON-able.
 
     Where the store lies is left out of the configuration: it says where the user's files are, and
     may hold a password.
     """
-    found: dict[str, Any] = {"software": software()}
+    found: dict[str, Value] = {"software": software()}
     if configuration is not None:
         found["configuration"] = configuration.model_dump(mode="json", exclude_none=True, exclude={"store"})
     if drive is not None:
@@ -46,7 +46,7 @@ def provenance(
 
 
 @functools.cache
-def _software() -> dict[str, Any]:
+def _software() -> dict[str, Value]:
     return {
         "version": __version__,
         **_commit(),
@@ -56,7 +56,7 @@ def _software() -> dict[str, Any]:
     }
 
 
-def software() -> dict[str, Any]:
+def software() -> dict[str, Value]:
     """Version, and the commit where it runs from a git checkout; Python, libraries and operating system."""
     return copy.deepcopy(_software())
 
@@ -68,7 +68,7 @@ def _version(distribution: str) -> str | None:
         return None
 
 
-def _commit() -> dict[str, Any]:
+def _commit() -> dict[str, Value]:
     if not (_ROOT / ".git").exists():  # installed: the version says it all
         return {}
     commit = _git("rev-parse", "HEAD")
@@ -95,7 +95,7 @@ def _operating_system() -> str:
     return f"{name} ({platform.machine()})"
 
 
-def _drive(drive: Description) -> dict[str, Any]:
+def _drive(drive: Description) -> dict[str, Value]:
     found = dataclasses.asdict(drive)
     found["modes"] = sorted(mode.value for mode in drive.modes)
     found["measured"] = sorted(drive.measured)

@@ -138,6 +138,7 @@ class Description:
         watchdog_s: time after the last command at which the drive stops by itself [s].
         longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
         watchdog: how sure it is that the drive stops by itself then.
+        notes: what the user should know of line and host, and what to do; a sentence each.
     """
 
     device: str
@@ -154,6 +155,7 @@ class Description:
     longest_call_s: float = 0.0
     longest_open_s: float = 0.0
     watchdog: Watchdog = Watchdog.CONFIGURED
+    notes: tuple[str, ...] = ()
 
 
 class Drive(Protocol):

@@ -1,7 +1,9 @@
 """From what a drive counts to what the joint does: encoder counts, gear ratio, signs and zero."""
 
 from dataclasses import dataclass, field
-from math import isfinite, pi
+from math import isfinite, nan, pi
+
+_STANDING_CYCLES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +56,21 @@ class JointScale:
     def counts(self, position_rad: float) -> int:
         """Count nearest to a joint angle [rad]."""
         return round(self.encoder_sign * (position_rad + self.zero_rad) / self.count_rad)
+
+
+class Standstill:
+    """When a quick stop is over, where the drive does not say so: its count stands. Followed from cycle to cycle."""
+
+    def __init__(self) -> None:
+        self._last = nan  # a position that is not known never stands
+        self._cycles = 0
+
+    def restart(self) -> None:
+        """Braking begins."""
+        self._last, self._cycles = nan, 0
+
+    def stands(self, position: float) -> bool:
+        """Whether the position, in any unit, has been the same for some cycles; this one's is given."""
+        self._cycles = self._cycles + 1 if position == self._last else 0
+        self._last = position
+        return self._cycles >= _STANDING_CYCLES

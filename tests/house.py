@@ -20,9 +20,10 @@ PACKAGES = ("bench", "compensator", "drivers", "sim_backend")
 SMALL_LINES = 40
 FILES_A_FOLDER = 20
 
-# One effect, mechanism, way of compensation, kind or migration a file: small for a reason of its own.
+# One effect, mechanism, way of compensation, mode, command, route or migration a file: small for a reason of its own.
 OWN_REASON = re.compile(
-    r"compensator/lab/effects/|compensator/rivals/|sim_backend/mechanisms/|/migrations/|/errors\.py$|/__(init|main)__\.py$"
+    r"compensator/lab/effects/|compensator/rivals/|sim_backend/mechanisms/|/modes/|bench/cli/|/routes/|/migrations/"
+    r"|/errors\.py$"
 )
 
 

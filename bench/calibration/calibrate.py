@@ -4,15 +4,14 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from math import sin
-from typing import Any
 
 from bench.calibration.curves import friction_fits, inertia_of, rise_offset_of
-from bench.calibration.motor_constants import identify_motor
-from bench.calibration.points import FrictionPoint, Row, friction_points
+from bench.calibration.points import FrictionPoint, Row, friction_points, identify_motor
 from bench.calibration.rest import rest_of
 from bench.calibration.samples import points_of_recording
 from bench.calibration.selection import drive_of_experiment
 from bench.config.rig import Rig
+from bench.json_types import Value
 from bench.provenance import software
 from bench.store import Experiment, Store, Trial
 from bench.store.tables.json_text import plain
@@ -60,7 +59,7 @@ def calibrate(store: Store, experiment_ids: Sequence[int], stribeck: bool = True
 
 def fit_trials(
     store: Store, trials: Sequence[Trial], rig: Rig, stribeck: bool = True
-) -> tuple[dict[str, Any], list[int]]:
+) -> tuple[dict[str, Value], list[int]]:
     """What trials tell: curves, points, motor constants as JSON-able values; and the ids of the trials used.
 
     Raises:
@@ -86,7 +85,7 @@ def fit_trials(
     used = {one.trial_id for found in points.values() for one in found if one.trial_id is not None}
     used |= set(rest.trial_ids)
     used |= {trial_id for _, ids in searched.values() for trial_id in ids}
-    result = {
+    result: dict[str, Value] = {
         "stribeck": stribeck,
         "curves": [_curve(load_kg, fits[load_kg], searched) for load_kg in points],
         "points": [_point(one, inertia_of(fits[one.load_kg])) for found in points.values() for one in found],
@@ -140,7 +139,7 @@ def _f_loads(trials: Sequence[Trial]) -> dict[float, tuple[float, list[int]]]:
     }
 
 
-def _curve(load_kg: float, fit: FrictionFit, searched: Mapping[float, tuple[float, list[int]]]) -> dict[str, Any]:
+def _curve(load_kg: float, fit: FrictionFit, searched: Mapping[float, tuple[float, list[int]]]) -> dict[str, Value]:
     f_load_a = searched[load_kg][0] if load_kg in searched else fit.curve.static_a
     return {
         "load_kg": load_kg,
@@ -156,11 +155,11 @@ def _curve(load_kg: float, fit: FrictionFit, searched: Mapping[float, tuple[floa
     }
 
 
-def _point(one: FrictionPoint, inertia_a_s2_rad: float) -> dict[str, Any]:
+def _point(one: FrictionPoint, inertia_a_s2_rad: float) -> dict[str, Value]:
     return asdict(one) | {"friction_a": one.current_a - inertia_a_s2_rad * one.acceleration_rad_s2}
 
 
-def _motor(rows: Sequence[Row]) -> dict[str, Any]:
+def _motor(rows: Sequence[Row]) -> dict[str, Value]:
     """What the rows tell of R and Ke; and why, where they do not."""
     try:
         found = identify_motor(rows)

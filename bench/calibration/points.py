@@ -1,11 +1,14 @@
-"""From the table of a speed sweep to the points of its friction curves."""
+"""From the table of a speed sweep to the points of its friction curves, and to the constants of its motor."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import nan
 from typing import Any
 
 from compensator.errors import CalibrationError
+from compensator.motor import identification as motor_identification
+from compensator.motor.identification import MotorIdentification, MotorSample
 
 SIGNS = {"forward": 1.0, "backward": -1.0}
 Row = Mapping[str, Any]
@@ -69,3 +72,29 @@ def _points_of(row: Row) -> list[FrictionPoint]:
         for one in windows
         if one["usable"]
     ]
+
+
+def identify_motor(rows: Iterable[Row]) -> MotorIdentification:
+    """R and Ke of the motor, as far as the sweep tells: stalled rows are locked samples, saturated ones running.
+
+    Without a measured current, the lightest load alone is looked at: friction that differs from row to row would not
+    let even the lumps show.
+
+    Raises:
+        CalibrationError: too few rows.
+    """
+    usable = [row for row in rows if row["saturated"] or row["speed_rad_s"] == 0.0]
+    if usable and all(row["measured_current_a"] is None for row in usable):
+        lightest_kg = min(row["load_kg"] for row in usable)
+        usable = [row for row in usable if row["load_kg"] == lightest_kg]
+    return motor_identification.identify([_sample(row) for row in usable])
+
+
+def _sample(row: Row) -> MotorSample:
+    sign, current_a, supply_v = sign_of(row), row["measured_current_a"], row["supply_v"]
+    return MotorSample(
+        duty=sign * row["duty"],
+        supply_v=nan if supply_v is None else supply_v,
+        speed_rad_s=sign * row["motor_speed_rad_s"],
+        current_a=nan if current_a is None else sign * current_a,
+    )

@@ -7,8 +7,8 @@ from math import isfinite, sin
 from typing import NamedTuple
 
 from bench.config.reflected_load import LEAST_LEVER, arm_angle_rad, load_current_a
-from bench.config.rest_knowledge import RestSettings
 from bench.config.rig import Rig
+from bench.config.sections import RestSettings
 from bench.errors import ConfigurationError
 from bench.store import Trial
 from compensator.errors import CalibrationError

@@ -1,11 +1,10 @@
 """Which calibration a bench compensates with: the one that was named, or the newest that fits."""
 
-from typing import Any
-
 from bench.config.configuration import BenchConfiguration
 from bench.config.friction_curves import FrictionCurve, FrictionSettings, StudiedModel
-from bench.config.rest_knowledge import RestSettings
+from bench.config.sections import RestSettings
 from bench.errors import ConfigurationError
+from bench.json_types import Value, Values
 from bench.store import CalibrationRow, Experiment, Store
 
 _NOT_THE_JOINT = ("seed", "faults")  # settings of a drive that say nothing about the joint's friction
@@ -77,16 +76,16 @@ def friction_of(row: CalibrationRow) -> FrictionSettings:
     return FrictionSettings(calibration_id=row.id, curves=curves, study=study)
 
 
-def drive_of_experiment(experiment: Experiment) -> dict[str, Any]:
+def drive_of_experiment(experiment: Experiment) -> dict[str, Value]:
     """The drive that an experiment was run on, as far as its friction goes; {} where it is not known."""
     return _joint_of(experiment.provenance.get("configuration", {}).get("drive", {}))
 
 
-def _joint_of(drive: dict[str, Any]) -> dict[str, Any]:
+def _joint_of(drive: Values) -> dict[str, Value]:
     return {name: value for name, value in drive.items() if name not in _NOT_THE_JOINT}
 
 
-def _rig(configuration: BenchConfiguration) -> dict[str, Any]:
+def _rig(configuration: BenchConfiguration) -> dict[str, Value]:
     return configuration.rig.model_dump(mode="json", exclude_none=True)
 
 

@@ -50,6 +50,11 @@ class CommandGroup(TyperGroup):
         for entry in COMMANDS:
             self.add_command(ListedCommand(entry))
 
+    def loaded(self, name: str) -> Any:
+        """The command of that name, with its module imported."""
+        found = self.commands[name]
+        return found.loaded if isinstance(found, ListedCommand) else found
+
     def invoke(self, ctx: Any) -> Any:
         """Run the command; errors of ours become a message and an exit code."""
         with errors_as_messages():

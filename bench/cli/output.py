@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -93,7 +93,7 @@ def share_interval(value: float | None, low: float | None, high: float | None) -
     return f"{percent(value)} ({percent(low)} to {percent(high)})"
 
 
-def conditions(values: dict[str, Any]) -> str:
+def conditions(values: Mapping[str, object]) -> str:
     """Conditions of a trial on one line."""
     return ", ".join(f"{key}={text(value)}" for key, value in values.items())
 
@@ -118,6 +118,8 @@ def write_whole(path: Path, chunks: Iterable[bytes]) -> None:
 
 
 def _finite(value: Any) -> Any:
+    if hasattr(value, "model_dump"):  # an answer of the lab
+        value = value.model_dump()
     if isinstance(value, dict):
         return {str(key): _finite(one) for key, one in value.items()}
     if isinstance(value, list | tuple):

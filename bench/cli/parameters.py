@@ -10,7 +10,10 @@ import typer
 from bench.cli.output import Json
 from bench.errors import ConfigurationError
 from bench.experiments.kind import ExperimentKind
+from bench.json_types import Value
 
+Schema = dict[str, Any]
+"""A part of a JSON schema, as pydantic makes it."""
 _BOUNDS = (("minimum", ">="), ("exclusiveMinimum", ">"), ("maximum", "<="), ("exclusiveMaximum", "<"))
 
 
@@ -23,14 +26,14 @@ def parameter_command(kind: ExperimentKind, run: Callable[..., None], **common: 
         common: annotation of each further option, by name; all are optional.
     """
     schema = kind.parameters.model_json_schema()
-    properties: dict[str, dict[str, Any]] = schema.get("properties", {})
+    properties: dict[str, Schema] = schema.get("properties", {})
 
     def command(context: typer.Context, **options: Any) -> None:
         parameters = {name: options.pop(name) for name in properties}
         run(context, kind, parameters, **options)
 
     options = {name: _option(name, each, name in schema.get("required", [])) for name, each in properties.items()}
-    annotations: dict[str, Any] = {"context": typer.Context, **options, **common, "as_json": Json}
+    annotations: dict[str, object] = {"context": typer.Context, **options, **common, "as_json": Json}
     defaults = {"as_json": False}
     command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # what typer reads
         [
@@ -50,7 +53,7 @@ def parameter_command(kind: ExperimentKind, run: Callable[..., None], **common: 
     return typer.main.get_command(made)
 
 
-def given(kind: ExperimentKind, options: dict[str, str | None]) -> dict[str, Any]:
+def given(kind: ExperimentKind, options: dict[str, str | None]) -> "dict[str, Value]":
     """What was typed, as the values that the parameters' model reads.
 
     Lists are separated by commas. A parameter that holds a file is given as its path; the file's name goes along.
@@ -59,7 +62,7 @@ def given(kind: ExperimentKind, options: dict[str, str | None]) -> dict[str, Any
         ConfigurationError: a file that cannot be read.
     """
     properties = kind.parameters.model_json_schema().get("properties", {})
-    values: dict[str, Any] = {}
+    values: dict[str, Value] = {}
     for name, text in options.items():
         if text is None:
             continue
@@ -69,7 +72,7 @@ def given(kind: ExperimentKind, options: dict[str, str | None]) -> dict[str, Any
     return values
 
 
-def _value(text: str, schema: dict[str, Any]) -> Any:
+def _value(text: str, schema: Schema) -> Any:
     if schema.get("type") == "array":
         return [part.strip() for part in text.split(",") if part.strip()]
     return _read(Path(text)) if "file" in schema else text
@@ -84,7 +87,7 @@ def _read(path: Path) -> str:
         raise ConfigurationError(f"{path}: is not UTF-8; save it as CSV UTF-8") from error
 
 
-def _option(name: str, schema: dict[str, Any], required: bool) -> Any:
+def _option(name: str, schema: Schema, required: bool) -> Any:
     unit = schema.get("unit", "")
     hint = f"{schema.get('description', '')}{f' [{unit}]' if unit else ''}."
     limits = [f"{sign} {_bounded(schema)[key]:g}" for key, sign in _BOUNDS if key in _bounded(schema)]
@@ -97,9 +100,9 @@ def _option(name: str, schema: dict[str, Any], required: bool) -> Any:
     return Annotated[str | None, typer.Option(flag, metavar=shown, help=hint)]
 
 
-def _bounded(schema: dict[str, Any]) -> dict[str, Any]:
+def _bounded(schema: Schema) -> Schema:
     """Where the bounds of a value stand: for a list, in its items."""
-    items: dict[str, Any] = schema.get("items", {}) if schema.get("type") == "array" else schema
+    items: Schema = schema.get("items", {}) if schema.get("type") == "array" else schema
     return items
 
 

@@ -36,7 +36,7 @@ class Answer(dict[str, Any]):
 class Answers(list[Answer]):
     """A list of answers; a table in a notebook."""
 
-    def __init__(self, items: Iterable[dict[str, Any]]) -> None:
+    def __init__(self, items: Iterable[Mapping[str, Any]]) -> None:
         super().__init__(map(Answer, items))
 
     def _repr_html_(self) -> str:

@@ -1,7 +1,7 @@
 """Requests and answers; refusals of the service as exceptions."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -46,7 +46,7 @@ class Connection:
         """Text, as `get`."""
         return self._repeated("GET", path).text
 
-    def post(self, path: str, body: dict[str, Any] | None = None, key: str | None = None) -> Any:
+    def post(self, path: str, body: Mapping[str, object] | None = None, key: str | None = None) -> Any:
         """JSON. With an idempotency key it is sent again where no answer came; else never.
 
         Raises:
@@ -56,7 +56,7 @@ class Connection:
             return self._repeated("POST", path, json=body, headers={"Idempotency-Key": key}).json()
         return self._once("POST", path, json=body).json()
 
-    def send(self, method: str, path: str, body: dict[str, Any] | None = None) -> None:
+    def send(self, method: str, path: str, body: Mapping[str, object] | None = None) -> None:
         """Something whose answer does not matter.
 
         Raises:
@@ -117,7 +117,7 @@ def _checked(answer: httpx.Response) -> httpx.Response:
     raise Refused(answer.status_code, detail, kind, errors)
 
 
-def _given(query: dict[str, Any]) -> dict[str, Any]:
+def _given(query: Mapping[str, object]) -> dict[str, Any]:
     return {name: value for name, value in query.items() if value is not None}
 
 

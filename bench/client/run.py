@@ -1,7 +1,7 @@
 """One experiment: under way, or ended."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Self
 
 from bench.client.answer import Answer
@@ -18,7 +18,7 @@ class Run:
         experiment_id: of the record.
     """
 
-    def __init__(self, connection: Connection, experiment_id: int, record: dict[str, Any] | None = None) -> None:
+    def __init__(self, connection: Connection, experiment_id: int, record: Mapping[str, Any] | None = None) -> None:
         self._connection = connection
         self.experiment_id = experiment_id
         self._record = record

@@ -1,9 +1,14 @@
 """A study: which physical effect is missing in the model."""
 
-from typing import Any
+from typing import Any, Literal
 
-from bench.client.answer import Answer, Answers
 from bench.client.connection import Connection
+from bench.study.models.change import Changed
+from bench.study.models.closed_loop import ClosedLoop
+from bench.study.models.comparison import Comparison
+from bench.study.models.diagnosis import Diagnosis
+from bench.study.models.ladder import Ladder
+from bench.study.models.study import Study as Facts
 
 
 class Study:
@@ -18,44 +23,44 @@ class Study:
         self.study_id = study_id
 
     @property
-    def facts(self) -> Answer:
+    def facts(self) -> Facts:
         """Trials and their roles, effort, the model that it stands at."""
-        return Answer(self._get(""))
+        return Facts.model_validate(self._get(""))
 
-    def compare(self, model_id: int | None = None) -> Answer:
+    def compare(self, model_id: int | None = None) -> Comparison:
         """Measured against predicted: series, residuals, errors, parameters."""
-        return Answer(self._get("/compare", model_id=model_id))
+        return Comparison.model_validate(self._get("/compare", model_id=model_id))
 
-    def diagnose(self, model_id: int | None = None) -> Answer:
+    def diagnose(self, model_id: int | None = None) -> Diagnosis:
         """What is missing, how sure that is, and what adding it would bring."""
-        return Answer(self._get("/diagnose", model_id=model_id))
+        return Diagnosis.model_validate(self._get("/diagnose", model_id=model_id))
 
-    def simulate(self, model_id: int | None = None, refine: bool = False) -> Answer:
+    def simulate(self, model_id: int | None = None, refine: bool = False) -> ClosedLoop:
         """Where the model's joint goes under the servo of the trials: error of the motion; refined coefficients."""
-        return Answer(self._get("/closed-loop", model_id=model_id, refine=refine))
+        return ClosedLoop.model_validate(self._get("/closed-loop", model_id=model_id, refine=refine))
 
-    def add(self, effect: str, model_id: int | None = None) -> Answer:
+    def add(self, effect: str, model_id: int | None = None) -> Changed:
         """One effect more: refit; the error before and after."""
         return self._change(effect, "add", model_id)
 
-    def drop(self, effect: str, model_id: int | None = None) -> Answer:
+    def drop(self, effect: str, model_id: int | None = None) -> Changed:
         """One effect less."""
         return self._change(effect, "drop", model_id)
 
-    def ladder(self) -> Answers:
+    def ladder(self) -> Ladder:
         """Error of every model of the study, on the trials of the fit and on the others."""
-        return Answers(self._get("/ladder")["rungs"])
+        return Ladder.model_validate(self._get("/ladder"))
 
-    def _get(self, path: str, **query: Any) -> Any:
+    def _get(self, path: str, **query: object) -> Any:
         return self._connection.get(f"/studies/{self.study_id}{path}", **query)
 
-    def _change(self, effect: str, action: str, model_id: int | None) -> Answer:
+    def _change(self, effect: str, action: Literal["add", "drop"], model_id: int | None) -> Changed:
         body = {"effect": effect, "action": action, "model_id": model_id}
-        return Answer(self._connection.post(f"/studies/{self.study_id}/models", body))
+        return Changed.model_validate(self._connection.post(f"/studies/{self.study_id}/models", body))
 
     def __repr__(self) -> str:
         facts = self.facts
-        return f"<Study {self.study_id} {facts['name']}: {len(facts['trials'])} trials, model {facts['model_id']}>"
+        return f"<Study {self.study_id} {facts.name}: {len(facts.trials)} trials, model {facts.model_id}>"
 
     def _repr_html_(self) -> str:
         return self.facts._repr_html_()

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ class Trial:
         facts: name, kind, conditions, outcome, results ... as GET /trials/{id} answers.
     """
 
-    def __init__(self, connection: Connection, facts: dict[str, Any]) -> None:
+    def __init__(self, connection: Connection, facts: Mapping[str, object]) -> None:
         self._connection = connection
         self.facts = Answer(facts)
 

@@ -3,12 +3,13 @@
 Every value is optional: what is unknown is left out, and whoever needs it says so.
 """
 
-from typing import Annotated, Literal
+from math import pi
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
+from bench.config.quantities import quantity
+from bench.errors import ConfigurationError
 
 
 class Section(BaseModel):
@@ -20,62 +21,85 @@ class Section(BaseModel):
 class Motor(Section):
     """PM DC motor, values at the motor shaft."""
 
-    name: str | None = None
-    resistance_ohm: Positive | None = None
-    inductance_h: Positive | None = None
-    torque_constant_n_m_a: Positive | None = None
-    back_emf_v_s_rad: Positive | None = None
-    rotor_inertia_kg_m2: Positive | None = None
-    constants_at_c: float | None = None  # temperature at which resistance and back-EMF constant hold
-    copper_per_k: NotNegative | None = None  # growth of the resistance with the temperature that the drive measures
-    magnet_per_k: NotNegative | None = None  # fall of the back-EMF constant with it
+    name: str | None = Field(None, description="Make and type")
+    resistance_ohm: float | None = quantity(None, "ohm", "Resistance of the winding", gt=0)
+    inductance_h: float | None = quantity(None, "H", "Inductance of the winding", gt=0)
+    torque_constant_n_m_a: float | None = quantity(None, "N m/A", "Torque constant", gt=0)
+    back_emf_v_s_rad: float | None = quantity(None, "V s/rad", "Back-EMF constant", gt=0)
+    rotor_inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia of the rotor", gt=0)
+    constants_at_c: float | None = quantity(
+        None, "degC", "Temperature at which resistance and back-EMF constant hold, as the drive measures it"
+    )
+    copper_per_k: float | None = quantity(None, "1/K", "Growth of the resistance with that temperature", ge=0)
+    magnet_per_k: float | None = quantity(None, "1/K", "Fall of the back-EMF constant with that temperature", ge=0)
 
 
 class Gear(Section):
     """Gear between motor and joint."""
 
-    ratio: Positive | None = None  # motor turns per joint turn
-    backlash_rad: NotNegative | None = None  # total free play at the joint
-    stiffness_n_m_rad: Positive | None = None  # torsional, of gear and shaft at the joint, the motor held
+    ratio: float | None = quantity(None, "", "Motor turns per joint turn", gt=0)
+    backlash_rad: float | None = quantity(None, "rad", "Total free play at the joint", ge=0)
+    stiffness_n_m_rad: float | None = quantity(
+        None, "N m/rad", "Torsional stiffness of gear and shaft at the joint, the motor held", gt=0
+    )
 
 
 class Arm(Section):
     """Arm in a vertical plane; angle 0 is vertically down."""
 
-    length_m: Positive | None = None  # axis to the load at the tip
-    mass_kg: NotNegative | None = None
-    centre_of_mass_m: float | None = None  # axis to the arm's own centre of mass; 0 is balanced
-    inertia_kg_m2: Positive | None = None  # about the axis, without load
+    length_m: float | None = quantity(None, "m", "Axis to the load at the tip", gt=0)
+    mass_kg: float | None = quantity(None, "kg", "Mass of the arm without load", ge=0)
+    centre_of_mass_m: float | None = quantity(None, "m", "Axis to the arm's own centre of mass; 0 is balanced")
+    inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia about the axis, without load", gt=0)
 
 
 class Sensor(Section):
     """Position sensor on the motor side."""
 
-    counts_per_turn: Positive | None = None  # per motor turn
+    counts_per_turn: float | None = quantity(None, "1/turn", "Counts per motor turn", gt=0)
 
 
 class Supply(Section):
     """Supply of the PWM stage."""
 
-    voltage_v: Positive | None = None
-    is_nominal: bool | None = None  # true: nobody measures it, and recordings hold this number whatever the load does
+    voltage_v: float | None = quantity(None, "V", "Supply voltage", gt=0)
+    is_nominal: bool | None = Field(
+        None, description="True: nobody measures the supply, and recordings hold this number whatever the load does"
+    )
 
 
 class Effort(Section):
     """Which channel stands for the effort in a study, where the default is not wanted."""
 
-    quantity: Literal["torque", "force", "current", "current_estimate", "terminal_voltage"]
+    quantity: Literal["torque", "force", "current", "current_estimate", "terminal_voltage"] = Field(
+        description="Quantity that the model predicts"
+    )
 
 
 class Rig(Section):
     """One joint as its owner knows it."""
 
-    name: str
-    joint: Literal["rotary", "linear"] = "rotary"
-    horizontal: bool = False  # True: gravity does no work on the joint
+    name: str = Field(description="Name of the joint")
+    joint: Literal["rotary", "linear"] = Field("rotary", description="A linear joint has positions in m")
+    horizontal: bool = Field(False, description="True: gravity does no work on the joint")
     motor: Motor = Motor()
     gear: Gear = Gear()
     arm: Arm = Arm()
     sensor: Sensor = Sensor()
     supply: Supply = Supply()
     effort: Effort | None = None
+
+
+def resolution_rad(rig: Rig) -> float:
+    """The joint angle of one encoder count [rad].
+
+    Raises:
+        ConfigurationError: the rig leaves out counts or gear ratio.
+    """
+    counts, ratio = rig.sensor.counts_per_turn, rig.gear.ratio
+    if counts is None or ratio is None:
+        raise ConfigurationError(
+            f"rig '{rig.name}': sensor.counts_per_turn and gear.ratio are needed to tell motion from rest; add them to "
+            "the rig"
+        )
+    return 2.0 * pi / (counts * ratio)

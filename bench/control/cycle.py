@@ -1,31 +1,17 @@
-"""What one control cycle is made of: the procedure's action, the reading that answers it, the row that is kept."""
+"""What one control cycle of a joint is made of: the procedure's action, the reading that answers it, the row."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Sequence
 from math import nan
+from operator import itemgetter
 from typing import Any, NamedTuple
 
+from bench.config.channels import JOINT_CHANNELS, Channel
+from bench.json_types import Value
 from drivers.contract import Command, Mode, Sample, Status
-
-RECORDED: tuple[str, ...] = (
-    "time_s",
-    "target_rad",
-    "position_rad",
-    "velocity_rad_s",
-    "duty",
-    "current_a",
-    "current_estimate_a",
-    "current_command_a",
-    "current_load_a",
-    "current_load_half_width_a",
-    "supply_v",
-    "temperature_c",
-    "enabled",
-    "age_s",
-)
-"""The channels of a row, in order; all from `compensator.lab.recordings.channels`."""
 
 OFF = Command(Mode.OFF)
 _CURRENT, _ENABLED = Mode.CURRENT, Status.ENABLED  # at hand: Python 3.11 takes 0.1 us to find a member of an Enum
+Row = tuple[float, ...]
 
 
 class Reading(NamedTuple):
@@ -36,12 +22,14 @@ class Reading(NamedTuple):
         sample: as the drive gave it.
         velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
         current_a: measured where the drive measures it, else eq. (3) [A].
+        current_estimate_a: by eq. (3), NaN where that is not known [A].
     """
 
     time_s: float
     sample: Sample
     velocity_rad_s: float
     current_a: float
+    current_estimate_a: float = nan
 
 
 class Action(NamedTuple):
@@ -62,29 +50,45 @@ class Action(NamedTuple):
     current_load_half_width_a: float = nan
 
 
-Procedure = Generator[Action, Reading, dict[str, Any]]
+Procedure = Generator[Action, Reading, dict[str, Value]]
 """Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
+VALUES = (
+    *(f"action.{name}" for name in Action._fields),
+    *(f"reading.{name}" for name in Reading._fields),
+    *(f"sample.{name}" for name in Sample._fields),
+    "command.current_a",
+    "sample.enabled",
+)
+"""What a cycle of a joint can be asked for, in the order of `values_of`."""
 
-def row_of(action: Action, reading: Reading, estimate_a: float) -> tuple[float, ...]:
-    """The row of a cycle, in the order of `RECORDED`."""
-    # unpacked: a tenth of the time that it takes to ask for each by its name
-    (mode, value, _), target_rad, current_load_a, _, half_width_a = action
-    time_s, sample, velocity_rad_s, _ = reading
-    _, age_s, position_rad, _, duty, current_a, supply_v, temperature_c, status, _, _ = sample
-    return (
-        time_s,
-        target_rad,
-        position_rad,
-        velocity_rad_s,
-        duty,
-        current_a,
-        estimate_a,
-        value if mode is _CURRENT else nan,
-        current_load_a,
-        half_width_a,
-        supply_v,
-        temperature_c,
-        1.0 if status is _ENABLED else 0.0,
-        age_s,
-    )
+
+def values_of(action: Action, reading: Reading) -> tuple[Any, ...]:
+    """All values of a cycle, in the order of `VALUES`."""
+    sample = reading[1]
+    mode, value, _ = action[0]
+    return action + reading + sample + (value if mode is _CURRENT else nan, 1.0 if sample[8] is _ENABLED else 0.0)
+
+
+def row_reader(channels: Sequence[Channel], values: Sequence[str]) -> Callable[[tuple[Any, ...]], Row]:
+    """What takes the row of some channels out of the values of a cycle.
+
+    Args:
+        channels: in the order of the row.
+        values: names of the values, in their order.
+
+    Raises:
+        ValueError: a channel reads what is not among them.
+    """
+    unknown = [f"{channel.name} reads '{channel.read}'" for channel in channels if channel.read not in values]
+    if unknown:
+        raise ValueError(f"{'; '.join(unknown)}; known are {', '.join(values)}")
+    return itemgetter(*(values.index(channel.read) for channel in channels))
+
+
+_row: Callable[[tuple[Any, ...]], Row] = row_reader(JOINT_CHANNELS, VALUES)
+
+
+def row_of(action: Action, reading: Reading) -> Row:
+    """The row of a cycle, in the order of `bench.config.channels.RECORDED`."""
+    return _row(values_of(action, reading))

@@ -1,49 +1,26 @@
-"""The limits of the bench, and the check that every cycle passes before the next command goes out."""
+"""The check against the limits that every cycle passes before the next command goes out."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from pydantic import model_validator
-
-from bench.config.quantities import quantity
-from bench.config.rig import Section
+from bench.config.channels import CHANNELS
+from bench.config.sections import Limits
 from bench.errors import LimitTrip, quantity_message
 from drivers.contract import ALL_NEW, Sample
 
 
-class Limits(Section):
-    """What the bench never exceeds. Compared with every sample, before motion and during it."""
-
-    position_min_rad: float = quantity(-2.2, "rad", "Lowest joint angle")
-    position_max_rad: float = quantity(2.2, "rad", "Highest joint angle")
-    speed_rad_s: float = quantity(8.0, "rad/s", "Highest joint speed, either way", gt=0)
-    current_a: float = quantity(2.0, "A", "Highest motor current, either way", gt=0)
-    temperature_c: float = quantity(80.0, "degC", "Highest drive temperature", gt=0)
-    tracking_error_rad: float = quantity(0.5, "rad", "Largest position error", gt=0)
-    sample_age_s: float = quantity(0.1, "s", "Oldest sample that still counts", gt=0)
-    slow_sample_age_s: float = quantity(
-        2.0, "s", "Oldest supply voltage, temperature or state of the drive that still counts", gt=0
-    )
-    load_kg: float = quantity(0.1, "kg", "Heaviest load on the arm", ge=0)
-
-    @model_validator(mode="after")
-    def _check_order(self) -> "Limits":
-        if not self.position_min_rad < self.position_max_rad:
-            raise ValueError(f"position_min_rad must be below position_max_rad, {self.position_max_rad} rad")
-        return self
-
-    def position_range(self) -> str:
-        """The allowed positions, in words."""
-        return f"{self.position_min_rad:g} .. {self.position_max_rad:g}"
-
-
 class Violation(NamedTuple):
-    """One quantity outside its limits."""
+    """One quantity outside its limits: what it is called, its value, what is allowed, the unit."""
 
     quantity: str
     found: float
     allowed: str
     unit: str
+
+    @classmethod
+    def of(cls, channel: str, found: float, allowed: str) -> "Violation":
+        """By the channel that the quantity is recorded in."""
+        return cls(CHANNELS[channel].label, found, allowed, CHANNELS[channel].unit)
 
 
 class Guard:
@@ -104,16 +81,16 @@ class Guard:
         limits, position_rad = self.limits, sample.position_rad
         # a stale sample tells nothing else
         if not sample.age_s <= limits.sample_age_s:
-            yield Violation("age of the sample", sample.age_s, f"at most {limits.sample_age_s:g}", "s")
+            yield Violation.of("age_s", sample.age_s, f"at most {limits.sample_age_s:g}")
         error_rad = target_rad - position_rad
         if not limits.position_min_rad <= position_rad <= limits.position_max_rad:
-            yield Violation("position", position_rad, limits.position_range(), "rad")
+            yield Violation.of("position_rad", position_rad, limits.position_range())
         if abs(velocity_rad_s) > limits.speed_rad_s:
-            yield Violation("speed", velocity_rad_s, _either_way(limits.speed_rad_s), "rad/s")
+            yield Violation.of("velocity_rad_s", velocity_rad_s, _either_way(limits.speed_rad_s))
         if abs(current_a) > limits.current_a:
-            yield Violation("motor current", current_a, _either_way(limits.current_a), "A")
+            yield Violation.of("current_a", current_a, _either_way(limits.current_a))
         if sample.temperature_c > limits.temperature_c:
-            yield Violation("temperature", sample.temperature_c, f"at most {limits.temperature_c:g}", "degC")
+            yield Violation.of("temperature_c", sample.temperature_c, f"at most {limits.temperature_c:g}")
         if abs(error_rad) > limits.tracking_error_rad:
             yield Violation("tracking error", error_rad, _either_way(limits.tracking_error_rad), "rad")
         allowed = f"at most {limits.slow_sample_age_s:g}"

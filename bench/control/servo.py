@@ -1,29 +1,15 @@
 """The position servo, and the current servo of drives without a current mode."""
 
 from math import isnan
-from typing import Literal
 
-from bench.config.quantities import quantity
-from bench.config.rig import Rig, Section
+from bench.config.rig import Rig
+from bench.config.sections import ServoSettings
 from bench.errors import ConfigurationError
 from compensator.motor import dc_motor as motor
 from compensator.motor.dc_motor import MotorConstants
 from drivers.contract import Description, Mode, Sample
 
 COPPER_PER_K = 0.00393  # growth of a copper winding's resistance; for a rig that does not tell
-
-
-class ServoSettings(Section):
-    """Gains of the position servo; its output is motor current."""
-
-    closed_by: Literal["bench", "drive"] = quantity(
-        "bench", "", "Who closes the position loop; 'drive': by its own gains, where it has a position mode"
-    )
-    proportional_a_rad: float = quantity(35.0, "A/rad", "Current per position error", ge=0)
-    integral_a_rad_s: float = quantity(200.0, "A/(rad s)", "Current per integrated error", ge=0)
-    derivative_a_s_rad: float = quantity(0.6, "A s/rad", "Current per speed error", ge=0)
-    dead_band_rad: float = quantity(0.004, "rad", "Position error that is left alone", gt=0)
-    current_a: float = quantity(1.6, "A", "Most current the servo asks for", gt=0)
 
 
 class PositionServo:

@@ -1,159 +1,73 @@
-"""What an experiment moves: one joint with its control loop, or a master and a slave with theirs."""
+"""What an experiment moves: one joint or a master and a slave, their drives, their loop, and who hangs the load."""
 
-from collections.abc import Sequence
-from typing import Any, Protocol
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.clock import Clock
 from bench.control.drive_factory import Ask, make_equipment
+from bench.control.joint import ControlledJoint
+from bench.control.joint_group import JointGroup, SingleJoint
 from bench.control.limits import Guard
-from bench.control.loop import ControlLoop, Outcome, Reading
-from bench.control.pair.equipment import make_pair
-from bench.control.pair.joint import PairJoint
-from bench.control.pair.loop import PairLoop
-from bench.control.recorder import Sink
+from bench.control.loop import ControlLoop
+from bench.control.pair import JointPair
+from bench.control.pair_equipment import make_pair
 from bench.control.servo import check_modes, current_servo
-from bench.control.stop_request import StopRequest
-from bench.control.technician import PersonTechnician
+from bench.control.technician import PersonTechnician, Technician
 from bench.control.timing import check_pair_timing, check_timing
-from bench.experiments.kind import TrialPlan
 from drivers.contract import Drive
 
 
-class TrialLoop(Protocol):
-    """Runs the trials of one station."""
+@dataclass(frozen=True)
+class Station:
+    """What stands there for one experiment.
 
-    @property
-    def channels(self) -> tuple[str, ...]:
-        """Of the rows that it records."""
+    Attributes:
+        drives: the joint's; or the slave's, and the master's. Not yet open.
+        benches: of each drive, the joint as a bench of its own; the first one's period and servo count.
+        names: of each joint, as messages say it; "" where there is one only.
+        group: makes the loop's joints of those, in the order of `drives`.
+        clock: paces the loop.
+        prepare: puts on the arm what a trial wants there, with the power off: load_kg, balanced, wall_rad. Raises
+            `ExperimentError` where it is not there.
+        assume: tells what hangs there already (load_kg, balanced): nobody is asked for it.
+    """
 
-    @property
-    def last_reading(self) -> Reading | None:
-        """Of the joint, or of the slave; None before the first."""
+    drives: tuple[Drive, ...]
+    benches: tuple[BenchConfiguration, ...]
+    names: tuple[str, ...]
+    group: Callable[..., JointGroup[Any, Any]]
+    clock: Clock
+    prepare: Callable[[float, bool, float | None], None]
+    assume: Callable[[float, bool], None]
 
-    def run(self, procedure: Any, sink: Sink, stop: StopRequest) -> Outcome:
-        """Run one trial to its end; what it moves is off then."""
-
-
-class Station(Protocol):
-    """What stands there for one experiment."""
-
-    @property
-    def drives(self) -> Sequence[Drive]:
-        """The joint's; or the slave's, and the master's."""
-
-    @property
-    def loop(self) -> TrialLoop:
-        """Of what is open."""
-
-    def open(self) -> None:
-        """Connect; the power stays off.
+    def open(self) -> ControlLoop[Any, Any]:
+        """Connect every drive, the power stays off; the loop.
 
         Raises:
             DriveError: a drive cannot be opened.
             ConfigurationError: one does not fit the configuration.
         """
-
-    def assume(self, load_kg: float, balanced: bool) -> None:
-        """What hangs there already: nobody is asked for it."""
-
-    def prepare(self, plan: TrialPlan) -> None:
-        """Put on the arm what a trial wants there, with the power off.
-
-        Raises:
-            ExperimentError: it is not there.
-        """
-
-    def close(self) -> None:
-        """Power off and disconnect, whatever is open."""
-
-
-class SingleStation:
-    """One joint.
-
-    Args:
-        configuration: of the bench.
-        clock: paces the loop.
-        ask: asks the person at a real drive.
-    """
-
-    loop: ControlLoop  # once open
-
-    def __init__(self, configuration: BenchConfiguration, clock: Clock, ask: Ask) -> None:
-        drive, self._technician = make_equipment(configuration, ask)
-        self.drives = (drive,)
-        self._configuration, self._clock = configuration, clock
-
-    def open(self) -> None:
-        """Connect the drive, and make its loop."""
-        configuration, (drive,) = self._configuration, self.drives
-        _open(drive, configuration)
-        check_modes(configuration.servo, drive.describe())
-        self.loop = ControlLoop(
-            drive, self._clock, Guard(configuration.limits), configuration.control.period_s,
-            current_servo(configuration.rig),
-        )  # fmt: skip
-
-    def assume(self, load_kg: float, balanced: bool) -> None:
-        """Ask no person for a load that hangs already."""
-        if isinstance(self._technician, PersonTechnician):
-            self._technician.assume(load_kg, balanced)
-
-    def prepare(self, plan: TrialPlan) -> None:
-        """Hang the load."""
-        self._technician.hang_load(plan.load_kg, plan.balanced)
-
-    def close(self) -> None:
-        """Power off and disconnect."""
-        self.drives[0].close()
-
-
-class PairStation:
-    """A master and a slave.
-
-    Args:
-        configuration: of the bench; with a master.
-        clock: paces the loop.
-        ask: asks the person at the drives.
-
-    Raises:
-        ConfigurationError: there is no master.
-    """
-
-    loop: PairLoop  # once open
-
-    def __init__(self, configuration: BenchConfiguration, clock: Clock, ask: Ask) -> None:
-        self._pair = make_pair(configuration, ask)
-        self.drives = (self._pair.slave.drive, self._pair.master.drive)
-        self._benches = (configuration, configuration.of_master())
-        self._clock = clock
-
-    def open(self) -> None:
-        """Connect both drives, and make their loop."""
-        for drive, bench in zip(self.drives, self._benches, strict=True):
-            _open(drive, bench)
-        check_modes(self._benches[0].servo, self.drives[0].describe())
-        slave, master = (
-            PairJoint(name, drive, Guard(bench.limits), current_servo(bench.rig))
-            for name, drive, bench in zip(("slave", "master"), self.drives, self._benches, strict=True)
-        )
-        period_s = self._benches[0].control.period_s
+        period_s = self.benches[0].control.period_s
+        for drive in self.drives:
+            drive.open(period_s)
+            check_timing(drive.describe(), period_s)
         check_pair_timing([drive.describe() for drive in self.drives], period_s)
-        self.loop = PairLoop(slave, master, self._clock, period_s, self._pair.truth, self._pair.operate)
-
-    def assume(self, load_kg: float, balanced: bool) -> None:
-        """Who works with two arms is asked each time."""
-
-    def prepare(self, plan: TrialPlan) -> None:
-        """Hang the slave's load, put its wall, and have the operator take hold of the master."""
-        self._pair.prepare(plan.load_kg, plan.balanced, plan.wall_rad)
+        check_modes(self.benches[0].servo, self.drives[0].describe())
+        joints = [
+            ControlledJoint(drive, Guard(bench.limits), current_servo(bench.rig), name)
+            for drive, bench, name in zip(self.drives, self.benches, self.names, strict=True)
+        ]
+        return ControlLoop(self.group(*joints), self.clock, period_s)
 
     def close(self) -> None:
-        """Power off and disconnect both, whatever one of them says."""
-        try:
-            self.drives[0].close()
-        finally:
-            self.drives[1].close()
+        """Power off and disconnect every drive, whatever one of them says."""
+        with ExitStack() as closing:
+            for drive in reversed(self.drives):
+                closing.callback(drive.close)
 
 
 def make_station(configuration: BenchConfiguration, pair: bool, clock: Clock, ask: Ask) -> Station:
@@ -168,10 +82,33 @@ def make_station(configuration: BenchConfiguration, pair: bool, clock: Clock, as
     Raises:
         ConfigurationError: it cannot be made of this configuration.
     """
-    return PairStation(configuration, clock, ask) if pair else SingleStation(configuration, clock, ask)
+    if pair:
+        return _pair_station(configuration, clock, ask)
+    drive, technician = make_equipment(configuration, ask)
+    prepare, assume = _hanger(technician), _assumer(technician)
+    return Station((drive,), (configuration,), ("",), SingleJoint, clock, prepare, assume)
 
 
-def _open(drive: Drive, configuration: BenchConfiguration) -> None:
-    period_s = configuration.control.period_s
-    drive.open(period_s)
-    check_timing(drive.describe(), period_s)
+def _pair_station(configuration: BenchConfiguration, clock: Clock, ask: Ask) -> Station:
+    made = make_pair(configuration, ask)
+    return Station(
+        drives=(made.slave.drive, made.master.drive),
+        benches=(configuration, configuration.of_master()),
+        names=("slave", "master"),
+        group=partial(JointPair, truth=made.truth, operate=made.operate),
+        clock=clock,
+        prepare=made.prepare,
+        assume=lambda *_hung: None,  # who works with two arms is asked each time
+    )
+
+
+def _hanger(technician: Technician) -> Callable[[float, bool, float | None], None]:
+    def prepare(load_kg: float, balanced: bool, _wall_rad: float | None) -> None:
+        technician.hang_load(load_kg, balanced)
+
+    return prepare
+
+
+def _assumer(technician: Technician) -> Callable[[float, bool], None]:
+    """Only a person is asked for a load."""
+    return technician.assume if isinstance(technician, PersonTechnician) else lambda *_hung: None

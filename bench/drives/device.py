@@ -9,6 +9,7 @@ from typing import Annotated, Any, TypeVar
 import typer
 
 from bench.errors import ConfigurationError
+from bench.json_types import Values
 
 Baud = Annotated[int, typer.Option(min=0, help="Pace of the line in bits a second; 0 is as fast as the machine.")]
 Made = TypeVar("Made")
@@ -54,7 +55,7 @@ class DeviceOptions:
             "patience_s": self.patience,
         }
 
-    def _plant_tables(self) -> dict[str, Any]:
+    def _plant_tables(self) -> Values:
         if self.plant is None:
             return {}
         try:

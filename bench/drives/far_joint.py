@@ -19,7 +19,7 @@ class FarJoint:
         Raises:
             ExperimentError: the device says no, or is not there.
         """
-        from sim_backend.devices.side_channel import ask_once
+        from sim_backend.devices.side_channel_client import ask_once
         from sim_backend.errors import ParameterError
 
         try:

@@ -7,12 +7,13 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.loop import OutcomeName
+from bench.control.ending import OutcomeName
+from bench.json_types import Value
 from compensator.lab.recordings.recording import Condition
 from drivers.contract import Mode
 
-AnyProcedure = Generator[Any, Any, dict[str, Any]]
-"""Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.cycle.PairProcedure`)."""
+AnyProcedure = Generator[Any, Any, dict[str, Value]]
+"""Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.PairProcedure`)."""
 
 
 class Parameters(BaseModel):
@@ -48,7 +49,7 @@ class FinishedTrial:
     name: str
     conditions: dict[str, Condition]
     outcome: OutcomeName
-    results: dict[str, Any]
+    results: dict[str, Value]
 
 
 def any_drive(_parameters: Any) -> frozenset[Mode]:
@@ -70,7 +71,7 @@ class ExperimentKind:
         duration_s: estimate of the time it takes in real time [s].
         summarise: results of the whole from those of its trials; JSON-able, units in the names.
         modes: that the drive has to close itself; position and current are done without.
-        pair: it moves a master and a slave; its procedures are those of `bench.control.pair.cycle`.
+        pair: it moves a master and a slave; its procedures are those of `bench.control.pair`.
     """
 
     name: str
@@ -80,6 +81,12 @@ class ExperimentKind:
     plan: Callable[[Any, BenchConfiguration], list[TrialPlan]]
     refuse: Callable[[Any, BenchConfiguration], None]
     duration_s: Callable[[Any, BenchConfiguration], float]
-    summarise: Callable[[Any, list[FinishedTrial]], dict[str, Any]]
+    summarise: Callable[[Any, list[FinishedTrial]], dict[str, Value]]
     modes: Callable[[Any], frozenset[Mode]] = any_drive
     pair: bool = False
+
+
+def conditions(configuration: BenchConfiguration, **held: Condition) -> dict[str, Condition]:
+    """The conditions of a trial, with what the rig adds to them: the arm's length, where it is known."""
+    length_m = configuration.rig.arm.length_m
+    return held if length_m is None else {**held, "arm_m": length_m}

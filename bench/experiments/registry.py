@@ -1,7 +1,5 @@
 """All kinds of experiment, by name."""
 
-from typing import Any
-
 from pydantic import ValidationError
 
 from bench.config.validation import problems
@@ -24,6 +22,7 @@ from bench.experiments.kinds import (
     teleoperation,
     waveform,
 )
+from bench.json_types import Values
 
 KINDS: dict[str, ExperimentKind] = {
     kind.name: kind
@@ -60,7 +59,7 @@ def find_kind(name: str) -> ExperimentKind:
     return KINDS[name]
 
 
-def parse_parameters(kind: ExperimentKind, values: dict[str, Any]) -> Parameters:
+def parse_parameters(kind: ExperimentKind, values: Values) -> Parameters:
     """Parameters from what a user gave; what is left out has its default.
 
     Raises:

@@ -58,28 +58,34 @@ class Column(Section):
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
-    source: str = Field(alias="from", min_length=1)
-    scale: Annotated[Finite, AfterValidator(_is_factor)] = 1.0
-    offset: Finite = 0.0
+    source: str = Field(alias="from", min_length=1, description="Name of the column in the file")
+    scale: Annotated[Finite, AfterValidator(_is_factor)] = Field(1.0, description="Factor to SI, not 0")
+    offset: Finite = Field(0.0, description="Added after the factor, SI")
 
 
 class MappedTrial(Section):
     """One trial of a set without trials.csv."""
 
-    file: str
-    kind: str = "recording"
-    conditions: dict[str, Annotated[Any, AfterValidator(_is_condition)]] = Field(default_factory=dict)
+    file: str = Field(description="CSV file of the trial")
+    kind: str = Field("recording", description="Kind of trial")
+    conditions: dict[str, Annotated[Any, AfterValidator(_is_condition)]] = Field(
+        default_factory=dict, description="What was held constant: numbers in SI, text, true or false"
+    )
 
 
 class Mapping(Section):
     """How files of another shape become recordings."""
 
-    delimiter: str = Field(",", min_length=1, max_length=1)
-    decimal: str = Field(".", pattern=r"^[.,]$")
-    ignore: list[str] = Field(default_factory=list)
-    columns: dict[Annotated[str, AfterValidator(_is_known)], Column] = Field(default_factory=dict)
-    trials_columns: dict[str, str | Column] = Field(default_factory=dict)
-    trials: list[MappedTrial] = Field(default_factory=list)
+    delimiter: str = Field(",", min_length=1, max_length=1, description="Sign between columns")
+    decimal: str = Field(".", pattern=r"^[.,]$", description="Decimal sign: a point or a comma")
+    ignore: list[str] = Field(default_factory=list, description="Columns that are not wanted")
+    columns: dict[Annotated[str, AfterValidator(_is_known)], Column] = Field(
+        default_factory=dict, description="Channel of a trial, and the column that it comes from"
+    )
+    trials_columns: dict[str, str | Column] = Field(
+        default_factory=dict, description="Column of trials.csv, and the one that it comes from there"
+    )
+    trials: list[MappedTrial] = Field(default_factory=list, description="The trials, where there is no trials.csv")
 
     @model_validator(mode="after")
     def _signs_differ(self) -> "Mapping":

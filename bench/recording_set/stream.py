@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench.config.channels import exported
 from bench.store import Event, Store, Trial
 from compensator.lab.recordings.recording import Condition, FloatArray, Recording
 
@@ -73,14 +74,14 @@ def stream_of(recording: Recording) -> RecordingStream:
 
 def stream_of_trial(store: Store, trial: Trial) -> RecordingStream:
     """A trial of the store as a stream: the rows that it has now. A slow reader holds no transaction open."""
+    channels = exported(trial.channels)
+    columns = [trial.channels.index(name) for name in channels]
 
     def read(first_row: int, rows: int) -> FloatArray:
-        return store.part(trial, first_row, rows)
+        return store.part(trial, first_row, rows)[columns]
 
     events = store.events(trial.id)
-    return RecordingStream(
-        trial.name, trial.kind, dict(trial.conditions), trial.channels, trial.rows, events, read, trial.id
-    )
+    return RecordingStream(trial.name, trial.kind, dict(trial.conditions), channels, trial.rows, events, read, trial.id)
 
 
 def _by_row(events: Sequence[Event], time_s: FloatArray) -> dict[int, list[Event]]:

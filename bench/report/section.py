@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import Any
+
+from bench.json_types import Value
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _DARK, _LIGHT = (68, 1, 84), (253, 190, 60)  # of a row of shades: from a dark violet over green to a light orange
@@ -56,7 +57,7 @@ class Figure:
     y_title: str
     drawn: Sequence[Line | Points | Bars]
 
-    def to_plotly(self) -> dict[str, Any]:
+    def to_plotly(self) -> dict[str, Value]:
         """Data and layout as Plotly takes them."""
         traces = [_trace(one, COLOURS[i % len(COLOURS)]) for i, one in enumerate(self.drawn)]
         return {
@@ -87,8 +88,8 @@ def _length(low: float, high: float) -> float | None:
     return high - low if isfinite(high - low) else None
 
 
-def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Any]:
-    common: dict[str, Any] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
+def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Value]:
+    common: dict[str, Value] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
     if not isinstance(one, Bars):
         colour = one.colour or colour
     if isinstance(one, Line):

@@ -1,53 +1,157 @@
-"""What may be asked of a bench in operation, wherever its control loop runs."""
+"""What may be asked of a bench in operation, wherever its control loop runs, and what it answers."""
 
-from typing import Any, Protocol
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Literal
 
 from bench.config.configuration import BenchConfiguration
+from bench.config.sections import Limits
+from bench.control.cycle import Reading
+from bench.control.ending import OutcomeName
+from bench.control.prompt import Prompt
+from bench.json_types import Values
 from bench.runs.live import LiveRows
-from bench.runs.runner import Pace, RunnerStatus
+from drivers.contract import Description
+
+Pace = Literal["real-time", "fast"]
+Pausing = Literal["", "asked", "paused"]
+PACES: tuple[Pace, ...] = ("real-time", "fast")
 
 
-class BenchControl(Protocol):
+@dataclass(frozen=True, slots=True)
+class Request:
+    """An experiment that a user asks for; see `BenchControl.start`."""
+
+    kind: str
+    parameters: Values
+    operator: str = ""
+    note: str = ""
+    pace: Pace | None = None
+    hung: tuple[float, bool] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RunnerStatus:
+    """What the bench is doing, or did last.
+
+    Attributes:
+        experiment_id: None before the first experiment.
+        kind: "" before the first experiment.
+        outcome: "running" while it runs; "" before the first.
+        reason: why it ended.
+        trial_index: the trial that runs, from 0.
+        trial_count: trials of the experiment.
+        progress: share that is done, 0 .. 1.
+        reading: the last one.
+        description: the drive, once it has been opened.
+        limits: of the bench.
+        prompt: what the person at the bench is asked to do before it goes on; the power is off meanwhile.
+        pausing: "asked": it will stand still after the trial that runs; "paused": it does, with the power off.
+        duration_s: estimate of the whole, in the joint's time.
+    """
+
+    experiment_id: int | None
+    kind: str
+    outcome: OutcomeName | Literal[""]
+    reason: str
+    trial_index: int
+    trial_count: int
+    progress: float
+    reading: Reading | None
+    description: Description | None
+    limits: Limits
+    prompt: Prompt | None = None
+    pausing: Pausing = ""
+    duration_s: float = 0.0
+
+    @property
+    def left_s(self) -> float:
+        """Estimate of what is left, in the joint's time; 0 where nothing runs."""
+        return (1.0 - self.progress) * self.duration_s if self.outcome == "running" else 0.0
+
+
+class BenchControl(ABC):
     """A bench in operation: `Runner` in this process, `RemoteRunner` in a process of its own.
 
     Both raise the same errors. Every method may be called from any thread.
+
+    Attributes:
+        configuration: of the bench.
     """
 
-    @property
-    def configuration(self) -> BenchConfiguration:
-        """Of the bench."""
+    configuration: BenchConfiguration
 
     def start(
         self,
         kind: str,
-        parameters: dict[str, Any],
+        parameters: Values,
         operator: str = "",
         note: str = "",
         pace: Pace | None = None,
         hung: tuple[float, bool] | None = None,
     ) -> int:
-        """Start an experiment; it moves the joint. Returns the id of its record; see `Runner.start`."""
+        """Start an experiment; it moves the joint.
 
+        Args:
+            kind: its name in the registry.
+            parameters: what differs from the defaults.
+            operator: who stands at the bench.
+            note: kept with the record.
+            pace: "real-time", or "fast" as a simulated drive allows and then has by default.
+            hung: load_kg, and whether balanced, of what the experiment before left on the arm; None: not known,
+                somebody is asked.
+
+        Returns:
+            The id of its record.
+
+        Raises:
+            BusyError: another one runs, or the runner is closed.
+            UnknownKindError: no such kind.
+            ParameterError, LimitError, ConfigurationError: it is refused; that is on record too.
+            DriveError: the drive cannot be opened; that is on record too.
+            BenchProcessError: the control loop is in a process of its own, which cannot be started, or has ended.
+        """
+        return self.begin(Request(kind, parameters, operator, note, pace, hung))
+
+    @abstractmethod
+    def begin(self, request: Request) -> int:
+        """Start what is asked for; see `start`."""
+
+    @abstractmethod
     def status(self) -> RunnerStatus:
         """What the bench is doing, or did last. Never waits."""
 
+    @abstractmethod
     def answer(self, prompt_number: int) -> None:
-        """Go on: the person has done what prompt `prompt_number` asked for."""
+        """Go on: the person has done what prompt `prompt_number` asked for.
 
+        Raises:
+            PromptError: nothing is asked, or something else.
+        """
+
+    @abstractmethod
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
         """Rows of the running trial after the one of a number, as they are recorded; at most the newest `limit`."""
 
+    @abstractmethod
     def stop(self, reason: str = "") -> None:
-        """Stop what runs, within one control cycle. Never waits: safe in a signal handler."""
+        """Stop what runs: within one control cycle the joint is braked, then powered off.
 
+        Never waits: safe in a signal handler.
+        """
+
+    @abstractmethod
     def pause(self) -> None:
         """Let what runs stand still after its present trial, with the power off; nothing where nothing runs."""
 
+    @abstractmethod
     def resume(self) -> None:
         """Let what was paused go on: the joint moves."""
 
+    @abstractmethod
     def wait(self, timeout_s: float | None = None) -> bool:
         """Wait until nothing runs; False where that takes longer than `timeout_s`."""
 
+    @abstractmethod
     def close(self) -> None:
         """Stop what runs, and wait until the joint is off. Nothing can be started afterwards."""

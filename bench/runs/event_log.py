@@ -30,7 +30,7 @@ class JsonLine(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:
         """One line."""
         at = datetime.fromtimestamp(record.created, UTC)
-        line: dict[str, Any] = {"at_utc": at.isoformat(timespec="milliseconds"), "level": record.levelname.lower()}
+        line: dict[str, object] = {"at_utc": at.isoformat(timespec="milliseconds"), "level": record.levelname.lower()}
         line |= {"logger": record.name, "process": record.process, "event": record.getMessage()}
         line |= getattr(record, "facts", {})
         if record.exc_info:

@@ -5,40 +5,27 @@ import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.control.loop import Outcome, OutcomeName, Reading
+from bench.control.cycle import Reading
+from bench.control.ending import Outcome, OutcomeName, StopRequest
+from bench.control.loop import ControlLoop
 from bench.control.recorder import Event, Sink
 from bench.control.station import Station
-from bench.control.stop_request import StopRequest
 from bench.errors import ExperimentError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.json_types import Value
 from bench.runs import event_log, session
+from bench.runs.bench_control import Pausing, Request
 from bench.runs.live import LiveBuffer
 from bench.runs.session import Session
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
 
 PAUSE_POLL_S = 0.05
-Pausing = Literal["", "asked", "paused"]
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """What a user asked for.
-
-    Attributes:
-        hung: load_kg, and whether balanced, of what hangs on the arm already; None: somebody is asked.
-    """
-
-    kind: str
-    parameters: dict[str, Any]
-    operator: str = ""
-    note: str = ""
-    hung: tuple[float, bool] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +37,7 @@ class Prepared:
     plans: list[TrialPlan]
     duration_s: float
     station: Station
+    loop: ControlLoop[Any, Any]
     space: SpaceNeed
     session: Session
     real_time: bool
@@ -110,7 +98,7 @@ class ExperimentRun:
     @property
     def reading(self) -> Reading | None:
         """The last one."""
-        return self._prepared.station.loop.last_reading if self._prepared is not None else None
+        return self._prepared.loop.last_reading if self._prepared is not None else None
 
     @property
     def trial_count(self) -> int:
@@ -144,7 +132,7 @@ class ExperimentRun:
             prepared.station.close()
         except Exception as error:
             outcome, reason = _worse(outcome, reason, f"closing the drive: {error}")
-        results: dict[str, Any] = {}
+        results: dict[str, Value] = {}
         try:
             results = prepared.kind.summarise(prepared.parameters, self._finished)
         except Exception as error:
@@ -182,7 +170,7 @@ class ExperimentRun:
         """Have the load hung, with the power off; False where a stop came before it hung."""
         if not self.is_stopped():
             try:
-                station.prepare(plan)
+                station.prepare(plan.load_kg, plan.balanced, plan.wall_rad)
             except ExperimentError:
                 if not self.is_stopped():
                     raise
@@ -190,7 +178,7 @@ class ExperimentRun:
 
     def _run_trial(self, plan: TrialPlan, prepared: Prepared, store: Store, live: LiveBuffer) -> Outcome:
         conditions = {**plan.conditions, session.CONDITION: prepared.session.seconds()}
-        loop = prepared.station.loop
+        loop = prepared.loop
         writer = store.begin_trial(self._id(), plan.name, self.request.kind, conditions, loop.channels)
         live.begin_trial(loop.channels, writer.trial_id)
         outcome = loop.run(plan.procedure(), _WatchedSink(writer, live), self.stop_request)
@@ -198,9 +186,16 @@ class ExperimentRun:
         self._finished.append(FinishedTrial(plan.name, conditions, outcome.outcome, outcome.results))
         results = {**outcome.results, "cycles": outcome.cycles, "overruns": outcome.overruns}
         writer.finish(outcome.outcome, outcome.reason, results)
-        facts: dict[str, Any] = {"name": plan.name, "outcome": outcome.outcome, "reason": outcome.reason}
-        counts = {"cycles": outcome.cycles, "overruns": outcome.overruns}
-        event_log.note("trial ended", experiment_id=self.experiment_id, trial_id=writer.trial_id, **facts, **counts)
+        event_log.note(
+            "trial ended",
+            experiment_id=self.experiment_id,
+            trial_id=writer.trial_id,
+            name=plan.name,
+            outcome=outcome.outcome,
+            reason=outcome.reason,
+            cycles=outcome.cycles,
+            overruns=outcome.overruns,
+        )
         return outcome
 
     def _id(self) -> int:

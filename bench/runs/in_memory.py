@@ -7,13 +7,14 @@ from typing import Self
 
 import numpy as np
 
+from bench.config.channels import RECORDED, known_to_lab
 from bench.config.configuration import BenchConfiguration
 from bench.control.clock import VirtualClock
 from bench.control.drive_factory import Equipment
+from bench.control.ending import StopRequest
 from bench.control.limits import Guard
-from bench.control.loop import RECORDED, ControlLoop
+from bench.control.loop import joint_loop
 from bench.control.servo import current_servo
-from bench.control.stop_request import StopRequest
 from bench.errors import ExperimentError
 from bench.experiments.kind import TrialPlan
 from bench.runs.session import CONDITION, Session
@@ -50,7 +51,7 @@ class InMemoryBench:
         period_s = configuration.control.period_s
         equipment.drive.open(period_s)
         servo = current_servo(configuration.rig)
-        self._loop = ControlLoop(equipment.drive, VirtualClock(), Guard(configuration.limits), period_s, servo)
+        self._loop = joint_loop(equipment.drive, VirtualClock(), Guard(configuration.limits), period_s, servo)
 
     def __enter__(self) -> Self:
         return self
@@ -71,5 +72,6 @@ class InMemoryBench:
             raise ExperimentError(f"trial '{plan.name}': {outcome.outcome}: {outcome.reason}")
         conditions = {**plan.conditions, CONDITION: self._session.seconds()}
         self._session.passed(self._loop.last_reading.time_s if self._loop.last_reading else 0.0)
-        measured = {name: column for name, column in kept.channels().items() if not np.isnan(column).all()}
+        columns = kept.channels()
+        measured = {name: columns[name] for name in known_to_lab(columns) if not np.isnan(columns[name]).all()}
         return Recording(plan.name, kind, conditions, measured, kept.events)

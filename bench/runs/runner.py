@@ -1,91 +1,64 @@
 """Runs one experiment at a time: start, watch, stop."""
 
 import threading
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
+from typing import Any
 
 from bench.calibration import with_friction
+from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.config.configuration import BenchConfiguration
 from bench.control import commissioned
 from bench.control.clock import VirtualClock, WallClock
 from bench.control.drive_factory import has_hardware, is_simulated, seed_of
-from bench.control.limits import Limits
-from bench.control.loop import RECORDED, OutcomeName, Reading
-from bench.control.pair.cycle import PAIR_RECORDED
-from bench.control.prompt import Prompt, PromptDesk
+from bench.control.ending import StopRequest
+from bench.control.prompt import PromptDesk
 from bench.control.station import Station, make_station
 from bench.errors import BenchError, BusyError, ParameterError
 from bench.experiments.parts.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
+from bench.json_types import Values
 from bench.provenance import provenance
-from bench.runs.experiment_run import ExperimentRun, Pausing, Prepared, Request
+from bench.runs.bench_control import PACES, BenchControl, Pace, Request, RunnerStatus
+from bench.runs.experiment_run import ExperimentRun, Prepared
 from bench.runs.live import LiveBuffer, LiveRows
 from bench.runs.session import session_of
-from bench.runs.surroundings import Surroundings
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
 from drivers.contract import Description
 from drivers.errors import DriveError
 
-Pace = Literal["real-time", "fast"]
-PACES: tuple[Pace, ...] = ("real-time", "fast")
 
-
-@dataclass(frozen=True, slots=True)
-class RunnerStatus:
-    """What the bench is doing, or did last.
+@dataclass(frozen=True)
+class HostProcess:
+    """What a runner takes from the process that it runs in: a program of its own, or the bench process of a service.
 
     Attributes:
-        experiment_id: None before the first experiment.
-        kind: "" before the first experiment.
-        outcome: "running" while it runs; "" before the first.
-        reason: why it ended.
-        trial_index: the trial that runs, from 0.
-        trial_count: trials of the experiment.
-        progress: share that is done, 0 .. 1.
-        reading: the last one.
-        description: the drive, once it has been opened.
-        limits: of the bench.
-        prompt: what the person at the bench is asked to do before it goes on; the power is off meanwhile.
-        pausing: "asked": it will stand still after the trial that runs; "paused": it does, with the power off.
-        duration_s: estimate of the whole, in the joint's time.
+        new_stop: makes the stop request of each new experiment.
+        during_run: entered by the thread of the control loop while an experiment runs; called with whether the wall
+            clock paces it.
+        facts: kept with the provenance of each experiment, JSON-able.
     """
 
-    experiment_id: int | None
-    kind: str
-    outcome: OutcomeName | Literal[""]
-    reason: str
-    trial_index: int
-    trial_count: int
-    progress: float
-    reading: Reading | None
-    description: Description | None
-    limits: Limits
-    prompt: Prompt | None = None
-    pausing: Pausing = ""
-    duration_s: float = 0.0
-
-    @property
-    def left_s(self) -> float:
-        """Estimate of what is left, in the joint's time; 0 where nothing runs."""
-        return (1.0 - self.progress) * self.duration_s if self.outcome == "running" else 0.0
+    new_stop: Callable[[], StopRequest] = StopRequest
+    during_run: Callable[[bool], AbstractContextManager[Any]] = nullcontext
+    facts: Mapping[str, Any] = field(default_factory=dict)
 
 
-class Runner:
-    """The bench in operation.
+class Runner(BenchControl):
+    """The bench in operation, its control loop in a thread of this process.
 
     Args:
         configuration: of the bench.
         store: where trials are kept. Rows are written to it from a thread of the control loop's own.
-        surroundings: what it takes from the process that it runs in.
+        host: what it takes from the process that it runs in.
     """
 
-    def __init__(
-        self, configuration: BenchConfiguration, store: Store, surroundings: Surroundings | None = None
-    ) -> None:
+    def __init__(self, configuration: BenchConfiguration, store: Store, host: HostProcess | None = None) -> None:
         self.configuration = configuration
         self._store = store
-        self._surroundings = surroundings or Surroundings()
+        self._host = host or HostProcess()
         self._starting = threading.Lock()
         self._thread: threading.Thread | None = None
         self._run: ExperimentRun | None = None
@@ -94,50 +67,22 @@ class Runner:
         self._desk = PromptDesk()
         self._closed = False
 
-    def start(
-        self,
-        kind: str,
-        parameters: dict[str, Any],
-        operator: str = "",
-        note: str = "",
-        pace: Pace | None = None,
-        hung: tuple[float, bool] | None = None,
-    ) -> int:
-        """Start an experiment; it moves the joint.
-
-        Args:
-            kind: its name in the registry.
-            parameters: what differs from the defaults.
-            operator: who stands at the bench.
-            note: kept with the record.
-            pace: "real-time", or "fast" as a simulated drive allows and then has by default.
-            hung: load_kg, and whether balanced, of what the experiment before left on the arm; None: not known,
-                somebody is asked.
-
-        Returns:
-            The id of its record.
-
-        Raises:
-            BusyError: another one runs, or the runner is closed.
-            UnknownKindError: no such kind.
-            ParameterError, LimitError, ConfigurationError: it is refused; that is on record too.
-            DriveError: the drive cannot be opened; that is on record too.
-        """
-        found = find_kind(kind)
+    def begin(self, request: Request) -> int:
+        """See `BenchControl.start`."""
+        kind = find_kind(request.kind)
         with self._starting:
             self._refuse_when_busy()
-            request = Request(kind, parameters, operator, note, hung)
-            run = ExperimentRun(request, stop_request=self._surroundings.new_stop())
+            run = ExperimentRun(request, stop_request=self._host.new_stop())
             self._run = run  # from here on `stop` reaches it
             try:
-                return self._launch(run, found, pace)
+                return self._launch(run, kind)
             except BaseException as error:
                 if run.outcome == "running":
                     run.end("failed", str(error) or type(error).__name__)
                 raise
 
     def status(self) -> RunnerStatus:
-        """What the bench is doing, or did last. Never waits."""
+        """See `BenchControl`."""
         run, limits = self._run, self.configuration.limits
         description = self._descriptions[0] if self._descriptions else None
         if run is None:
@@ -150,47 +95,40 @@ class Runner:
         )  # fmt: skip
 
     def answer(self, prompt_number: int) -> None:
-        """Go on: the person has done what prompt `prompt_number` asked for.
-
-        Raises:
-            PromptError: nothing is asked, or something else.
-        """
+        """See `BenchControl`."""
         self._desk.answer(prompt_number)
 
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
-        """Rows of the running trial after the one of a number, as they are recorded; at most the newest `limit`."""
+        """See `BenchControl`."""
         return self._live.since(after_row, limit)
 
     def stop(self, reason: str = "") -> None:
-        """Stop what runs: within one control cycle the joint is braked, then powered off.
-
-        Never waits, and takes no lock of the runner: safe in a signal handler.
-        """
+        """See `BenchControl`; takes no lock of the runner."""
         run = self._run
         if run is not None and run.outcome == "running":
             run.stop(reason)
 
     def pause(self) -> None:
-        """Let what runs stand still after its present trial, with the power off; nothing where nothing runs."""
+        """See `BenchControl`."""
         run = self._run
         if run is not None:
             run.pause()
 
     def resume(self) -> None:
-        """Let what was paused go on: the joint moves."""
+        """See `BenchControl`."""
         run = self._run
         if run is not None:
             run.resume()
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Wait until nothing runs; False where that takes longer than `timeout_s`."""
+        """See `BenchControl`."""
         thread = self._thread
         if thread is not None:
             thread.join(timeout_s)
         return thread is None or not thread.is_alive()
 
     def close(self) -> None:
-        """Stop what runs, and wait until the joint is off. Nothing can be started afterwards."""
+        """See `BenchControl`."""
         self._closed = True
         self.stop("the bench was closed")
         with self._starting:  # a start that was under way has heard of the stop
@@ -203,10 +141,10 @@ class Runner:
             name = f"experiment {self._run.experiment_id} ({self._run.request.kind})"
             raise BusyError(f"{name} is running; wait for its end, or stop it")
 
-    def _launch(self, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None) -> int:
+    def _launch(self, run: ExperimentRun, kind: ExperimentKind) -> int:
         configuration = with_friction(self._store, self.configuration)
         try:
-            prepared = self._prepare(configuration, run, kind, pace)
+            prepared = self._prepare(configuration, run, kind)
         except (BenchError, DriveError) as error:
             # failed starts are on record too
             run.experiment_id = self._begin(configuration, run.request, run.request.parameters)
@@ -224,14 +162,12 @@ class Runner:
         return run.experiment_id
 
     def _carry_out(self, run: ExperimentRun, prepared: Prepared) -> None:
-        with self._surroundings.during_run(prepared.real_time):
+        with self._host.during_run(prepared.real_time):
             run.carry_out(prepared, self._store, self._live)
 
-    def _prepare(
-        self, configuration: BenchConfiguration, run: ExperimentRun, kind: ExperimentKind, pace: Pace | None
-    ) -> Prepared:
+    def _prepare(self, configuration: BenchConfiguration, run: ExperimentRun, kind: ExperimentKind) -> Prepared:
         """Check everything that can be checked before motion, and open the drive."""
-        real_time = self._is_real_time(pace)
+        real_time = self._is_real_time(run.request.pace)
         clock = WallClock() if real_time else VirtualClock()
         parameters = parse_parameters(kind, run.request.parameters)
         kind.refuse(parameters, configuration)
@@ -250,20 +186,19 @@ class Runner:
             station.assume(*run.request.hung)
         self._descriptions = ()
         try:
-            station.open()
+            loop = station.open()
             self._descriptions = tuple(drive.describe() for drive in station.drives)
             refuse_modes(kind.name, kind.modes(parameters), self._descriptions[0])
             if kind.name != commissioned.KIND:
-                self._require_commissioned(configuration, station)
+                self._require_commissioned(station)
         except BaseException:
             station.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, station, space, session, real_time)
+        return Prepared(kind, parameters, plans, duration_s, station, loop, space, session, real_time)
 
-    def _require_commissioned(self, configuration: BenchConfiguration, station: Station) -> None:
+    def _require_commissioned(self, station: Station) -> None:
         """Refuse a real drive that has not passed the commissioning move."""
-        benches = (configuration,) if len(station.drives) == 1 else (configuration, configuration.of_master())
-        for bench, drive in zip(benches, station.drives, strict=True):
+        for bench, drive in zip(station.benches, station.drives, strict=True):
             if not is_simulated(bench):
                 commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
 
@@ -275,7 +210,7 @@ class Runner:
             raise ParameterError("pace is 'fast'; a real drive runs in real time")
         return pace == "real-time" or not simulated
 
-    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: dict[str, Any]) -> int:
+    def _begin(self, configuration: BenchConfiguration, request: Request, parameters: Values) -> int:
         drives, benches = self._descriptions, [configuration]
         if find_kind(request.kind).pair and configuration.master is not None:
             benches.append(configuration.of_master())
@@ -291,7 +226,7 @@ class Runner:
                 seed_of(configuration),
                 drives[1] if len(drives) > 1 else None,
             )
-            | dict(self._surroundings.facts),
+            | dict(self._host.facts),
             configuration.rig.model_dump(mode="json", exclude_none=True),
             request.operator,
             request.note,

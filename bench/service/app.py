@@ -12,6 +12,7 @@ from bench import __version__
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
+from bench.service import compute
 from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
 from bench.service.auth.token_register import REFRESH_S
@@ -24,15 +25,15 @@ from bench.service.routes import (
     bench_state,
     calibrations,
     challenges,
-    closed_loop,
     effects,
-    error_map,
+    experiment_plan,
     experiments,
     leases,
     live,
     queue,
     recording_sets,
     studies,
+    study_answers,
     study_rounds,
     trials,
 )
@@ -85,6 +86,7 @@ A missing effect, found and added:
 _ROOMS = (
     bench_state,
     leases,
+    experiment_plan,
     experiments,
     queue,
     live,
@@ -92,9 +94,8 @@ _ROOMS = (
     recording_sets,
     calibrations,
     studies,
+    study_answers,
     study_rounds,
-    error_map,
-    closed_loop,
     effects,
     challenges,
     audit,
@@ -145,6 +146,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     app.state.conductor = conductor
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     app.state.live_events = LiveEvents(app.state, store, runner, lease)
+    compute.install(app)
     problems.install(app)
     conditional.install(app)
     api = APIRouter(prefix=PREFIX)

@@ -2,13 +2,14 @@
 readers."""
 
 from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar
+from typing import Concatenate, ParamSpec, TypeVar
 
 import anyio
 import anyio.to_thread
-from fastapi import Request
+from fastapi import FastAPI, Request
 
 from bench.service.lab import Lab
+from bench.store import Store
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -25,7 +26,7 @@ async def in_worker(request: Request, function: Callable[P, T], *args: P.args, *
         *args: passed on.
         **kwargs: passed on.
     """
-    limiter = _limiter(request, "compute_limiter", MOST_AT_ONCE)
+    limiter: anyio.CapacityLimiter = request.app.state.compute_limiter
     return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=limiter)
 
 
@@ -38,26 +39,26 @@ async def at_bench(request: Request, function: Callable[P, T], *args: P.args, **
         *args: passed on.
         **kwargs: passed on.
     """
-    limiter = _limiter(request, "bench_limiter", MOST_AT_BENCH)
+    limiter: anyio.CapacityLimiter = request.app.state.bench_limiter
     return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=limiter)
 
 
-async def in_lab(request: Request, name: str, /, *args: Any, **kwargs: Any) -> Any:
+async def in_lab(
+    request: Request, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
+) -> T:
     """What a function of `bench.study` returns.
 
     Args:
         request: the request that asked for it; its application has the lab.
-        name: of the function.
+        function: of a module, so that another process finds it; takes the store first.
         *args: after the store.
         **kwargs: passed on.
     """
     lab: Lab = request.app.state.lab
-    return await in_worker(request, lab.call, name, *args, **kwargs)
+    return await in_worker(request, lab.call, function, *args, **kwargs)
 
 
-def _limiter(request: Request, name: str, most: int) -> anyio.CapacityLimiter:
-    state: Any = request.app.state
-    if not hasattr(state, name):
-        setattr(state, name, anyio.CapacityLimiter(most))
-    found: anyio.CapacityLimiter = getattr(state, name)
-    return found
+def install(app: FastAPI) -> None:
+    """How many computations, and how many that wait for the bench, are under way at a time."""
+    app.state.compute_limiter = anyio.CapacityLimiter(MOST_AT_ONCE)
+    app.state.bench_limiter = anyio.CapacityLimiter(MOST_AT_BENCH)

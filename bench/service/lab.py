@@ -1,4 +1,4 @@
-"""The model lab of a service: functions of `bench.study` by their names, in this process or in processes of their own.
+"""The model lab of a service: functions of `bench.study`, called in this process or in processes of their own.
 
 A fit takes a processor for as long as it lasts, and within one process the interpreter, too. In a process of its own,
 behind all other programs, it takes what they leave: the control loop, STOP and the readers come first.
@@ -7,17 +7,19 @@ behind all other programs, it takes what they leave: the control loop, STOP and 
 import os
 import signal
 import threading
+from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from typing import Any, Protocol
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 from bench.errors import BenchError
-from bench.runs.bench_process.failures import error_of, failure_of
-from bench.runs.bench_process.messages import Failure
-from bench.service.http.json_numbers import plain
+from bench.runs.bench_process.messages import Failure, error_of, failure_of
 from bench.store import Store
 
+P = ParamSpec("P")
+T = TypeVar("T")
 NICENESS = 10  # -20 .. 19: more is less of the processor
 
 
@@ -26,10 +28,10 @@ class LabEndedError(BenchError, ConnectionError):
 
 
 class Lab(Protocol):
-    """Calls functions of `bench.study`; each waits for its result."""
+    """Calls functions that take the store first; each waits for its result."""
 
-    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
-        """The function's result, ready for JSON. `args` and `kwargs` are those after the store."""
+    def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
+        """The function's result. `args` and `kwargs` are those after the store."""
 
     def close(self) -> None:
         """End whatever is under way."""
@@ -45,11 +47,9 @@ class LabHere:
     def __init__(self, store: Store) -> None:
         self._store = store
 
-    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
+    def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
         """See `Lab`."""
-        from bench import study  # the lab is imported when it is first needed: `serve` starts at once
-
-        return plain(getattr(study, name)(self._store, *args, **kwargs))
+        return function(self._store, *args, **kwargs)
 
     def close(self) -> None:
         """Nothing to do."""
@@ -69,7 +69,7 @@ class LabProcesses:
         self._lock = threading.Lock()
         self._closed = False
 
-    def call(self, name: str, /, *args: Any, **kwargs: Any) -> Any:
+    def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
         """See `Lab`.
 
         Raises:
@@ -77,7 +77,7 @@ class LabProcesses:
         """
         worker = self._take()
         try:
-            result = worker.call(name, args, kwargs)
+            result: T = worker.call(_Call(function, args, kwargs))
         except LabEndedError:
             self._drop(worker)
             raise
@@ -117,6 +117,15 @@ class LabProcesses:
         worker.end()
 
 
+@dataclass(frozen=True, slots=True)
+class _Call:
+    """What a process is sent: a function of a module, by which pickle finds it there, and its arguments."""
+
+    function: Callable[..., Any]
+    args: tuple[Any, ...]
+    kwargs: dict[str, Any]
+
+
 class _Worker:
     """One process, and the way to it. Used by one thread at a time."""
 
@@ -127,9 +136,9 @@ class _Worker:
             self._process = context.Process(target=work, args=(theirs, url), name="lab", daemon=True)
             self._process.start()
 
-    def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    def call(self, call: _Call) -> Any:
         try:
-            self._connection.send((name, args, kwargs))
+            self._connection.send(call)
             found = self._connection.recv()
         except (EOFError, OSError) as error:
             raise LabEndedError("the process that computed has ended (killed, or out of memory); ask again") from error
@@ -149,11 +158,10 @@ def work(connection: Connection, url: str) -> None:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     with suppress(EOFError, OSError), Store.open(url) as store:
-        here = LabHere(store)
         while True:
-            name, args, kwargs = connection.recv()
+            call: _Call = connection.recv()
             try:
-                answer = here.call(name, *args, **kwargs)
+                answer = call.function(store, *call.args, **call.kwargs)
             except Exception as error:
                 answer = failure_of(0, error)
             connection.send(answer)

@@ -18,9 +18,8 @@ from bench.runs.bench_control import BenchControl
 from bench.runs.bench_process import RemoteRunner
 from bench.service.app import create_app
 from bench.service.auth.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
-from bench.service.auth.first_token import first_token, has_valid_token
 from bench.service.auth.tls import Certificate
-from bench.service.auth.token_register import TokenRegister
+from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
 from bench.service.lab import LabProcesses
 from bench.service.welcome import Place, welcome

@@ -6,7 +6,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
 from bench.service.app import PREFIX
 from bench.service.auth.access import is_loopback
-from bench.service.auth.first_token import Tokens
+from bench.service.auth.token_register import Tokens
 from bench.service.auth.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
 from bench.store.backend import shown
 

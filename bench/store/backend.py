@@ -1,7 +1,7 @@
 """What a kind of database has to offer: all that differs between SQLite and PostgreSQL stands behind this."""
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Protocol
 
 from sqlalchemy import Connection, Engine
 from sqlalchemy.engine import URL, make_url
@@ -38,7 +38,7 @@ class Backend(Protocol):
 
     where: str
     engine: Engine
-    write_options: dict[str, Any]
+    write_options: Mapping[str, str | bool]
 
     def begin_write(self, connection: Connection) -> None:
         """First thing in a transaction that writes: wait for other writers, and make sure that it can be kept."""

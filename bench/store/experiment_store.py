@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable
 from contextlib import suppress
-from typing import Any
 
+from bench.json_types import Values
 from bench.store.database import Database
 from bench.store.errors import StoreError
-from bench.store.records import Experiment
+from bench.store.records import Experiment, NewExperiment
 from bench.store.tables import experiments
 from bench.store.upkeep.custody import UNWRITTEN, Custody
 from bench.store.upkeep.importing import Import
@@ -22,10 +22,10 @@ class ExperimentStore:
     def begin_experiment(
         self,
         kind: str,
-        parameters: dict[str, Any],
+        parameters: Values,
         source: str,
-        provenance: dict[str, Any],
-        rig: dict[str, Any],
+        provenance: Values,
+        rig: Values,
         operator: str = "",
         note: str = "",
     ) -> int:
@@ -33,22 +33,14 @@ class ExperimentStore:
 
         For `provenance` see `bench.provenance`; `rig` is the rig as in `rig.toml`.
         """
-        values = {
-            "kind": kind,
-            "parameters": parameters,
-            "source": source,
-            "provenance": provenance,
-            "rig": rig,
-            "operator": operator,
-            "note": note,
-        }
+        new = NewExperiment(kind, parameters, provenance, rig, source, operator, note)
         self.custody.write_noted()
         self.custody.settle()
         with self._database.writing() as connection:
-            return experiments.add(connection, self.custody.token(), values)
+            return experiments.add(connection, self.custody.token(), new)
 
     def finish_experiment(
-        self, experiment_id: int, outcome: str, reason: str = "", results: dict[str, Any] | None = None
+        self, experiment_id: int, outcome: str, reason: str = "", results: Values | None = None
     ) -> None:
         """Close an experiment; a trial of it that still runs is given the same outcome and reason.
 
@@ -95,19 +87,18 @@ class ExperimentStore:
     def add_imported(
         self,
         kind: str,
-        parameters: dict[str, Any],
-        provenance: dict[str, Any],
-        rig: dict[str, Any],
+        parameters: Values,
+        provenance: Values,
+        rig: Values,
         recordings: Iterable[tuple[Recording, str, str]],
     ) -> int:
         """Add an experiment that was recorded elsewhere, with its trials: all, or nothing. Returns its id.
 
         Each recording comes with its trial's outcome and reason.
         """
-        values = {"kind": kind, "parameters": parameters, "provenance": provenance, "rig": rig}
         with self._database.writing():
             token = self.custody.token()
-        found = Import(self._database, token, values)
+        found = Import(self._database, token, NewExperiment(kind, parameters, provenance, rig, "imported"))
         try:
             for recording, outcome, reason in recordings:
                 found.add(recording, outcome, reason)

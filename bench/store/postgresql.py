@@ -9,7 +9,6 @@ when the process, or its network, is gone.
 import secrets
 from collections.abc import Mapping
 from types import ModuleType
-from typing import Any
 
 from sqlalchemy import Connection, create_engine, text
 from sqlalchemy.engine import URL
@@ -47,7 +46,7 @@ class Postgresql:
         self.where = url.render_as_string(hide_password=True)
         if not url.database:
             raise StoreFileError(f"store '{self.where}' names no database; write postgresql://user@host/database")
-        self.write_options: dict[str, Any] = {"isolation_level": "READ COMMITTED"}
+        self.write_options: Mapping[str, str | bool] = {"isolation_level": "READ COMMITTED"}
         self._busy_timeout_s = busy_timeout_s
         self.engine = create_engine(
             url.set(drivername="postgresql+psycopg"),

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
+from bench.json_types import Values
 from compensator.lab.recordings.recording import Condition, Event
 
 __all__ = [
@@ -25,6 +26,24 @@ OUTCOMES = ("running", "completed", "stopped", "tripped", "failed", "interrupted
 IMPORTING, REMOVING = "importing", "removing"
 HIDDEN = (IMPORTING, REMOVING)  # outcomes of what is not there yet, or not any more: nobody sees it
 SOURCES = ("simulated", "real", "imported")
+
+
+@dataclass(frozen=True, slots=True)
+class NewExperiment:
+    """An experiment that begins, or that comes in from elsewhere.
+
+    Attributes:
+        source: "simulated", "real" or "imported".
+        others: as in `Experiment`.
+    """
+
+    kind: str
+    parameters: Values
+    provenance: Values
+    rig: Values
+    source: str
+    operator: str = ""
+    note: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +80,7 @@ class Trial:
 
     Attributes:
         conditions: what was held constant; the keys carry units.
-        channels: names of the recorded channels (compensator.lab.recordings.channels).
+        channels: names of the recorded channels (`bench.config.channels`).
         rows: committed rows.
         outcome: one of `OUTCOMES`; `reason` says why.
     """

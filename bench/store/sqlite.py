@@ -9,9 +9,9 @@ SQLite does not wait when a reading transaction turns into a writing one.
 import shutil
 import sqlite3
 import time
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy import Connection, Engine, Pool, create_engine, event
 from sqlalchemy.engine import URL
@@ -47,7 +47,7 @@ class Sqlite:
     def __init__(self, url: URL, busy_timeout_s: float) -> None:
         self.path = file_of(url)
         self.where = str(self.path)
-        self.write_options: dict[str, Any] = {WRITES: True}
+        self.write_options: Mapping[str, str | bool] = {WRITES: True}
         self._busy_timeout_s = busy_timeout_s
         self._inode: int | None = None
         self.engine = _engine(self.path, busy_timeout_s)

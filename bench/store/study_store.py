@@ -1,8 +1,8 @@
 """The part of the store that keeps studies and their models."""
 
 from collections.abc import Sequence
-from typing import Any
 
+from bench.json_types import Values
 from bench.store.database import Database
 from bench.store.records import ModelRow, StudyRow
 from bench.store.tables import studies
@@ -13,12 +13,12 @@ class StudyStore:
 
     _database: Database
 
-    def create_study(self, name: str, definition: dict[str, Any]) -> int:
+    def create_study(self, name: str, definition: Values) -> int:
         """Add a study. Returns its id."""
         with self._database.writing() as connection:
             return studies.add(connection, name, definition)
 
-    def change_study(self, study_id: int, definition: dict[str, Any]) -> None:
+    def change_study(self, study_id: int, definition: Values) -> None:
         """Replace the definition of a study, or `NotFoundError`."""
         with self._database.writing() as connection:
             studies.change(connection, study_id, definition)
@@ -33,7 +33,7 @@ class StudyStore:
         with self._database.reading() as connection:
             return studies.find(connection, limit, offset)
 
-    def add_model(self, study_id: int, parent_id: int | None, effects: Sequence[str], result: dict[str, Any]) -> int:
+    def add_model(self, study_id: int, parent_id: int | None, effects: Sequence[str], result: Values) -> int:
         """Add a model to a study, made from another model or from nothing. Returns its id."""
         with self._database.writing() as connection:
             return studies.add_model(connection, study_id, parent_id, effects, result)
@@ -43,7 +43,7 @@ class StudyStore:
         with self._database.reading() as connection:
             return studies.get_model(connection, model_id)
 
-    def change_model(self, model_id: int, result: dict[str, Any]) -> None:
+    def change_model(self, model_id: int, result: Values) -> None:
         """Replace what came out of a model, or `NotFoundError`."""
         with self._database.writing() as connection:
             studies.change_model(connection, model_id, result)

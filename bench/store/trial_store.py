@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 
+from bench.config.channels import known_to_lab
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
 from bench.store.records import Condition, Event, Trial
-from bench.store.tables import samples, trials
+from bench.store.tables import samples, trial_search, trials
 from bench.store.tables.conditions import Wanted
 from bench.store.tables.reduction import MIN_POINTS
+from bench.store.tables.trial_search import TrialQuery
 from bench.store.tables.window import Stretch, reduced
 from bench.store.trial_writer import TrialWriter
 from bench.store.upkeep.custody import Custody
@@ -35,7 +37,7 @@ class TrialStore:
             name: unique within the experiment.
             kind: what is done ("steps", "load-sweep").
             conditions: what is held constant; finite numbers, text, bools.
-            channels: names from `compensator.lab.recordings.channels`, in the order of the columns of the rows.
+            channels: names from `bench.config.channels.KEPT`, in the order of the columns of the rows.
 
         Raises:
             NotFoundError: no such experiment.
@@ -70,6 +72,17 @@ class TrialStore:
             found = trials.find(connection, experiment_id, kind, outcome, source, wanted, limit, offset)
         return list(map(self.custody.as_ended, found))
 
+    def search_trials(self, wanted: TrialQuery, limit: int, offset: int = 0) -> tuple[list[Trial], int]:
+        """One page of the trials that are looked for, sorted, and how many there are in all.
+
+        Raises:
+            StoreValueError: an unknown order, or too many words.
+        """
+        with self._database.reading() as connection:
+            ids, count = trial_search.search(connection, wanted, limit, offset)
+            found = trials.of_ids(connection, ids)
+        return list(map(self.custody.as_ended, found)), count
+
     def events(self, trial_id: int) -> list[Event]:
         """The events of a trial, in order of time, or `NotFoundError`."""
         with self._database.reading() as connection:
@@ -89,13 +102,14 @@ class TrialStore:
             return samples.read(connection, trial, trial.channels if channels is None else channels)
 
     def recording(self, trial_id: int) -> Recording:
-        """A trial as a recording set would hold it: its conditions, all its channels, its events.
+        """A trial as the model lab takes it: its conditions, its events, and the channels that the lab knows.
 
         Raises:
             NotFoundError: no such trial.
         """
         trial = self.trial(trial_id)
-        return Recording(trial.name, trial.kind, dict(trial.conditions), self.samples(trial_id), self.events(trial_id))
+        samples = self.samples(trial_id, known_to_lab(trial.channels))
+        return Recording(trial.name, trial.kind, dict(trial.conditions), samples, self.events(trial_id))
 
     def part(self, trial: Trial, first_row: int, rows: int) -> FloatArray:
         """Some rows of a trial, all its channels, shape (channels, up to `rows`): for whoever goes through all of it.

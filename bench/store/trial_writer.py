@@ -1,10 +1,10 @@
 """Where the rows and events of a running trial go."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from sqlalchemy import Connection
 
+from bench.json_types import Values
 from bench.store.database import Database
 from bench.store.errors import StoreStateError
 from bench.store.records import Event
@@ -50,7 +50,7 @@ class TrialWriter:
         self._pending = pending
         self.rows += len(rows)
 
-    def finish(self, outcome: str, reason: str = "", results: dict[str, Any] | None = None) -> None:
+    def finish(self, outcome: str, reason: str = "", results: Values | None = None) -> None:
         """Close the trial.
 
         Args:
@@ -67,7 +67,7 @@ class TrialWriter:
             self._close(connection, outcome, reason, results or {})
         self._finished = True
 
-    def _close(self, connection: Connection, outcome: str, reason: str, results: dict[str, Any]) -> None:
+    def _close(self, connection: Connection, outcome: str, reason: str, results: Values) -> None:
         trials.finish(connection, self.trial_id, outcome, reason, results)
 
     def _check_running(self) -> None:

@@ -1,12 +1,11 @@
 """Add an effect to a model or drop one: refit, keep the child, and say what became of the error."""
 
-from typing import Any
-
 from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.errors import StudyError, lab_errors
+from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import Material, load, model_of
-from bench.study.models import result_of
+from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
 from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import widened
@@ -14,7 +13,7 @@ from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 
 
-def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
+def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Changed:
     """Refit with one more effect and keep the child model.
 
     Args:
@@ -34,7 +33,7 @@ def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = 
     return _change(store, load(store, study_id), parent, [*parent.effects, effect], f"Adding {effect}")
 
 
-def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> dict[str, Any]:
+def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Changed:
     """Refit with one effect less and keep the child model. Arguments and errors as `add_effect`."""
     parent = model_of(store, study_id, model_id)
     if effect not in parent.effects:
@@ -43,7 +42,7 @@ def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None =
     return _change(store, load(store, study_id), parent, effects, f"Dropping {effect}")
 
 
-def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], what: str) -> dict[str, Any]:
+def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], what: str) -> Changed:
     fit = material.fit(effects)
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
@@ -60,25 +59,30 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     elif only_there:
         sentence = f"{what} changes nothing but the effort of breaking away, and too few starts from rest show that."
     result = result_of(fit, held_out(fit))
-    model_id = store.add_model(material.study_id, parent.id, effects, result)
-    return {
-        "model_id": model_id,
-        "parent_id": parent.id,
-        "effects": effects,
-        "before": {"training": parent.result["training"], "held_out": before.relative},
-        "after": {"training": result["training"], "held_out": after.relative},
-        "gain": gain.value,
-        "gain_low": gain.low,
-        "gain_high": gain.high,
-        "breakaway": None if starts is None else _changed(*starts),
-        "sentence": sentence.strip(),
-    }
+    model_id = store.add_model(material.study_id, parent.id, effects, stored(result))
+    return Changed(
+        model_id=model_id,
+        parent_id=parent.id,
+        effects=effects,
+        before=BeforeAfter(training=kept_of(parent).training, held_out=before.relative),
+        after=BeforeAfter(training=result.training, held_out=after.relative),
+        gain=gain.value,
+        gain_low=gain.low,
+        gain_high=gain.high,
+        breakaway=None if starts is None else _changed(*starts),
+        sentence=sentence.strip(),
+    )
 
 
-def _changed(before: HeldOut, after: HeldOut) -> dict[str, float]:
+def _changed(before: HeldOut, after: HeldOut) -> BreakawayChange:
     gain = held_out_gain(before, after)
-    errors = {"held_out_before": before.relative, "held_out_after": after.relative}
-    return {**errors, "gain": gain.value, "gain_low": gain.low, "gain_high": gain.high}
+    return BreakawayChange(
+        held_out_before=before.relative,
+        held_out_after=after.relative,
+        gain=gain.value,
+        gain_low=gain.low,
+        gain_high=gain.high,
+    )
 
 
 def _sentence(what: str, error: str, before: float, after: float, gain: Gain) -> str:

@@ -1,20 +1,22 @@
 """A model of a study under the control law that its trials ran under: error of motion beside that of effort."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
 from bench.config.rig import Rig
-from bench.control.servo import ServoSettings
+from bench.config.sections import ServoSettings
 from bench.store import Store
 from bench.store.records import Experiment, ModelRow
 from bench.study.errors import StudyError, lab_errors
+from bench.study.keep import kept_of, stored
 from bench.study.material import Material, load_model
+from bench.study.models.closed_loop import ClosedLoop, Coefficient, LoopError, Motion, Refined, TrialInLoop
+from bench.study.models.kept import KeptMotion
 from bench.study.suggestion.dynamics import drive_of
+from compensator.lab.closed_loop import loop_comparison as lab
 from compensator.lab.closed_loop.control_law import ControlLaw
-from compensator.lab.closed_loop.loop_comparison import LoopComparison, LoopError, TrialInLoop, compare_in_loop
 from compensator.lab.closed_loop.refinement import Refinement, refine
 from compensator.lab.model.fit import with_coefficients
 from compensator.lab.model.fitted import Fit
@@ -25,7 +27,7 @@ from compensator.lab.rows.dataset import Trial
 SERIES_POINTS = 300  # of each trial in the answer; the errors use all samples
 
 
-def simulate(store: Store, study_id: int, model_id: int | None = None, refined: bool = False) -> dict[str, Any]:
+def simulate(store: Store, study_id: int, model_id: int | None = None, refined: bool = False) -> ClosedLoop:
     """Move a model's joint through the study's trials, under the servo that they ran under.
 
     Args:
@@ -42,19 +44,20 @@ def simulate(store: Store, study_id: int, model_id: int | None = None, refined: 
     laws = _laws(store, material, fit)
     with lab_errors():
         refinement = refine(fit, laws) if refined else None
-        found = compare_in_loop(fit, laws) if refinement is None else refinement.before
+        found = lab.compare_in_loop(fit, laws) if refinement is None else refinement.before
     unit = material.definition.facts.position_unit
-    return {
-        "study_id": study_id,
-        "model_id": model.id,
-        "effects": model.effects,
-        "effort": material.effort,
-        "position_unit": unit,
-        **_errors(found),
-        "trials": [_trial(material, fit, index, one) for index, one in enumerate(found.trials)],
-        "refined": None if refinement is None else _refined(fit, refinement, unit),
-        "notes": list(_notes(found)),
-    }
+    return ClosedLoop(
+        study_id=study_id,
+        model_id=model.id,
+        effects=model.effects,
+        effort=material.effort,
+        position_unit=unit,
+        training=_error(found.training),
+        held_out=None if found.held_out is None else _error(found.held_out),
+        trials=[_trial(material, fit, index, one) for index, one in enumerate(found.trials)],
+        refined=None if refinement is None else _refined(fit, refinement, unit),
+        notes=list(_notes(found)),
+    )
 
 
 def keep_motion_errors(store: Store, study_id: int) -> Iterator[int]:
@@ -67,7 +70,7 @@ def keep_motion_errors(store: Store, study_id: int) -> Iterator[int]:
         NotFoundError, StudyError: as `simulate`.
     """
     for row in store.models(study_id):
-        if "closed_loop" not in row.result:
+        if kept_of(row).closed_loop is None:
             keep_motion_error(store, study_id, row)
             yield row.id
 
@@ -75,8 +78,9 @@ def keep_motion_errors(store: Store, study_id: int) -> Iterator[int]:
 def keep_motion_error(store: Store, study_id: int, row: ModelRow) -> None:
     """Simulate one model, and keep its errors with it. Errors as `simulate`."""
     found = simulate(store, study_id, row.id)
-    kept = {key: found[key] for key in ("training", "held_out", "position_unit")}
-    store.change_model(row.id, {**store.model(row.id).result, "closed_loop": kept})
+    motion = KeptMotion(training=found.training, held_out=found.held_out, position_unit=found.position_unit)
+    kept = kept_of(store.model(row.id))
+    store.change_model(row.id, stored(kept.model_copy(update={"closed_loop": motion})))
 
 
 def _laws(store: Store, material: Material, fit: Fit) -> list[ControlLaw | None]:
@@ -105,76 +109,76 @@ def _law(experiment: Experiment, fit: Fit) -> ControlLaw | None:
     )
 
 
-def _errors(found: LoopComparison) -> dict[str, Any]:
-    return {
-        "training": _error(found.training),
-        "held_out": None if found.held_out is None else _error(found.held_out),
-    }
+def _error(error: lab.LoopError) -> LoopError:
+    return LoopError(
+        samples=error.samples,
+        position=error.position,
+        position_relative=error.position_relative,
+        velocity_relative=error.velocity_relative,
+        effort=error.effort,
+        effort_relative=error.effort_relative,
+    )
 
 
-def _error(error: LoopError) -> dict[str, Any]:
-    return {
-        "samples": error.samples,
-        "position": error.position,
-        "position_relative": error.position_relative,
-        "velocity_relative": error.velocity_relative,
-        "effort": error.effort,
-        "effort_relative": error.effort_relative,
-    }
-
-
-def _trial(material: Material, fit: Fit, index: int, one: TrialInLoop) -> dict[str, Any]:
+def _trial(material: Material, fit: Fit, index: int, one: lab.TrialInLoop) -> TrialInLoop:
     trial = material.trials[index]
-    return {
-        "trial_id": trial.id,
-        "name": trial.name,
-        "role": "held_out" if one.held_out else "training",
-        "law": one.source,
-        "settled": one.settled,
-        **_error(one.error),
-        "series": _series(fit.dataset.trials[index], one.simulated.position),
-    }
+    return TrialInLoop(
+        **dict(_error(one.error)),
+        trial_id=trial.id,
+        name=trial.name,
+        role="held_out" if one.held_out else "training",
+        law=one.source,
+        settled=one.settled,
+        series=_series(fit.dataset.trials[index], one.simulated.position),
+    )
 
 
-def _series(trial: Trial, simulated: FloatArray) -> dict[str, list[float]]:
+def _series(trial: Trial, simulated: FloatArray) -> Motion:
     signals = trial.signals
     chosen = slice(None, None, max(1, len(simulated) // SERIES_POINTS))
-    return {
-        "time_s": (signals.time_s - signals.time_s[0])[chosen].tolist(),
-        "measured": signals.position[chosen].tolist(),
-        "simulated": simulated[chosen].tolist(),
-    }
+    return Motion(
+        time_s=(signals.time_s - signals.time_s[0])[chosen].tolist(),
+        measured=signals.position[chosen].tolist(),
+        simulated=simulated[chosen].tolist(),
+    )
 
 
-def _refined(fit: Fit, refinement: Refinement, unit: str) -> dict[str, Any]:
+def _refined(fit: Fit, refinement: Refinement, unit: str) -> Refined:
     after = refinement.fit
     coefficients = fit.coefficients if after is None else after.coefficients
     along_measured = with_coefficients(fit, coefficients)
     rows = fit.dataset.counted
     effort = fit.dataset.effort[rows]
+    held_out = refinement.after.held_out
+    return Refined(
+        training=_error(refinement.after.training),
+        held_out=None if held_out is None else _error(held_out),
+        passes=refinement.passes,
+        gained=after is not None,
+        inverse_before=relative_error(fit.residual[rows], effort),
+        inverse_after=relative_error(along_measured.residual[rows], effort),
+        parameters=_coefficients(fit, coefficients),
+        sentence=_sentence(refinement, unit),
+    )
+
+
+def _coefficients(fit: Fit, refined: FloatArray) -> list[Coefficient]:
+    """Before and after, of those that the trials excite."""
     named = [(term.effect, parameter) for term in fit.terms for parameter in term.effect.parameters]
     excited = np.any(fit.columns != 0.0, axis=0)
-    return {
-        **_errors(refinement.after),
-        "passes": refinement.passes,
-        "gained": after is not None,
-        "inverse_before": relative_error(fit.residual[rows], effort),
-        "inverse_after": relative_error(along_measured.residual[rows], effort),
-        "parameters": [
-            {
-                "effect": effect.name,
-                "name": parameter.name,
-                "unit": parameter.unit_in(fit.dataset.effort_definition.unit, fit.dataset.facts.position_unit),
-                "before": old,
-                "after": new,
-            }
-            for (effect, parameter), old, new, used in zip(
-                named, fit.coefficients.tolist(), coefficients.tolist(), excited.tolist(), strict=True
-            )
-            if used
-        ],
-        "sentence": _sentence(refinement, unit),
-    }
+    return [
+        Coefficient(
+            effect=effect.name,
+            name=parameter.name,
+            unit=parameter.unit_in(fit.dataset.effort_definition.unit, fit.dataset.facts.position_unit),
+            before=old,
+            after=new,
+        )
+        for (effect, parameter), old, new, used in zip(
+            named, fit.coefficients.tolist(), refined.tolist(), excited.tolist(), strict=True
+        )
+        if used
+    ]
 
 
 def _sentence(refinement: Refinement, unit: str) -> str:
@@ -195,7 +199,7 @@ def _sentence(refinement: Refinement, unit: str) -> str:
     )
 
 
-def _notes(found: LoopComparison) -> Iterator[str]:
+def _notes(found: lab.LoopComparison) -> Iterator[str]:
     alone = [one.name for one in found.trials if one.source == "stand-in"]
     if alone:
         yield (

@@ -1,13 +1,27 @@
-"""Measured against predicted, as JSON for the page, the command line and reports."""
+"""Measured against predicted, for the page, the command line and reports."""
 
-from typing import Any
+from typing import Literal
 
 import numpy as np
 
 from bench.store import Store
 from bench.study.material import Material, load_model
+from bench.study.models.comparison import (
+    AtRest,
+    BeyondFriction,
+    BreakawayError,
+    Comparison,
+    DriverGroup,
+    Error,
+    Errors,
+    FittedParameter,
+    RegimeError,
+    ResidualAgainst,
+    Series,
+    TrialError,
+)
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
-from compensator.lab.at_rest.rest_comparison import at_rest_in_words
+from compensator.lab.at_rest.rest_comparison import Side, at_rest_in_words
 from compensator.lab.chance import stated
 from compensator.lab.comparison import comparison
 from compensator.lab.comparison.null_space import left_open
@@ -15,13 +29,13 @@ from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import ParameterEstimate, estimates
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.model.validation import HeldOut
 from compensator.lab.rows.drivers import DRIVERS
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 
 
-def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:
+def compare(store: Store, study_id: int, model_id: int | None = None) -> Comparison:
     """Hold a model of a study against its trials.
 
     Args:
@@ -36,137 +50,136 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> dict[st
     fit = material.fit_of(model)
     found = comparison.compare(fit)
     parameters = estimates(fit)
-    return {
-        "study_id": study_id,
-        "model_id": model.id,
-        "effects": model.effects,
-        "parameters": _parameters(parameters),
-        "effort": material.effort,
-        "error": {
-            "training": _error(found.training),
-            "held_out": {
-                "rms": found.held_out.rms,
-                "relative": found.held_out.relative,
-                "kind": found.held_out.kind,
-            },
-            "floor": _error(found.floor) if found.floor else None,
-        },
-        "trials": _trials(material, found),
-        "regimes": [{"name": regime.name, "rows": regime.rows, **_error(regime)} for regime in found.regimes],
-        "at_rest": _at_rest(found),
-        "breakaway": _breakaway(found),
-        "series": _series(material, fit),
-        "residual_against": _against(material, found),
-        "notes": [*_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))],
-    }
+    return Comparison(
+        study_id=study_id,
+        model_id=model.id,
+        effects=model.effects,
+        parameters=_parameters(parameters),
+        effort=material.effort,
+        error=Errors(
+            training=_error(found.training),
+            held_out=_held_out(found.held_out),
+            floor=_error(found.floor) if found.floor else None,
+        ),
+        trials=_trials(material, found),
+        regimes=[_regime(one) for one in found.regimes],
+        at_rest=_at_rest(found),
+        breakaway=_breakaway(found),
+        series=_series(material, fit),
+        residual_against=_against(material, found),
+        notes=[*_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))],
+    )
 
 
-def _error(error: comparison.ErrorOf) -> dict[str, float]:
-    return {"rms": error.rms, "relative": error.relative}
+def _error(error: comparison.ErrorOf) -> Error:
+    return Error(rms=error.rms, relative=error.relative)
 
 
-def _at_rest(found: comparison.Comparison) -> dict[str, Any] | None:
+def _regime(error: comparison.ErrorOf) -> RegimeError:
+    return RegimeError(name=error.name, rows=error.rows, rms=error.rms, relative=error.relative)
+
+
+def _held_out(error: HeldOut) -> Error:
+    return Error(rms=error.rms, relative=error.relative, kind=error.kind)
+
+
+def _at_rest(found: comparison.Comparison) -> AtRest | None:
     if found.at_rest is None:
         return None
     one = found.at_rest
-    return {
-        "stretches": one.windows,
-        "rests": one.rests,
-        "outside": one.outside,
-        "largest": one.largest,
-        "sides": [
-            {
-                "side": name,
-                "outside": side.outside,
-                "largest": side.largest,
-                "p_value": stated(side.chance),
-                "trial": side.trial,
-                "time_s": side.time_s,
-            }
-            for name, side in (("above", one.above), ("below", one.below))
-        ],
-        "static_friction_from": "starts" if one.by_starts else "sliding",
-        "sentence": at_rest_in_words(one, found.fit.dataset.effort_definition.unit),
-    }
+    return AtRest(
+        stretches=one.windows,
+        rests=one.rests,
+        outside=one.outside,
+        largest=one.largest,
+        sides=[_beyond("above", one.above), _beyond("below", one.below)],
+        static_friction_from="starts" if one.by_starts else "sliding",
+        sentence=at_rest_in_words(one, found.fit.dataset.effort_definition.unit),
+    )
 
 
-def _breakaway(found: comparison.Comparison) -> dict[str, Any] | None:
+def _beyond(name: Literal["above", "below"], side: Side) -> BeyondFriction:
+    return BeyondFriction(
+        side=name,
+        outside=side.outside,
+        largest=side.largest,
+        p_value=stated(side.chance),
+        trial=side.trial,
+        time_s=side.time_s,
+    )
+
+
+def _breakaway(found: comparison.Comparison) -> BreakawayError | None:
     if found.breakaway is None:
         return None
     one = found.breakaway
-    return {
-        "starts": one.starts,
-        "training": {"rms": one.rms, "relative": one.relative},
-        "held_out": {"rms": one.held_out.rms, "relative": one.held_out.relative, "kind": one.held_out.kind},
-        "parameters": _parameters(breakaway_estimates(one.fit)),
-    }
+    return BreakawayError(
+        starts=one.starts,
+        training=Error(rms=one.rms, relative=one.relative),
+        held_out=_held_out(one.held_out),
+        parameters=_parameters(breakaway_estimates(one.fit)),
+    )
 
 
-def _parameters(found: list[ParameterEstimate]) -> list[dict[str, Any]]:
+def _parameters(found: list[ParameterEstimate]) -> list[FittedParameter]:
     return [
-        {
-            "effect": one.effect,
-            "name": one.parameter,
-            "value": one.value,
-            "unit": one.unit,
-            "low": one.low,
-            "high": one.high,
-            "note": one.note,
-        }
+        FittedParameter(
+            effect=one.effect,
+            name=one.parameter,
+            value=one.value,
+            unit=one.unit,
+            low=one.low,
+            high=one.high,
+            note=one.note,
+        )
         for one in found
     ]
 
 
-def _trials(material: Material, found: comparison.Comparison) -> list[dict[str, Any]]:
+def _trials(material: Material, found: comparison.Comparison) -> list[TrialError]:
     return [
-        {
-            "trial_id": trial.id,
-            "name": trial.name,
-            "role": "held_out" if held else "training",
-            "conditions": trial.conditions,
-            **_error(error),
-        }
-        for trial, held, error in zip(material.trials, material.definition.held_out, found.trials, strict=True)
+        TrialError(**dict(trial), rms=error.rms, relative=error.relative)
+        for trial, error in zip(material.study_trials, found.trials, strict=True)
     ]
 
 
-def _series(material: Material, fit: Fit) -> list[dict[str, Any]]:
+def _series(material: Material, fit: Fit) -> list[Series]:
     dataset, series = fit.dataset, []
     for index, (trial, prepared) in enumerate(zip(material.trials, dataset.trials, strict=True)):
         rows = np.flatnonzero(dataset.trial_index == index)
         chosen = rows[:: max(1, len(rows) // SERIES_POINTS)]
         time = dataset.time_of(prepared)[chosen - rows[0]] if len(rows) else np.empty(0)
         series.append(
-            {
-                "trial_id": trial.id,
-                "name": trial.name,
-                "time_s": _list(time),
-                "measured": _list(dataset.effort[chosen]),
-                "predicted": _list(fit.predicted[chosen]),
-                "residual": _list(fit.residual[chosen]),
-            }
+            Series(
+                trial_id=trial.id,
+                name=trial.name,
+                time_s=time.tolist(),
+                measured=dataset.effort[chosen].tolist(),
+                predicted=fit.predicted[chosen].tolist(),
+                residual=fit.residual[chosen].tolist(),
+            )
         )
     return series
 
 
-def _against(material: Material, found: comparison.Comparison) -> list[dict[str, Any]]:
-    by_driver: dict[str, list[dict[str, Any]]] = {}
+def _against(material: Material, found: comparison.Comparison) -> list[ResidualAgainst]:
+    by_driver: dict[str, list[DriverGroup]] = {}
     for one in found.against:
         bins = one.bins
         by_driver.setdefault(one.driver, []).append(
-            {
-                "direction": one.direction,
-                "x": _list(bins.x),
-                "mean": _list(bins.mean),
-                "low": _list(bins.low),
-                "high": _list(bins.high),
-                "count": bins.count.tolist(),
-            }
+            DriverGroup(
+                direction=one.direction,
+                x=bins.x.tolist(),
+                mean=bins.mean.tolist(),
+                low=bins.low.tolist(),
+                high=bins.high.tolist(),
+                count=bins.count.tolist(),
+            )
         )
     unit = material.dataset.effort_definition.unit
     facts = material.definition.facts
     return [
-        {"driver": driver, "unit": DRIVERS[driver].unit_in(unit, facts), "groups": groups}
+        ResidualAgainst(driver=driver, unit=DRIVERS[driver].unit_in(unit, facts), groups=groups)
         for driver, groups in by_driver.items()
     ]
 
@@ -190,8 +203,3 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
     unit = material.dataset.effort_definition.unit
     by_run = differences_by_run(found.fit, found.held_out)
     return [*notes, *(by_run_in_words(one, unit) for one in by_run)]
-
-
-def _list(values: FloatArray) -> list[float]:
-    listed: list[float] = values.tolist()
-    return listed

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 from bench.config.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
+from bench.study.keep import keep_model
 from bench.study.material import Definition, Material, facts_of, load, material_of
-from bench.study.models import keep_model
+from bench.study.models.study import ModelName, Study, StudyName
 from bench.study.selection import keep, split
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
@@ -27,7 +27,7 @@ def create_study(
     where: Sequence[str] = (),
     cutoff_hz: float | None = None,
     rows: RowChoice = "sliding",
-) -> dict[str, Any]:
+) -> Study:
     """Fix the trials of a study and fit its base model.
 
     Args:
@@ -66,18 +66,18 @@ def create_study(
     return _create(store, name, definition)
 
 
-def describe(store: Store, study_id: int) -> dict[str, Any]:
+def describe(store: Store, study_id: int) -> Study:
     """A study: its trials with their roles, its effort, its models."""
     return _describe(store, load(store, study_id))
 
 
-def list_studies(store: Store) -> list[dict[str, Any]]:
+def list_studies(store: Store) -> list[StudyName]:
     """All studies, newest first."""
     rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
-    return [{"study_id": row.id, "name": row.name, "created_utc": row.created_utc.isoformat()} for row in rows]
+    return [StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in rows]
 
 
-def _create(store: Store, name: str, definition: Definition) -> dict[str, Any]:
+def _create(store: Store, name: str, definition: Definition) -> Study:
     draft = material_of(store, 0, name, definition)
     if any(definition.held_out) and not (draft.dataset.counted & ~draft.training).any():
         raise StudyError(
@@ -86,30 +86,22 @@ def _create(store: Store, name: str, definition: Definition) -> dict[str, Any]:
         )
     fit = draft.fit(list(definition.base))  # before anything is kept: a study has a model from the start
     material = replace(draft, study_id=store.create_study(name, definition.to_json()))
-    keep_model(store, material, None, fit)
+    keep_model(store, material.study_id, None, fit)
     return _describe(store, material)
 
 
-def _describe(store: Store, material: Material) -> dict[str, Any]:
+def _describe(store: Store, material: Material) -> Study:
     models = store.models(material.study_id)
-    return {
-        "study_id": material.study_id,
-        "name": material.name,
-        "effort": material.effort,
-        "cutoff_hz": material.definition.cutoff_hz,
-        "rows": material.definition.rows,
-        "trials": [
-            {
-                "trial_id": trial.id,
-                "name": trial.name,
-                "role": "held_out" if held else "training",
-                "conditions": trial.conditions,
-            }
-            for trial, held in zip(material.trials, material.definition.held_out, strict=True)
-        ],
-        "models": [{"model_id": m.id, "parent_id": m.parent_id, "effects": m.effects} for m in models],
-        "model_id": models[-1].id,
-    }
+    return Study(
+        study_id=material.study_id,
+        name=material.name,
+        effort=material.effort,
+        cutoff_hz=material.definition.cutoff_hz,
+        rows=material.definition.rows,
+        trials=material.study_trials,
+        models=[ModelName(model_id=one.id, parent_id=one.parent_id, effects=one.effects) for one in models],
+        model_id=models[-1].id,
+    )
 
 
 def _base_effects(base: Sequence[str] | None, facts: Facts) -> tuple[str, ...]:

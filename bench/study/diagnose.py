@@ -1,20 +1,20 @@
-"""What is missing from a model, as JSON for the page, the command line and reports."""
-
-from typing import Any
+"""What is missing from a model, for the page, the command line and reports."""
 
 from bench.store import Store
+from bench.study.findings import conclusion_of, findings_of, not_judged
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import load_model
+from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
-from compensator.lab.diagnosis.provisional import Provisional, provisional
+from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS
 
 
-def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:
+def diagnose(store: Store, study_id: int, model_id: int | None = None) -> Diagnosis:
     """Rank the effects that a model may be missing.
 
     Args:
@@ -30,73 +30,75 @@ def diagnose(store: Store, study_id: int, model_id: int | None = None) -> dict[s
     return answer_of(fit, diagnosis_of_model(material, model, fit), study_id, model.id)
 
 
-def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int) -> dict[str, Any]:
+def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int) -> Diagnosis:
     """What a model of a study may be missing, given its fit and diagnosis."""
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
-    left_out = [f"Not judged: {reason}." for reason in found.left_out.values()]
+    not_told = [not_judged(effect, reason) for effect, reason in found.left_out.items()]
     curve = provisional(fit, found) if found.verdict == "unknown-effect" else None
-    return {
-        "study_id": study_id,
-        "model_id": model_id,
-        "verdict": found.verdict,
-        "sentence": found.sentence,
-        "p_value": stated(found.p_value),
-        "notes": [*found.notes, *left_out],
-        "data_problems": found.data_problems,
-        "classes": [_class(members) for members in found.classes[:1]] if named else [],
-        "ranking": [] if found.too_short else [_ranked(fit.dataset, one, named) for one in found.candidates],
-        "provisional": None if curve is None else _provisional(fit.dataset, curve),
-    }
+    return Diagnosis(
+        study_id=study_id,
+        model_id=model_id,
+        verdict=found.verdict,
+        sentence=found.sentence,
+        p_value=stated(found.p_value),
+        notes=[*(note.text for note in found.notes), *(one.text for one in not_told)],
+        data_problems=found.data_problems,
+        classes=[_class(members) for members in found.classes[:1]] if named else [],
+        ranking=[] if found.too_short else [_ranked(fit.dataset, one, named) for one in found.candidates],
+        provisional=None if curve is None else _provisional(fit.dataset, curve),
+        conclusion=conclusion_of(found),
+        findings=findings_of(found),
+    )
 
 
-def _provisional(dataset: Dataset, curve: Provisional) -> dict[str, Any]:
+def _provisional(dataset: Dataset, curve: Provisional) -> ProvisionalTerm:
     gain = curve.gain
-    return {
-        "effect": curve.effect.name,
-        "title": curve.effect.title,
-        "held_out_before": curve.before,
-        "held_out_after": curve.after,
-        "gain": gain.value,
-        "gain_low": gain.low,
-        "gain_high": gain.high,
-        "sentence": (
+    return ProvisionalTerm(
+        effect=curve.effect.name,
+        title=curve.effect.title,
+        held_out_before=curve.before,
+        held_out_after=curve.after,
+        gain=gain.value,
+        gain_low=gain.low,
+        gain_high=gain.high,
+        sentence=(
             f"Until its physics is known, {curve.effect.name} can stand in the model as a provisional term: held-out "
             f"error {curve.before:.2%} to {curve.after:.2%} ({gain.in_words(curve.before, curve.after)})."
         ),
-        "picture": _picture(dataset, curve.picture),
-    }
+        picture=_picture(dataset, curve.picture),
+    )
 
 
-def _class(members: tuple[str, ...]) -> dict[str, Any]:
+def _class(members: tuple[str, ...]) -> EffectClass:
     titles = [effect_named(name).title for name in members]
     if len(members) == 1:
-        return {"effects": list(members), "sentence": f"{titles[0]} stands alone.", "separating_trial": None}
-    return {
-        "effects": list(members),
-        "sentence": f"These trials cannot tell apart: {'; '.join(titles)}.",
-        "separating_trial": "; ".join(dict.fromkeys(effect_named(name).excited_by for name in members)),
-    }
+        return EffectClass(effects=list(members), sentence=f"{titles[0]} stands alone.", separating_trial=None)
+    return EffectClass(
+        effects=list(members),
+        sentence=f"These trials cannot tell apart: {'; '.join(titles)}.",
+        separating_trial="; ".join(dict.fromkeys(effect_named(name).excited_by for name in members)),
+    )
 
 
-def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -> dict[str, Any]:
+def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -> Ranked:
     effect = candidate.effect
-    return {
-        "effect": effect.name,
-        "title": effect.title,
-        "score": candidate.score,
-        "p_value": stated(candidate.p_value),
-        "held_out_before": candidate.before,
-        "held_out_after": candidate.after,
-        "gain": candidate.gain.value,
-        "gain_low": candidate.gain.low,
-        "gain_high": candidate.gain.high,
-        "in_class": effect.name in named,
-        "confused_with": list(candidate.rivals),
-        "d_prime": candidate.detectability,
-        "physical": candidate.physical,
-        "sentence": _sentence(candidate),
-        "picture": _picture(dataset, candidate.picture),
-    }
+    return Ranked(
+        effect=effect.name,
+        title=effect.title,
+        score=candidate.score,
+        p_value=stated(candidate.p_value),
+        held_out_before=candidate.before,
+        held_out_after=candidate.after,
+        gain=candidate.gain.value,
+        gain_low=candidate.gain.low,
+        gain_high=candidate.gain.high,
+        in_class=effect.name in named,
+        confused_with=list(candidate.rivals),
+        d_prime=candidate.detectability,
+        physical=candidate.physical,
+        sentence=_sentence(candidate),
+        picture=_picture(dataset, candidate.picture),
+    )
 
 
 def _sentence(candidate: diagnosis.Candidate) -> str:
@@ -115,19 +117,18 @@ def _sentence(candidate: diagnosis.Candidate) -> str:
     return "; ".join(parts) + "."
 
 
-def _picture(dataset: Dataset, picture: diagnosis.Picture | None) -> dict[str, Any] | None:
+def _picture(dataset: Dataset, picture: diagnosis.Picture | None) -> Picture | None:
     if picture is None:
         return None
     driver = DRIVERS[picture.driver]
-    unit = driver.unit_in(dataset.effort_definition.unit, dataset.facts)
-    return {
-        "driver": driver.title,
-        "unit": unit,
-        "against_motion": picture.against_motion,
-        "x": picture.residual.x.tolist(),
-        "residual": picture.residual.mean.tolist(),
-        "low": picture.residual.low.tolist(),
-        "high": picture.residual.high.tolist(),
-        "curve_x": picture.curve.x.tolist(),
-        "curve": picture.curve.mean.tolist(),
-    }
+    return Picture(
+        driver=driver.title,
+        unit=driver.unit_in(dataset.effort_definition.unit, dataset.facts),
+        against_motion=picture.against_motion,
+        x=picture.residual.x.tolist(),
+        residual=picture.residual.mean.tolist(),
+        low=picture.residual.low.tolist(),
+        high=picture.residual.high.tolist(),
+        curve_x=picture.curve.x.tolist(),
+        curve=picture.curve.mean.tolist(),
+    )

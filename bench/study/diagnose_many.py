@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from bench.parallel.over_cores import over_cores
 from bench.store import Store
@@ -11,6 +10,7 @@ from bench.study.diagnose import answer_of
 from bench.study.errors import StudyError, lab_errors
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Definition, Material, model_of, trials_of
+from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -31,10 +31,10 @@ class Question:
 
 def diagnose_many(
     store: Store, study_ids: Sequence[int], shown: Shown, workers: int | None = None, cluster: str | None = None
-) -> list[dict[str, Any]]:
+) -> list[Diagnosis | NotDiagnosed]:
     """The diagnosis of the newest model of each study, as `diagnose` gives it, in the order given.
 
-    A study that cannot be judged has `error` in place of an answer.
+    A study that cannot be judged has a `NotDiagnosed` in place of an answer.
 
     Args:
         store: with the studies.
@@ -57,7 +57,7 @@ def diagnose_many(
     return found
 
 
-def answer_to(question: Question) -> dict[str, Any]:
+def answer_to(question: Question) -> Diagnosis | NotDiagnosed:
     """Diagnose, in whatever process this is."""
     definition, model = question.definition, question.model
     try:
@@ -69,7 +69,7 @@ def answer_to(question: Question) -> dict[str, Any]:
         fit = material.fit_of(model)
         return answer_of(fit, diagnosis_of_model(material, model, fit), question.study_id, model.id)
     except StudyError as error:
-        return {"study_id": question.study_id, "model_id": model.id, "error": str(error)}
+        return NotDiagnosed(study_id=question.study_id, model_id=model.id, error=str(error))
 
 
 def _questions(store: Store, study_ids: Sequence[int]) -> Iterator[Question]:

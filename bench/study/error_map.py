@@ -1,18 +1,64 @@
-"""Where a model is wrong, as JSON: cells of speed and load, and the moments behind one."""
+"""Where a model is wrong, with its answers: cells of speed and load, and the moments behind one."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
-from typing import Any
 
+from pydantic import Field
+
+from bench.json_types import Number, Numbers
 from bench.store import Store
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import load_model
+from bench.study.models.base import EffortName, StudyModel
 from compensator.lab.comparison import error_map as lab
 from compensator.lab.rows.drivers import DRIVERS
 
 
-def error_map(store: Store, study_id: int, model_id: int | None = None) -> dict[str, Any]:
+class Axis(StudyModel):
+    """One side of the map."""
+
+    driver: str = Field(description="to be used in `where` of /moments", examples=["velocity"])
+    title: str
+    unit: str
+
+
+class ErrorMap(StudyModel):
+    """Error in cells; the first index counts along `down`, the second along `across`. Null: too few rows."""
+
+    study_id: int
+    model_id: int
+    effort: EffortName
+    across: Axis
+    down: Axis
+    across_edges: list[float]
+    down_edges: list[float]
+    rms: list[Numbers] = Field(description="of the residual, in the unit of the effort")
+    mean: list[Numbers] = Field(description="of the residual, in the unit of the effort")
+    count: list[list[int]]
+
+
+class Moment(StudyModel):
+    """A stretch of one trial during which every criterion held, but for pauses."""
+
+    trial_id: int
+    name: str
+    from_s: float = Field(description="since the start of the trial")
+    to_s: float
+    rows: int
+    rms: Number
+    mean: Number
+
+
+class Moments(StudyModel):
+    """The moments with most error first."""
+
+    study_id: int
+    model_id: int
+    effort: EffortName
+    items: list[Moment]
+
+
+def error_map(store: Store, study_id: int, model_id: int | None = None) -> ErrorMap:
     """Error of a model over speed and load.
 
     Raises:
@@ -23,16 +69,25 @@ def error_map(store: Store, study_id: int, model_id: int | None = None) -> dict[
         found = lab.error_map(material.fit_of(model))
     unit = material.dataset.effort_definition.unit
     facts = material.definition.facts
-    axes = {
-        side: {"driver": name, "title": DRIVERS[name].title, "unit": DRIVERS[name].unit_in(unit, facts)}
-        for side, name in (("across", found.across), ("down", found.down))
-    }
-    edges = {"across_edges": found.across_edges.tolist(), "down_edges": found.down_edges.tolist()}
-    cells = {"rms": found.rms.tolist(), "mean": found.mean.tolist(), "count": found.count.astype(int).tolist()}
-    return {"study_id": study_id, "model_id": model.id, "effort": material.effort, **axes, **edges, **cells}
+
+    def axis(name: str) -> Axis:
+        return Axis(driver=name, title=DRIVERS[name].title, unit=DRIVERS[name].unit_in(unit, facts))
+
+    return ErrorMap(
+        study_id=study_id,
+        model_id=model.id,
+        effort=material.effort,
+        across=axis(found.across),
+        down=axis(found.down),
+        across_edges=found.across_edges.tolist(),
+        down_edges=found.down_edges.tolist(),
+        rms=found.rms.tolist(),
+        mean=found.mean.tolist(),
+        count=found.count.astype(int).tolist(),
+    )
 
 
-def moments(store: Store, study_id: int, where: Sequence[str], model_id: int | None = None) -> dict[str, Any]:
+def moments(store: Store, study_id: int, where: Sequence[str], model_id: int | None = None) -> Moments:
     """When the joint was somewhere, and how wrong the model was then.
 
     Args:
@@ -48,12 +103,19 @@ def moments(store: Store, study_id: int, where: Sequence[str], model_id: int | N
     material, model = load_model(store, study_id, model_id)
     with lab_errors():
         found = lab.moments(material.fit_of(model), criteria)
-    items = []
-    for one in found:
-        values = asdict(one)
-        trial = material.trials[values.pop("trial")]
-        items.append({"trial_id": trial.id, "name": trial.name, **values})
-    return {"study_id": study_id, "model_id": model.id, "effort": material.effort, "items": items}
+    items = [
+        Moment(
+            trial_id=material.trials[one.trial].id,
+            name=material.trials[one.trial].name,
+            from_s=one.from_s,
+            to_s=one.to_s,
+            rows=one.rows,
+            rms=one.rms,
+            mean=one.mean,
+        )
+        for one in found
+    ]
+    return Moments(study_id=study_id, model_id=model.id, effort=material.effort, items=items)
 
 
 def _parse(text: str) -> tuple[str, tuple[float, float]]:

@@ -2,16 +2,39 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+
+from pydantic import Field
 
 from bench.config.rig import Rig
+from bench.json_types import Number
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import NothingNewError, StudyError
-from bench.study.material import Definition, Material, facts_of, load, material_of, model_of
-from bench.study.models import keep_model
+from bench.study.keep import keep_model, kept_of
+from bench.study.material import Definition, facts_of, load, material_of, model_of
+from bench.study.models.base import StudyModel
 from bench.study.selection import Criterion
 from compensator.lab.rows.assembly import usable
+
+
+class AddedTrial(StudyModel):
+    """A trial that a study was given."""
+
+    trial_id: int
+    name: str
+
+
+class Extended(StudyModel):
+    """The study with more trials; errors are relative (0..1)."""
+
+    study_id: int
+    model_id: int = Field(description="the newest model, fitted to all trials")
+    added: list[AddedTrial]
+    left_out: list[str] = Field(description="trials too short for the study's filter, or without its effort")
+    trials: int
+    before: Number
+    after: Number
+    sentence: str
 
 
 def note_for(study_id: int) -> str:
@@ -19,7 +42,7 @@ def note_for(study_id: int) -> str:
     return f"suggested by study {study_id}"
 
 
-def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()) -> dict[str, Any]:
+def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()) -> Extended:
     """Add trials to a study and refit its newest model to all of them.
 
     Trials that meet a hold-out criterion of the study judge the model, the others are fitted. Earlier models stay what
@@ -51,9 +74,18 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     material = material_of(store, study_id, row.name, longer)
     fit = material.fit(before.effects)  # before anything is kept
     store.change_study(study_id, longer.to_json())
-    model_id = keep_model(store, material, before.id, fit)
-    left_out = [trial.name for trial in new if trial not in trials]
-    return _answer(material, store, model_id, trials, before.result["held_out"]) | {"left_out": left_out}
+    model_id = keep_model(store, study_id, before.id, fit)
+    errors = kept_of(before).held_out, kept_of(store.model(model_id)).held_out
+    return Extended(
+        study_id=study_id,
+        model_id=model_id,
+        added=[AddedTrial(trial_id=trial.id, name=trial.name) for trial in trials],
+        left_out=[trial.name for trial in new if trial not in trials],
+        trials=len(material.trials),
+        before=errors[0],
+        after=errors[1],
+        sentence=_sentence(len(trials), *errors),
+    )
 
 
 def _run_for(store: Store, study_id: int) -> list[int]:
@@ -80,17 +112,8 @@ def _with(definition: Definition, experiment_ids: Sequence[int], trials: Sequenc
     )
 
 
-def _answer(material: Material, store: Store, model_id: int, trials: Sequence[Trial], before: float) -> dict[str, Any]:
-    after = store.model(model_id).result["held_out"]
-    return {
-        "study_id": material.study_id,
-        "model_id": model_id,
-        "added": [{"trial_id": trial.id, "name": trial.name} for trial in trials],
-        "trials": len(material.trials),
-        "before": before,
-        "after": after,
-        "sentence": (
-            f"{len(trials)} trial{'s' * (len(trials) != 1)} added; the same effects, fitted to all, leave a held-out "
-            f"error of {after:.2%} ({before:.2%} on the trials before)."
-        ),
-    }
+def _sentence(added: int, before: float, after: float) -> str:
+    return (
+        f"{added} trial{'s' * (added != 1)} added; the same effects, fitted to all, leave a held-out "
+        f"error of {after:.2%} ({before:.2%} on the trials before)."
+    )

@@ -4,6 +4,7 @@ from functools import lru_cache
 
 from bench.store.records import ModelRow
 from bench.study.errors import lab_errors
+from bench.study.keep import kept_of
 from bench.study.material import Material
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
@@ -31,7 +32,7 @@ class _Asked:
     """A model of a study; equal where store, trials and model are. The fit is let go of once it was judged."""
 
     def __init__(self, material: Material, model: ModelRow, fit: Fit) -> None:
-        shapes = tuple((name, tuple(shape)) for name, shape in model.result["shapes"].items())
+        shapes = tuple(kept_of(model).shapes.items())
         self._key = (material.source, material.definition, tuple(model.effects), shapes)
         self._fits = [fit]
 

@@ -8,9 +8,13 @@ from typing import Any
 import numpy as np
 
 from bench.config.rig import Rig
+from bench.json_types import Values
 from bench.store import Store
 from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
+from bench.study.keep import kept_of
+from bench.study.models.base import EffortName
+from bench.study.models.study import StudyTrial
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
@@ -47,7 +51,7 @@ class Definition:
         """As it was when it had so many trials: later ones are added at the end."""
         return replace(self, trial_ids=self.trial_ids[:trials], held_out=self.held_out[:trials])
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> Values:
         """For the store."""
         return asdict(self)
 
@@ -87,9 +91,22 @@ class Material:
         return chosen
 
     @property
-    def effort(self) -> dict[str, str]:
+    def effort(self) -> EffortName:
         """Name and unit of the effort."""
-        return {"name": self.dataset.effort_definition.title, "unit": self.dataset.effort_definition.unit}
+        return EffortName(name=self.dataset.effort_definition.title, unit=self.dataset.effort_definition.unit)
+
+    @property
+    def study_trials(self) -> list[StudyTrial]:
+        """Its trials with their roles."""
+        return [
+            StudyTrial(
+                trial_id=trial.id,
+                name=trial.name,
+                role="held_out" if held else "training",
+                conditions=dict(trial.conditions),
+            )
+            for trial, held in zip(self.trials, self.definition.held_out, strict=True)
+        ]
 
     def fit(self, effects: list[str], shapes: dict[str, tuple[float, ...]] | None = None) -> Fit:
         """Fit a model to the training rows; errors of the lab become `StudyError`.
@@ -102,7 +119,7 @@ class Material:
 
     def fit_of(self, model: ModelRow) -> Fit:
         """The stored model again, at the very shapes that were found when it was made."""
-        return self.fit(model.effects, {name: tuple(shape) for name, shape in model.result["shapes"].items()})
+        return self.fit(model.effects, kept_of(model).shapes)
 
 
 def facts_of(rig: Rig) -> Facts:
@@ -161,7 +178,7 @@ def load_model(store: Store, study_id: int, model_id: int | None) -> tuple[Mater
 
 def trials_of(model: ModelRow, definition: Definition) -> Definition:
     """A study's definition as it was when this model was fitted."""
-    return definition.first(int(model.result.get("trials") or len(definition.trial_ids)))
+    return definition.first(kept_of(model).trials or len(definition.trial_ids))
 
 
 def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:

@@ -6,6 +6,8 @@ from bench.calibration import with_friction
 from bench.config.configuration import BenchConfiguration
 from bench.store import Store
 from bench.study.errors import StudyError
+from bench.study.keep import kept_of, stored
+from bench.study.models.kept import KeptBench
 from bench.study.use import studied_model
 
 
@@ -21,7 +23,7 @@ def bench_configurations(
     if calibrated.friction is None:
         raise StudyError("this bench has no calibration to begin with; run `friction-bench calibrate run` first")
     for model in store.models(study_id):
-        if "bench" not in model.result:
+        if kept_of(model).bench is None:
             studied, _ = studied_model(store, study_id, configuration, model.id)
             friction = calibrated.friction.model_copy(update={"study": studied})
             yield model.id, calibrated.model_copy(update={"friction": friction})
@@ -36,10 +38,10 @@ def keep_bench_error(store: Store, model_id: int, experiment_id: int) -> None:
     found = store.experiment(experiment_id).results
     if "rms_error_kg" not in found:
         raise StudyError(f"experiment {experiment_id} has no estimate of the load; look at its trials")
-    result = store.model(model_id).result
-    told = {
-        "experiment_id": experiment_id,
-        "reflected_error_g": 1000.0 * found["rms_error_kg"],
-        "uncompensated_error_g": 1000.0 * found["uncompensated_rms_error_kg"],
-    }
-    store.change_model(model_id, {**result, "bench": told})
+    told = KeptBench(
+        experiment_id=experiment_id,
+        reflected_error_g=1000.0 * found["rms_error_kg"],
+        uncompensated_error_g=1000.0 * found["uncompensated_rms_error_kg"],
+    )
+    kept = kept_of(store.model(model_id))
+    store.change_model(model_id, stored(kept.model_copy(update={"bench": told})))

@@ -1,22 +1,48 @@
 """A model's coefficients from all trials of experiments, however many rows they have: one piece of one at a time."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
+from pydantic import Field
 
 from bench.config.rig import Rig
+from bench.json_types import Number
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import facts_of, load_model
+from bench.study.models.base import StudyModel
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.streaming import PIECE_ROWS, fit_streamed, later_by, piece_starts
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 
 
-def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: int | None = None) -> dict[str, Any]:
+class RefittedParameter(StudyModel):
+    """One linear parameter, on the study's trials and on all that were read."""
+
+    effect: str
+    name: str
+    unit: str
+    study: Number
+    all: Number
+
+
+class Refitted(StudyModel):
+    """A model fitted anew to all trials of experiments; errors are relative (0..1)."""
+
+    study_id: int
+    model_id: int
+    trials: int
+    samples: int
+    rows: int
+    training: Number
+    held_out: Number = Field(description="each trial left out in turn")
+    parameters: list[RefittedParameter]
+    skipped: list[str] = Field(description="trials that cannot be used, and why")
+
+
+def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: int | None = None) -> Refitted:
     """Fit a model of a study anew to the completed trials of experiments; nothing is kept.
 
     The study's own trials give the cut-off, the shapes and the load that the model predicts. A study of a few trials
@@ -42,17 +68,17 @@ def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: 
     cutoff_hz = material.dataset.cutoff_hz
     with lab_errors():
         found = fit_streamed(fit, (piece for trial in trials for piece in _pieces(store, trial, cutoff_hz)))
-    return {
-        "study_id": study_id,
-        "model_id": model.id,
-        "trials": found.trials,
-        "samples": found.samples,
-        "rows": found.rows,
-        "training": found.training,
-        "held_out": found.held_out,
-        "parameters": _parameters(fit, found.coefficients.tolist()),
-        "skipped": [f"{name}: {why}" for name, why in found.skipped.items()],
-    }
+    return Refitted(
+        study_id=study_id,
+        model_id=model.id,
+        trials=found.trials,
+        samples=found.samples,
+        rows=found.rows,
+        training=found.training,
+        held_out=found.held_out,
+        parameters=_parameters(fit, found.coefficients.tolist()),
+        skipped=[f"{name}: {why}" for name, why in found.skipped.items()],
+    )
 
 
 def _check_rig(store: Store, experiment_id: int, facts: Facts) -> None:
@@ -77,17 +103,17 @@ def _pieces(store: Store, trial: Trial, cutoff_hz: float) -> Iterator[Recording]
         yield Recording(name, trial.kind, later, measured)
 
 
-def _parameters(fit: Fit, coefficients: list[float]) -> list[dict[str, Any]]:
+def _parameters(fit: Fit, coefficients: list[float]) -> list[RefittedParameter]:
     """Every linear parameter, on the study's trials and on all."""
     unit, facts = fit.dataset.effort_definition.unit, fit.dataset.facts
     named = [(term.effect, parameter) for term in fit.terms for parameter in term.effect.parameters]
     return [
-        {
-            "effect": effect.name,
-            "name": parameter.name,
-            "unit": parameter.unit_in(unit, facts.position_unit),
-            "study": before,
-            "all": after,
-        }
+        RefittedParameter(
+            effect=effect.name,
+            name=parameter.name,
+            unit=parameter.unit_in(unit, facts.position_unit),
+            study=before,
+            all=after,
+        )
         for (effect, parameter), before, after in zip(named, fit.coefficients.tolist(), coefficients, strict=True)
     ]

@@ -1,16 +1,15 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
-from typing import Any
-
 from bench.store import Store
 from bench.study.errors import lab_errors
+from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
-from bench.study.models import result_of
+from bench.study.models.change import Searched, SearchStep
 from compensator.lab.diagnosis.search import MOST_EFFECTS, Step
 from compensator.lab.diagnosis.search import search as search_from
 
 
-def search(store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS) -> dict[str, Any]:
+def search(store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS) -> Searched:
     """Add effects one after the other as long as a diagnosis names one; judge the earlier ones anew each time.
 
     Args:
@@ -26,23 +25,31 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
     first = model_of(store, study_id, model_id)
     with lab_errors():
         found = search_from(material.fit_of(first), most)
-    parent, before = first.id, first.result["held_out"]
-    steps: list[dict[str, Any]] = []
+    parent, before = first.id, kept_of(first).held_out
+    steps: list[SearchStep] = []
     for step in found.steps:
         result = result_of(step.fit, step.held_out)
-        child = store.add_model(study_id, parent, list(step.fit.names), result)
-        told = {"change": step.change, "effect": step.effect, "instead_of": step.instead_of}
-        errors = {"before": before, "after": step.held_out.relative, "sentence": _sentence(step, before)}
-        steps.append({"model_id": child, **told, **errors})
+        child = store.add_model(study_id, parent, list(step.fit.names), stored(result))
+        steps.append(
+            SearchStep(
+                model_id=child,
+                change=step.change,
+                effect=step.effect,
+                instead_of=step.instead_of,
+                before=before,
+                after=step.held_out.relative,
+                sentence=_sentence(step, before),
+            )
+        )
         parent, before = child, step.held_out.relative
-    return {
-        "study_id": study_id,
-        "model_id": parent,
-        "added": list(found.added),
-        "steps": steps,
-        "verdict": found.last.verdict,
-        "sentence": found.last.sentence,
-    }
+    return Searched(
+        study_id=study_id,
+        model_id=parent,
+        added=list(found.added),
+        steps=steps,
+        verdict=found.last.verdict,
+        sentence=found.last.sentence,
+    )
 
 
 _DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}

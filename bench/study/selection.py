@@ -7,6 +7,8 @@ from bench.store.records import Trial
 from bench.study.errors import StudyError
 from compensator.lab.recordings.recording import Condition
 
+MOST_SHOWN = 12
+
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
@@ -57,14 +59,23 @@ def split(trials: Sequence[Trial], hold_out: Sequence[str]) -> list[bool]:
     criteria = [Criterion.parse(text) for text in hold_out]
     for criterion, text in zip(criteria, hold_out, strict=True):
         if not any(criterion.matches(trial) for trial in trials):
-            keys = sorted({"trial", "kind", "trial_id"}.union(*(trial.conditions for trial in trials)))
-            raise StudyError(f"no trial has {text}; the keys of these trials are: {', '.join(keys)}")
+            raise StudyError(f"no trial has {text}; {_known(trials, criterion.key)}")
     held = [any(criterion.matches(trial) for criterion in criteria) for trial in trials]
     if all(held):
         raise StudyError(
             f"hold-out {', '.join(hold_out)} takes all {len(trials)} trials; leave some to fit the model to"
         )
     return held
+
+
+def _known(trials: Sequence[Trial], key: str) -> str:
+    """What could have been asked for: the values of a key that the trials have, else their keys."""
+    values = sorted({f"{one.conditions[key]}" for one in trials if key in one.conditions})
+    if values:
+        shown = ", ".join(values[:MOST_SHOWN]) + (" ..." if len(values) > MOST_SHOWN else "")
+        return f"these trials have {key} = {shown}"
+    keys = sorted({"trial", "kind", "trial_id"}.union(*(trial.conditions for trial in trials)))
+    return f"the keys of these trials are: {', '.join(keys)}"
 
 
 def keep(trials: Sequence[Trial], where: Sequence[str]) -> list[Trial]:

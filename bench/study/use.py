@@ -1,6 +1,6 @@
 """A study's model handed to the online compensator: kept as a calibration that the bench can choose."""
 
-from typing import Any
+from pydantic import Field
 
 from bench import calibration
 from bench.calibration.selection import in_use
@@ -11,11 +11,23 @@ from bench.provenance import software
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import Material, facts_of, load_model
+from bench.study.models.base import StudyModel
 from compensator.lab.model.fitted import Fit
 from compensator.lab.online import left_out, works_online
 
 
-def use(store: Store, study_id: int, configuration: BenchConfiguration, model_id: int | None = None) -> dict[str, Any]:
+class Used(StudyModel):
+    """The calibration that a model was kept as."""
+
+    calibration_id: int
+    study_id: int
+    model_id: int
+    effects: list[str] = Field(description="of the model, those at work")
+    left_out: list[str] = Field(description="effects that need more than the motion of the moment")
+    sentence: str
+
+
+def use(store: Store, study_id: int, configuration: BenchConfiguration, model_id: int | None = None) -> Used:
     """Keep a model as a calibration, and choose it: from now on the load in motion is estimated with it.
 
     At rest, and to select what hangs on the arm, the calibration in use so far stays: a study of motion tells neither.
@@ -44,14 +56,14 @@ def use(store: Store, study_id: int, configuration: BenchConfiguration, model_id
     )  # fmt: skip
     calibration.use(store, configuration, kept)
     left = f" Left out, as they need more than the motion of the moment: {', '.join(names)}." if names else ""
-    return {
-        "calibration_id": kept,
-        "study_id": study_id,
-        "model_id": studied.model_id,
-        "effects": [one.effect for one in studied.effects],
-        "left_out": names,
-        "sentence": f"Calibration {kept} is in use: {note}.{left}",
-    }
+    return Used(
+        calibration_id=kept,
+        study_id=study_id,
+        model_id=studied.model_id,
+        effects=[one.effect for one in studied.effects],
+        left_out=names,
+        sentence=f"Calibration {kept} is in use: {note}.{left}",
+    )
 
 
 def studied_model(

@@ -1,9 +1,11 @@
 """The General Kinetic Friction model (paper, section 2.2), expressed as motor current.
 
-F = F(v)          v != 0
-    Fe            v = 0 and |Fe| < Fs        (1)
-    Fs sgn(Fe)    otherwise
-F(v) = sgn(v) (Fc + (Fs - Fc) exp(-|v/vs|^ds) + b |v|)   (2), with a viscous term
+    F = F(v)          v != 0
+        Fe            v = 0 and |Fe| < Fs        (1)
+        Fs sgn(Fe)    otherwise
+    F(v) = sgn(v) (Fc + (Fs - Fc) exp(-|v/vs|^ds) + b |v|)   (2)
+
+The viscous term b |v| stands beside the terms of eq. (2).
 """
 
 from dataclasses import dataclass, fields

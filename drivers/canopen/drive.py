@@ -16,10 +16,9 @@ from drivers.canopen.description import describe
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
-from drivers.demand import check_mode
 from drivers.errors import DriveError, DriveFault
 from drivers.joint import JointScale
-from drivers.refusal import not_enabled, not_open, switched_itself_off
+from drivers.refusal import check_mode, not_enabled, not_open, switched_itself_off
 
 
 class CanopenDrive:

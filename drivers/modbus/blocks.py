@@ -1,7 +1,8 @@
 """Registers that are read or written in one request."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from struct import Struct
 
 from drivers.modbus.register import Register, Space, as_bytes
 
@@ -24,10 +25,20 @@ class Block:
     address: int
     words: int
     registers: tuple[Register, ...]
+    _layout: Struct | None = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_layout", _layout(self) if all(one.is_plain for one in self.registers) else None)
 
     def decode(self, words: Sequence[int]) -> dict[str, float]:
         """Scaled values by name."""
-        data, start = as_bytes(words), self.address
+        data, start, layout = as_bytes(words), self.address, self._layout
+        if layout is not None:
+            found = layout.unpack(data)
+            return {
+                register.name: number * register.scale + register.offset
+                for register, number in zip(self.registers, found, strict=True)
+            }
         return {
             register.name: register.decode_bytes(data, 2 * (register.address - start)) for register in self.registers
         }
@@ -62,6 +73,15 @@ def blocks(registers: Iterable[Register], longest_gap: int = 0, longest: int = L
             group = []
         group.append(register)
     return [*found, _block(group)] if group else found
+
+
+def _layout(block: Block) -> Struct:
+    """All of its registers at once, where each has the standard's order of bytes."""
+    formats, end = [], block.address
+    for register in block.registers:
+        formats.append(f"{2 * (register.address - end)}x{register.number.value.removeprefix('>')}")
+        end = register.end
+    return Struct(f">{''.join(formats)}{2 * (block.address + block.words - end)}x")
 
 
 def _fits(group: list[Register], register: Register, longest_gap: int, longest: int) -> bool:

@@ -1,22 +1,25 @@
-"""Every call of pymodbus: requests in bounded time. pymodbus renames its calls now and then; they are all here."""
+"""Requests in bounded time. pymodbus renames its calls now and then: they are all here and in `client`."""
 
 import logging
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 
-from pymodbus import FramerType
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 from pymodbus.exceptions import ModbusException
 from pymodbus.pdu import ModbusPDU
 
 from drivers.errors import DriveConnectionError, DriveStateError
+from drivers.host_time import host_was_away
 from drivers.modbus.blocks import Block, blocks
+from drivers.modbus.client import QuickSerialClient
 from drivers.modbus.register import Register, Space, Text
+from drivers.modbus.register_map import WRITE_ONE, WRITE_SEVERAL
 from drivers.modbus.settings import ModbusSettings
 
 ATTEMPTS = 2
-RESYNC_S = 0.005  # more than 3.5 characters of silence at 9600 baud and above: whoever listens starts anew
+RESYNC_S = 0.005  # at least; more than 3.5 characters of silence: whoever listens starts anew
 _REFUSALS = {
     1: "the drive does not know this function",
     2: "the drive has no such register, or not for this access",
@@ -28,43 +31,27 @@ _REFUSALS = {
 }
 
 
-class QuickSerialClient(ModbusSerialClient):
-    """pymodbus' own client looks for bytes once a millisecond, twice for each answer; this one waits for the first."""
-
-    def recv(self, size: int | None) -> bytes:
-        """The bytes that have come; b"" after the time limit."""
-        if size is not None or self.socket is None:
-            return super().recv(size)
-        try:
-            first: bytes = self.socket.read(1)
-            return first + self.socket.read(self.socket.in_waiting) if first else first
-        except OSError:
-            self.close()  # type: ignore[no-untyped-call]
-            raise ModbusException("the port is gone") from None
-
-
 class Link:
     """A connection to one drive.
 
     Args:
         settings: where it is, and the time limit.
+        write_function: as the register map has it; see `RegisterMap`.
 
     Raises:
         DriveConnectionError: the port is not there or in use, or nobody listens.
     """
 
-    def __init__(self, settings: ModbusSettings) -> None:
+    def __init__(self, settings: ModbusSettings, write_function: int | None = None) -> None:
         logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)  # what it logs is raised here
         self._settings, self._device = settings, settings.device
-        self._unit = settings.unit
-        self._deadline_s = 0.0
+        self._unit, self._write_function = settings.unit, write_function
+        self._resync_s = max(RESYNC_S, settings.line_silence_s)
+        self._limit_s, self._deadline_s = ATTEMPTS * _longest_attempt_s(settings), 0.0
         self._client: ModbusSerialClient | ModbusTcpClient
         timeout_s = settings.answer_timeout_s
         if settings.transport == "rtu":
-            self._client = QuickSerialClient(
-                settings.port, framer=FramerType.RTU, baudrate=settings.baud_rate, parity=settings.parity,
-                stopbits=settings.stop_bits, timeout=timeout_s, retries=0,
-            )  # fmt: skip
+            self._client = QuickSerialClient(settings)
         else:
             self._client = ModbusTcpClient(settings.host, port=int(settings.port), timeout=timeout_s, retries=0)
         if not self._client.connect():
@@ -76,11 +63,11 @@ class Link:
     def longest_call_s(settings: ModbusSettings) -> float:
         """By then whoever has called `begin` has his answers, or an error [s]."""
         # an answer in pieces may take the limit twice
-        return (ATTEMPTS + 1) * (2.0 * settings.answer_timeout_s + RESYNC_S)
+        return (ATTEMPTS + 1) * _longest_attempt_s(settings)
 
     def begin(self) -> None:
         """A call of the contract begins: from now on its requests share one time limit."""
-        self._deadline_s = time.perf_counter() + ATTEMPTS * (2.0 * self._settings.answer_timeout_s + RESYNC_S)
+        self._deadline_s = time.perf_counter() + self._limit_s
 
     def close(self) -> None:
         """Give the port back. Safe to call twice."""
@@ -93,19 +80,33 @@ class Link:
             DriveConnectionError: no valid answer in time.
             DriveStateError: the drive refuses.
         """
+        if block.space.is_bits:
+            return self._read_bits(block)
         call = self._client.read_input_registers if block.space is Space.INPUT else self._client.read_holding_registers
         return self._words(block, lambda: call(block.address, count=block.words, device_id=self._unit))
 
     def write(self, block: Block, words: Sequence[int]) -> None:
-        """Write the words of a block.
+        """Write the words of a block, by the function that the map names.
 
         Raises:
             DriveConnectionError, DriveStateError: as `read`.
         """
-        if len(words) == 1:
-            self._ask(block, lambda: self._client.write_register(block.address, words[0], device_id=self._unit))
+        client, unit, several = self._client, self._unit, len(words) > 1
+        if several and self._write_function == WRITE_ONE:
+            for place, word in enumerate(words):
+                self.write(replace(block, address=block.address + place, words=1, registers=()), [word])
+            return
+        several = several or self._write_function == WRITE_SEVERAL
+        if block.space.is_bits:
+            bits = [bool(word) for word in words]
+            if several:
+                self._ask(block, lambda: client.write_coils(block.address, bits, device_id=unit))
+            else:
+                self._ask(block, lambda: client.write_coil(block.address, bits[0], device_id=unit))
+        elif several:
+            self._ask(block, lambda: client.write_registers(block.address, list(words), device_id=unit))
         else:
-            self._ask(block, lambda: self._client.write_registers(block.address, list(words), device_id=self._unit))
+            self._ask(block, lambda: client.write_register(block.address, words[0], device_id=unit))
 
     def write_then_read(self, written: Block, words: Sequence[int], block: Block) -> list[int]:
         """Write one block and read another, in one request (function 23).
@@ -138,6 +139,11 @@ class Link:
         """
         return text.decode(self.read(Block(text.space, text.address, text.words, ())))
 
+    def _read_bits(self, block: Block) -> list[int]:
+        call = self._client.read_coils if block.space is Space.COIL else self._client.read_discrete_inputs
+        answer = self._ask(block, lambda: call(block.address, count=block.words, device_id=self._unit))
+        return [int(bit) for bit in answer.bits[: block.words]]
+
     def _words(self, block: Block, call: Callable[[], ModbusPDU]) -> list[int]:
         return list(self._ask(block, call, block.words).registers)
 
@@ -146,7 +152,7 @@ class Link:
 
         RTU does not number its requests: an answer of another length is one that came late, to a request before.
         """
-        found = "nothing"
+        began_s, found = time.perf_counter(), "nothing"
         for _ in range(ATTEMPTS):
             try:
                 answer = call()
@@ -162,14 +168,14 @@ class Link:
             found = f"{len(answer.registers)} of {words} words"
             if not self._recover():
                 break
-        raise self._no_answer(found, block)
+        raise self._no_answer(found, block, began_s)
 
     def _recover(self) -> bool:
         """Leave half an answer behind; False where the time is up."""
         if self._settings.transport == "tcp":
             self.close()  # the next request connects anew: an answer that comes late has nowhere to go
         with suppress(OSError):
-            time.sleep(RESYNC_S)
+            time.sleep(self._resync_s)
         return time.perf_counter() < self._deadline_s
 
     def _refused(self, answer: ModbusPDU, block: Block) -> DriveStateError:
@@ -180,17 +186,25 @@ class Link:
             f"{_place(block)}: refused with exception {code}, {why}; compare the register map with its manual",
         )
 
-    def _no_answer(self, found: str, block: Block) -> DriveConnectionError:
+    def _no_answer(self, found: str, block: Block, began_s: float) -> DriveConnectionError:
+        away = host_was_away(time.perf_counter() - began_s, self._limit_s, self._settings.answer_timeout_s)
         return DriveConnectionError(
             self._device,
             f"{_place(block)}: found {found} within {self._settings.answer_timeout_s:g} s, asked {ATTEMPTS} times at "
-            f"most; check the cable, the power, the unit ({self._unit}) and the line's settings",
+            f"most; check the cable, the power, the unit ({self._unit}) and the line's settings{away}",
         )
+
+
+def _longest_attempt_s(settings: ModbusSettings) -> float:
+    """Echo and answer, each of which may come in pieces, and the silence after half an answer [s]."""
+    parts = 3.0 if settings.echo else 2.0
+    return parts * settings.answer_timeout_s + max(RESYNC_S, settings.line_silence_s)
 
 
 def _place(block: Block) -> str:
     names = ", ".join(register.name for register in block.registers)
-    return f"{names} ({block.space.value} registers {block.address} .. {block.address + block.words - 1})"
+    what = "bits" if block.space.is_bits else "registers"
+    return f"{names} ({block.space.value} {what} {block.address} .. {block.address + block.words - 1})"
 
 
 def _short(error: Exception) -> str:

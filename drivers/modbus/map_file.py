@@ -8,13 +8,24 @@ from typing import Any
 
 from drivers.contract import Mode
 from drivers.modbus.register import Number, Register, Space, Text
-from drivers.modbus.register_map import DEMANDS, MEASURED, Identity, RegisterMap, Watchdog, Words
+from drivers.modbus.register_map import (
+    DEMANDS,
+    MEASURED,
+    WRITE_ONE,
+    WRITE_SEVERAL,
+    Identity,
+    RegisterMap,
+    Watchdog,
+    Words,
+)
 
 MAPS = resources.files("drivers.modbus") / "maps"
 _MODE_WORDS = tuple(mode.value for mode in DEMANDS)
+Table = dict[str, Any]
+"""A table of TOML."""
 _SECTIONS = {
     "identity", "control", "mode", "status", "fault", "demand", "measured", "watchdog", "register", "text", "name",
-    "source", "low_word_first", "read_write", "longest_gap",
+    "source", "low_word_first", "low_byte_first", "read_write", "longest_gap", "limits", "write_function",
 }  # fmt: skip
 
 
@@ -65,7 +76,7 @@ def parse_map(text: str, source: str) -> RegisterMap:
 class _Reader:
     """One file; its errors name the section, the file is named outside."""
 
-    def __init__(self, values: dict[str, Any]) -> None:
+    def __init__(self, values: Table) -> None:
         unknown = values.keys() - _SECTIONS
         if unknown:
             raise ValueError(f"{', '.join(sorted(unknown))}: unknown; known are {', '.join(sorted(_SECTIONS))}")
@@ -90,10 +101,12 @@ class _Reader:
             fault_is_bits=bool(fault.get("bits", False)),
             read_write=bool(values.get("read_write", False)),
             longest_gap=int(values.get("longest_gap", 0)),
+            current_limit=self._current_limit(),
+            write_function=self._write_function(),
         )
 
-    def _section(self, name: str) -> dict[str, Any]:
-        found: dict[str, Any] = self._values.get(name, {})
+    def _section(self, name: str) -> Table:
+        found: Table = self._values.get(name, {})
         return found
 
     def _read_registers(self) -> dict[str, Register]:
@@ -105,7 +118,7 @@ class _Reader:
             found[register.name] = register
         return found
 
-    def _one_register(self, row: dict[str, Any]) -> Register:
+    def _one_register(self, row: Table) -> Register:
         name = row.pop("name", "")
         place = f"register '{name}'"
         if not name:
@@ -119,7 +132,8 @@ class _Reader:
                 unit=row.pop("unit", ""),
                 scale=float(row.pop("scale", 1.0)),
                 offset=float(row.pop("offset", 0.0)),
-                low_word_first=bool(row.pop("low_word_first", self._values.get("low_word_first", False))),
+                low_word_first=self._flag(row, "low_word_first"),
+                low_byte_first=self._flag(row, "low_byte_first"),
             )
         except KeyError as error:
             raise ValueError(f"{place}: {error.args[0]} is missing or not known") from error
@@ -128,12 +142,24 @@ class _Reader:
             raise ValueError(f"{place}: {', '.join(row)}: unknown key")
         if made.scale == 0.0 or not 0 <= made.address <= made.end - 1 <= 0xFFFF:
             raise ValueError(f"{place}: scale {made.scale:g}, address {made.address}; not 0, and 0 .. 65535 are wanted")
+        if made.space.is_bits is not (made.number is Number.BIT):
+            raise ValueError(f"{place}: a coil or discrete input has type bit, and nothing else has")
         return made
+
+    def _flag(self, row: dict[str, Any], name: str) -> bool:
+        """Of the register, or else of the whole map."""
+        return bool(row.pop(name, self._values.get(name, False)))
 
     def _register(self, name: str, place: str) -> Register:
         if name not in self._registers:
             raise ValueError(f"{place} names register '{name}', which is not in the map")
         return self._registers[name]
+
+    def _writable(self, name: str, place: str) -> Register:
+        register = self._register(name, place)
+        if not register.space.is_writable:
+            raise ValueError(f"{place} names register '{name}', which can only be read")
+        return register
 
     def _words(self, section: str, known: tuple[str, ...]) -> Words | None:
         values = dict(self._section(section))
@@ -147,7 +173,8 @@ class _Reader:
         return Words(register, {name: int(word) for name, word in values.items()}, mask, bits)
 
     def _demand(self) -> dict[Mode, Register]:
-        return {DEMANDS_BY_NAME[name]: register for name, register in self._parts("demand", DEMANDS_BY_NAME).items()}
+        found = self._parts("demand", DEMANDS_BY_NAME)
+        return {DEMANDS_BY_NAME[name]: self._writable(register.name, "demand") for name, register in found.items()}
 
     def _measured(self) -> dict[str, Register]:
         found = self._parts("measured", dict.fromkeys(MEASURED))
@@ -166,9 +193,24 @@ class _Reader:
     def _watchdog(self) -> Watchdog:
         values = self._values["watchdog"]
         fault = int(values["fault"]) if "fault" in values else None
+        needs = tuple(
+            (self._writable(name, "watchdog.needs"), float(value)) for name, value in values.get("needs", {}).items()
+        )
         if "register" in values:
-            return Watchdog(self._register(values["register"], "watchdog"), fault=fault)
-        return Watchdog(None, float(values["fixed_s"]), fault)
+            return Watchdog(self._writable(values["register"], "watchdog"), fault=fault, needs=needs)
+        return Watchdog(None, float(values["fixed_s"]), fault, needs)
+
+    def _current_limit(self) -> Register | None:
+        values = self._section("limits")
+        if unknown := values.keys() - {"current_a"}:
+            raise ValueError(f"limits: {', '.join(sorted(unknown))}: unknown; known is current_a")
+        return self._writable(values["current_a"], "limits.current_a") if values else None
+
+    def _write_function(self) -> int | None:
+        function = self._values.get("write_function")
+        if function not in (None, WRITE_ONE, WRITE_SEVERAL):
+            raise ValueError(f"write_function is {function}; {WRITE_ONE} or {WRITE_SEVERAL} is wanted, or none")
+        return function
 
     def _identity(self) -> Identity:
         values = self._values["identity"]

@@ -1,10 +1,11 @@
-"""What is settled with a drive before anything moves: who it is, and that it watches over its host."""
+"""What is settled with a drive before anything moves: who it is, its current limit, and that it minds its host."""
 
 from typing import NamedTuple
 
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from drivers.modbus.blocks import blocks
 from drivers.modbus.link import Link
+from drivers.modbus.register import Register
 from drivers.modbus.register_map import RegisterMap
 from drivers.modbus.settings import ModbusSettings
 
@@ -50,6 +51,12 @@ def set_watchdog(link: Link, register_map: RegisterMap, settings: ModbusSettings
         WatchdogError: it is not, or there is no register for it and nobody vouches for it.
     """
     register, wanted_s = register_map.watchdog.register, settings.watchdog_s
+    for other, value in register_map.watchdog.needs:
+        found = _set(link, other, value, settings, f"its watchdog needs {other.name} = {value:g}")
+        if not _is_set(other, value, found):
+            raise WatchdogError(
+                settings.device, f"its watchdog needs {other.name} = {value:g}; it reads back as {found:g}"
+            )
     if register is None:
         if not settings.watchdog_is_set_in_drive:
             raise WatchdogError(
@@ -59,14 +66,58 @@ def set_watchdog(link: Link, register_map: RegisterMap, settings: ModbusSettings
                 "drive.watchdog_is_set_in_drive = true",
             )
         return
-    [block] = blocks([register])
-    try:
-        link.write(block, register.encode(wanted_s))
-        found_s = link.read_one(register)
-    except (DriveConnectionError, DriveStateError, ValueError) as error:
-        raise WatchdogError(settings.device, f"its watchdog cannot be set to {wanted_s:g} s: {error}") from error
-    if abs(found_s - wanted_s) > 0.5 * register.scale + 1e-9:
+    found_s = _set(link, register, wanted_s, settings, f"its watchdog cannot be set to {wanted_s:g} s")
+    if not _is_set(register, wanted_s, found_s):
         raise WatchdogError(
             settings.device,
             f"its watchdog reads back as {found_s:g} s, set was {wanted_s:g} s; choose a time that it takes",
         )
+
+
+def set_current_limit(link: Link, register_map: RegisterMap, settings: ModbusSettings) -> None:
+    """Set the highest motor current where one is wanted, and see that it is set.
+
+    Raises:
+        DriveConfigurationError: the map has no register for it, or the drive does not take the value.
+    """
+    register, wanted_a = register_map.current_limit, settings.current_limit_a
+    if wanted_a is None:
+        return
+    if register is None:
+        raise DriveConfigurationError(
+            settings.device,
+            f"the map of {register_map.name} has no register for a current limit ([limits] current_a). Set it with the "
+            "drive's own tools, and leave drive.current_limit_a out",
+        )
+    [block] = blocks([register])
+    try:
+        link.write(block, register.encode(wanted_a))
+        found_a = link.read_one(register)
+    except (DriveStateError, ValueError) as error:
+        raise DriveConfigurationError(
+            settings.device, f"its current limit cannot be set to {wanted_a:g} A: {error}"
+        ) from error
+    if not _is_set(register, wanted_a, found_a):
+        raise DriveConfigurationError(
+            settings.device,
+            f"its current limit reads back as {found_a:g} A, set was {wanted_a:g} A; choose one that it takes",
+        )
+
+
+def _set(link: Link, register: Register, value: float, settings: ModbusSettings, what: str) -> float:
+    """Write a register of the watchdog, and read it back.
+
+    Raises:
+        WatchdogError: the drive does not take it.
+    """
+    [block] = blocks([register])
+    try:
+        link.write(block, register.encode(value))
+        return link.read_one(register)
+    except (DriveConnectionError, DriveStateError, ValueError) as error:
+        raise WatchdogError(settings.device, f"{what}: {error}") from error
+
+
+def _is_set(register: Register, wanted: float, found: float) -> bool:
+    """Whether a value reads back as written, to half a step."""
+    return abs(found - wanted) <= 0.5 * abs(register.scale) + 1e-9

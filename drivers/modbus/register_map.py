@@ -9,7 +9,9 @@ A map names its registers freely, and then says which of them plays which part:
                  zero is all that switches the motor off
     [status]     register, and the words that mean enabled, quick_stop and fault: after `mask`, or bit by bit (`bits`)
     [fault]      register, and names of its numbers
-    [watchdog]   register (its unit is s), or `fixed_s` where it is set in the drive alone; the fault that it leaves
+    [watchdog]   register (its unit is s), or `fixed_s` where it is set in the drive alone; the fault that it leaves;
+                 `needs`: what other registers have to hold for it to act, by name, written and read back
+    [limits]     current_a: register of the highest motor current, for drive.current_limit_a
     [identity]   vendor, product; registers of firmware and serial; register and word that tell the family; a text that
                  tells the product, and "simulated" where no hardware is behind it
     [mode]       register and the words of the modes, where it is not part of the control word
@@ -20,6 +22,8 @@ from dataclasses import dataclass, field
 
 from drivers.contract import Mode
 from drivers.modbus.register import Register, Text
+
+WRITE_ONE, WRITE_SEVERAL = 6, 16  # functions
 
 DEMANDS = {Mode.DUTY: "duty", Mode.CURRENT: "current_a", Mode.POSITION: "position_counts"}
 MEASURED = ("time_s", "position_counts", "velocity_counts_s", "duty", "current_a", "supply_v", "temperature_c")
@@ -60,11 +64,13 @@ class Watchdog:
         fixed_s: that time [s].
         fault: what the fault register holds when the watchdog has stopped the motor, and nothing else is wrong; None
             where the drive does not tell.
+        needs: scaled values that other registers have to hold for it to act.
     """
 
     register: Register | None
     fixed_s: float = 0.0
     fault: int | None = None
+    needs: tuple[tuple[Register, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +104,9 @@ class RegisterMap:
         measured: registers by quantity.
         read_write: whether one request may write and read (function 23).
         longest_gap: words without a meaning that a read may span.
+        current_limit: register of the highest motor current [A]; None where the drive has none.
+        write_function: WRITE_SEVERAL where every write is function 16, WRITE_ONE where it is function 6, word by word;
+            None: 6 for a single word, 16 for several.
     """
 
     name: str
@@ -114,6 +123,8 @@ class RegisterMap:
     fault_is_bits: bool = False
     read_write: bool = False
     longest_gap: int = 0
+    current_limit: Register | None = None
+    write_function: int | None = None
 
     @property
     def modes(self) -> frozenset[Mode]:

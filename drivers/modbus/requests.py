@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 from drivers.modbus.blocks import LONGEST_WRITE, Block, blocks
 from drivers.modbus.link import Link
+from drivers.modbus.power_stage import Values
 from drivers.modbus.register import Space
 from drivers.modbus.register_map import SLOW, RegisterMap
-
-Values = dict[str, float]
 
 
 @dataclass(frozen=True, slots=True)

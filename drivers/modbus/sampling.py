@@ -5,8 +5,8 @@ from math import nan
 
 from drivers.contract import Ages, Sample, Status
 from drivers.joint import JointScale
+from drivers.modbus.power_stage import Values
 from drivers.modbus.register_map import RegisterMap
-from drivers.modbus.requests import Values
 
 _SAMPLE_NAMES = {
     "time_s": "time_s",

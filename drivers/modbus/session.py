@@ -1,19 +1,23 @@
 """A connected drive: from the open line, through identity and watchdog, to its requests and the state that it tells."""
 
+from collections.abc import Mapping
 from math import nan
+from time import perf_counter
 
 from drivers.contract import Inspection, Mode, Sample, Status
 from drivers.errors import DriveConfigurationError, DriveError
-from drivers.joint import JointScale
-from drivers.modbus.demand import Demand
+from drivers.joint import JointScale, Standstill
 from drivers.modbus.link import Link
-from drivers.modbus.opening import identify, set_watchdog
-from drivers.modbus.power_stage import state_of
+from drivers.modbus.opening import identify, set_current_limit, set_watchdog
+from drivers.modbus.power_stage import Demand, Values, state_of
 from drivers.modbus.register_map import RegisterMap
-from drivers.modbus.requests import Values, plan
+from drivers.modbus.requests import plan
 from drivers.modbus.sampling import Sampling
 from drivers.modbus.settings import ModbusSettings
-from drivers.standstill import Standstill
+from drivers.refusal import not_to_be_enabled
+from drivers.serial_latency import latency_note
+
+ENABLING_S = 0.5  # longest wait for the drive to say that it is on
 
 
 class Session:
@@ -40,7 +44,7 @@ class Session:
         self._braking = Standstill()
         self._fault = self._cycle = 0
         self.told = self.state = Status.DISABLED
-        self.link = Link(settings)
+        self.link = Link(settings, register_map.write_function)
         try:
             self.link.begin()
             self.identity = identify(self.link, register_map, settings.device)
@@ -48,44 +52,62 @@ class Session:
             self._forgive_lost_host()
             self.link.begin()
             set_watchdog(self.link, register_map, settings)
+            set_current_limit(self.link, register_map, settings)
             self._read_slow()
+            self.notes = self._latency_note() if settings.transport == "rtu" else ()
         except BaseException:
             self.leave()
             raise
 
-    def move(self, mode: Mode, value: float) -> Values:
-        """Write a demand [duty, A or rad of the joint]. Returns what was read.
+    def begin(self) -> None:
+        """A call of the contract begins."""
+        self.link.begin()
+
+    def switch_on(self, mode: Mode) -> None:
+        """Power the stage, with a demand that moves nothing.
+
+        Raises:
+            DriveStateError: it has a fault, or does not switch on in time.
+        """
+        self.told = Status.ENABLED
+        deadline_s = perf_counter() + ENABLING_S
+        self._stay(mode)
+        while self.state is not Status.ENABLED:
+            if self.state is Status.FAULT:
+                raise not_to_be_enabled(self._settings.device, self.fault_text())
+            if perf_counter() > deadline_s:
+                raise not_to_be_enabled(self._settings.device, self.state.name.lower())
+            self._stay(mode)
+
+    def move(self, mode: Mode, value: float) -> Sample:
+        """One cycle with a demand [duty, A or rad of the joint].
 
         Raises:
             DriveConnectionError: no valid answer within the time limit.
             DriveConfigurationError: its register does not hold the value; nothing was sent.
         """
-        found = self._transact(self._demand.motion(mode, value))
-        self._demand.keep(mode)
-        return found
+        asked_s = perf_counter()
+        return self._sample(self._move(mode, value), asked_s)
 
-    def stay(self, mode: Mode) -> Values:
-        """Write the demand of a mode that moves nothing: in POSITION the present one; as `move`."""
-        here_rad = 0.0
-        if mode is Mode.POSITION:
-            here_rad = self._joint.position_rad(self.link.read_one(self._map.measured["position_counts"]))
-        return self.move(mode, here_rad)
-
-    def rest(self) -> Values:
-        """Write that nothing is demanded; as `move`."""
-        return self._transact(self._demand.rest(self.told is Status.QUICK_STOP))
+    def rest(self) -> Sample:
+        """One cycle without a demand."""
+        if self.told is Status.ENABLED:
+            self.told = Status.DISABLED
+        asked_s = perf_counter()
+        return self._sample(self._rest(), asked_s)
 
     def switch_off(self) -> None:
         """Power off, within a time limit of its own."""
         self.link.begin()
         self.told = Status.DISABLED
-        self.rest()
+        self._rest()
 
     def begin_quick_stop(self) -> None:
-        """Brake, in the drive's own way; `told` is DISABLED again once that is over."""
-        self.told = Status.QUICK_STOP
-        self._braking.restart()
-        self.rest()
+        """Brake where it is enabled, in the drive's own way; `told` is DISABLED again once that is over."""
+        if self.told is Status.ENABLED:
+            self.told = Status.QUICK_STOP
+            self._braking.restart()
+            self._rest()
 
     def clear_fault(self) -> None:
         """Acknowledge a fault, and switch off."""
@@ -93,19 +115,6 @@ class Session:
         if clearing is not None:
             self._transact(clearing)
         self.switch_off()
-
-    def sample(self, values: Values, at_s: float) -> Sample:
-        """The sample of a cycle whose values were asked for at a time [s]; asks for what is slow where it is its turn.
-
-        They were measured then or a little later: ages that come of it are not too small, however slow the line is.
-
-        Raises:
-            DriveConnectionError: no valid answer within the time limit.
-        """
-        self._cycle += 1
-        if self._plan.slow and self._cycle % self._settings.slow_every == 0:
-            self._read_slow()
-        return self._sampling.sample(values, self.state, at_s)
 
     def inspect(self) -> Inspection:
         """State, fault and applied output, by reading alone.
@@ -133,7 +142,33 @@ class Session:
         finally:
             self.link.close()
 
-    def _transact(self, values: Values) -> Values:
+    def _move(self, mode: Mode, value: float) -> Values:
+        found = self._transact(self._demand.motion(mode, value))
+        self._demand.keep(mode)
+        return found
+
+    def _stay(self, mode: Mode) -> Values:
+        """Write the demand of a mode that moves nothing: in POSITION the present one."""
+        here_rad = 0.0
+        if mode is Mode.POSITION:
+            here_rad = self._joint.position_rad(self.link.read_one(self._map.measured["position_counts"]))
+        return self._move(mode, here_rad)
+
+    def _rest(self) -> Values:
+        """Write that nothing is demanded."""
+        return self._transact(self._demand.rest(self.told is Status.QUICK_STOP))
+
+    def _sample(self, values: Values, asked_s: float) -> Sample:
+        """The sample of a cycle whose values were asked for at a time [s]; asks for what is slow where it is its turn.
+
+        They were measured then or a little later: ages that come of it are not too small, however slow the line is.
+        """
+        self._cycle += 1
+        if self._plan.slow and self._cycle % self._settings.slow_every == 0:
+            self._read_slow()
+        return self._sampling.sample(values, self.state, asked_s)
+
+    def _transact(self, values: Mapping[str, float]) -> Values:
         try:
             found = self._plan.cycle(self.link, values)
         except ValueError as error:
@@ -158,6 +193,11 @@ class Session:
         """Clear the fault that says only that the last host went away: this one is here, and the power is off."""
         if self.state is Status.FAULT and self._fault == self._map.watchdog.fault:
             self.clear_fault()
+
+    def _latency_note(self) -> tuple[str, ...]:
+        register = self._map.measured["position_counts"]
+        self.link.begin()
+        return latency_note(self._settings.port, lambda: self.link.read_one(register))
 
     def _read_slow(self) -> None:
         for block in self._plan.slow:

@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal
 
+_SILENT_CHARACTERS = 3.5  # MODBUS over serial line V1.02, 2.5.1.1
+_DATA_BITS = 8
+
 
 @dataclass(frozen=True, slots=True)
 class ModbusSettings:
@@ -20,6 +23,9 @@ class ModbusSettings:
             own tools; it cannot be verified then.
         answer_timeout_s: longest wait for one answer [s].
         slow_every: cycles between two requests for what changes slowly, where it takes requests of its own.
+        silence_s: rest of the line between an answer and the next request [s]; None: 3.5 characters ("rtu" only).
+        echo: True where the serial adapter hears what it sends.
+        current_limit_a: highest motor current [A], set in the drive; None: the drive's own.
     """
 
     map: str
@@ -34,9 +40,22 @@ class ModbusSettings:
     watchdog_is_set_in_drive: bool = False
     answer_timeout_s: float = 0.05
     slow_every: int = 10
+    silence_s: float | None = None
+    echo: bool = False
+    current_limit_a: float | None = None
 
     @property
     def device(self) -> str:
         """The name used in messages."""
         place = self.port if self.transport == "rtu" else f"{self.host}:{self.port}"
         return f"{place} unit {self.unit}"
+
+    @property
+    def line_silence_s(self) -> float:
+        """Rest of the line between an answer and the next request [s]."""
+        if self.transport == "tcp":
+            return 0.0
+        if self.silence_s is not None:
+            return self.silence_s
+        bits = 1 + _DATA_BITS + (self.parity != "N") + self.stop_bits
+        return _SILENT_CHARACTERS * bits / self.baud_rate

@@ -8,6 +8,8 @@ from struct import Struct
 
 ACKNOWLEDGED = b"\xff"
 DUTY_FULL = 32767  # of commands 32, 33 and 48: +-100 %
+CURRENT_A = 0.01  # one step of commands 49 and 133 .. 136
+BACKWARD = 1  # in the direction byte of commands 18 and 19
 CRC_BYTES = 2
 
 
@@ -60,13 +62,17 @@ class Channel:
         index: of its value where both motors are answered at once.
         set_duty: i16, +-32767.
         encoder: u32 count, u8 status (bit 0 underflow, bit 1 backward, bit 2 overflow).
-        speed: i32 counts/s over the last second's pulses, u8 direction.
+        speed: i32 counts/s over the last second's pulses, u8 direction: 0 forward, 1 backward.
+        set_current_limit: u32 highest [10 mA], u32 0.
+        current_limit: the same, read.
     """
 
     index: int
     set_duty: Write
     encoder: Read
     speed: Read
+    set_current_limit: Write
+    current_limit: Read
 
 
 CHANNELS = {
@@ -75,11 +81,15 @@ CHANNELS = {
         Write(32, Struct(">h"), "duty of M1"),
         Read(16, Struct(">IB"), "encoder of M1"),
         Read(18, Struct(">iB"), "speed of M1"),
+        Write(133, Struct(">II"), "current limit of M1"),
+        Read(135, Struct(">II"), "current limit of M1"),
     ),
     2: Channel(
         1,
         Write(33, Struct(">h"), "duty of M2"),
         Read(17, Struct(">IB"), "encoder of M2"),
         Read(19, Struct(">iB"), "speed of M2"),
+        Write(134, Struct(">II"), "current limit of M2"),
+        Read(136, Struct(">II"), "current limit of M2"),
     ),
 }

@@ -8,6 +8,7 @@ import serial
 from serial.tools import list_ports
 
 from drivers.errors import DriveConnectionError
+from drivers.host_time import host_was_away
 from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, Read, Write
 from drivers.roboclaw.frames import VERSION_END, crc16, is_intact, read_packet, version_packet, write_packet
 from drivers.roboclaw.settings import RoboclawSettings
@@ -66,7 +67,7 @@ class Link:
         """
         request, request_crc = self._request(command)
         size = command.reply_bytes
-        found = "nothing"
+        began_s, found = time.perf_counter(), "nothing"
         for _ in range(ATTEMPTS):
             reply = self._ask(request, size)
             if len(reply) == size and is_intact(request_crc, reply):
@@ -74,7 +75,7 @@ class Link:
             found = _seen(reply, size)
             if not self._resync():
                 break
-        raise self._no_answer(command.meaning, found)
+        raise self._no_answer(command.meaning, found, began_s)
 
     def write(self, command: Write, *values: int) -> None:
         """Tell, and wait for the acknowledgement. Told twice where the first was not acknowledged.
@@ -83,7 +84,7 @@ class Link:
             DriveConnectionError: not acknowledged in time, or the port is gone.
         """
         packet = write_packet(self._address, command, *values)
-        found = "nothing"
+        began_s, found = time.perf_counter(), "nothing"
         for _ in range(ATTEMPTS):
             reply = self._ask(packet, 1)
             if reply == ACKNOWLEDGED:
@@ -91,7 +92,7 @@ class Link:
             found = f"{reply.hex()} instead of ff" if reply else "nothing"
             if not self._resync():
                 break
-        raise self._no_answer(command.meaning, found)
+        raise self._no_answer(command.meaning, found, began_s)
 
     def together(self, command: Write, value: int, reads: tuple[Read, ...]) -> list[tuple[int, ...]] | None:
         """Tell and ask in one write. Returns the data of each answer; None where not every one was intact.
@@ -120,7 +121,7 @@ class Link:
             DriveConnectionError: no intact answer in time, or the port is gone.
         """
         request = version_packet(self._address)
-        found = "nothing"
+        began_s, found = time.perf_counter(), "nothing"
         for _ in range(ATTEMPTS):
             reply = self._ask_text(request)
             if is_intact(crc16(request), reply):
@@ -128,7 +129,7 @@ class Link:
             found = "nothing" if not reply else f"{len(reply)} bytes that are no answer of a RoboClaw"
             if not self._resync():
                 break
-        raise self._no_answer("firmware version", found)
+        raise self._no_answer("firmware version", found, began_s)
 
     def _request(self, command: Read) -> tuple[bytes, int]:
         """The packet of a question, and its CRC; made once."""
@@ -150,9 +151,12 @@ class Link:
         return found
 
     def _ask(self, packet: bytes, reply_bytes: int) -> bytes:
+        port = self._port
         try:
-            self._port.write(packet)
-            reply: bytes = self._port.read(reply_bytes)
+            port.write(packet)
+            reply: bytes = port.read(reply_bytes)
+            if len(reply) < reply_bytes:  # the host may have been away, and the rest be there by now
+                reply += port.read(min(port.in_waiting, reply_bytes - len(reply)))
         except (OSError, TypeError) as error:  # TypeError: pyserial, where the port was closed meanwhile
             raise self._gone(error) from error
         return reply
@@ -174,11 +178,13 @@ class Link:
             raise self._gone(error) from error
         return time.perf_counter() < self._deadline_s
 
-    def _no_answer(self, meaning: str, found: str) -> DriveConnectionError:
+    def _no_answer(self, meaning: str, found: str, began_s: float) -> DriveConnectionError:
+        longest_s = ATTEMPTS * (self._timeout_s + RESYNC_S)
+        away = host_was_away(time.perf_counter() - began_s, longest_s, self._timeout_s)
         return DriveConnectionError(
             self._device,
             f"{meaning}: found {found} within {self._timeout_s:g} s, asked {ATTEMPTS} times at most; check the cable, "
-            f"the power, the address ({self._address:#x}) and the baud rate",
+            f"the power, the address ({self._address:#x}) and the baud rate{away}",
         )
 
     def _gone(self, error: Exception) -> DriveConnectionError:

@@ -1,10 +1,33 @@
-"""What is settled with a controller before anything moves: who it is, and that it watches over its host."""
+"""What is settled with a controller before anything moves: who it is, its current limit, and that it minds its host."""
+
+import re
+from typing import NamedTuple
 
 from drivers.errors import DriveConfigurationError, DriveConnectionError, WatchdogError
 from drivers.roboclaw import commands
-from drivers.roboclaw.identity import Identity, parse_version
 from drivers.roboclaw.link import Link
-from drivers.roboclaw.settings import WATCHDOG_STEP_S
+from drivers.roboclaw.settings import WATCHDOG_STEP_S, RoboclawSettings
+
+_VERSION = re.compile(r"(?P<product>.*roboclaw.*?)\s+v(?P<firmware>\d[\w.]*)", re.IGNORECASE)
+
+
+class Identity(NamedTuple):
+    """Product and firmware of a controller."""
+
+    product: str
+    firmware: str
+    simulated: bool
+
+
+UNKNOWN = Identity("", "", simulated=False)
+
+
+def parse_version(text: str) -> Identity | None:
+    """Take "USB Roboclaw 2x15a v4.1.34" (command 21) apart; None where it is no RoboClaw."""
+    found = _VERSION.match(text.strip())
+    if found is None:
+        return None
+    return Identity(found["product"].strip(), found["firmware"], "simulated" in text.lower())
 
 
 def identify(link: Link, device: str) -> Identity:
@@ -24,21 +47,43 @@ def identify(link: Link, device: str) -> Identity:
     return identity
 
 
-def set_watchdog(link: Link, steps: int, device: str) -> None:
-    """Set the serial time-out [0.1 s], and see that it is set.
+def set_watchdog(link: Link, settings: RoboclawSettings) -> None:
+    """Set the serial time-out, and see that it is set.
 
     Raises:
         WatchdogError: it is not.
     """
     link.begin()
+    steps = settings.watchdog_steps
     try:
         link.write(commands.SET_TIMEOUT, steps)
         found = link.read(commands.READ_TIMEOUT)[0]
     except DriveConnectionError as error:
-        raise WatchdogError(device, f"its serial time-out cannot be set: {error}") from error
+        raise WatchdogError(settings.device, f"its serial time-out cannot be set: {error}") from error
     if found != steps:
         raise WatchdogError(
-            device,
+            settings.device,
             f"its serial time-out reads back as {found * WATCHDOG_STEP_S:g} s, set was {steps * WATCHDOG_STEP_S:g} s; "
             "power it off and on, and look at its firmware",
+        )
+
+
+def set_current_limit(link: Link, settings: RoboclawSettings) -> None:
+    """Set the highest motor current where one is wanted, and see that it is set; it is not kept beyond power-off.
+
+    Raises:
+        DriveConfigurationError: it is not.
+        DriveConnectionError: the controller does not answer; older firmware does not know the command.
+    """
+    if settings.current_limit_a is None:
+        return
+    link.begin()
+    channel, wanted = commands.CHANNELS[settings.motor], round(settings.current_limit_a / commands.CURRENT_A)
+    link.write(channel.set_current_limit, wanted, 0)
+    found = link.read(channel.current_limit)[0]
+    if found != wanted:
+        raise DriveConfigurationError(
+            settings.device,
+            f"its current limit reads back as {found * commands.CURRENT_A:g} A, set was {settings.current_limit_a:g} "
+            "A; choose one that the controller takes, or leave drive.current_limit_a out",
         )

@@ -1,15 +1,21 @@
-"""A connected controller: from the open port, through all that keeps it safe, to its cycles."""
+"""A connected controller: from the open port, through all that keeps it safe, to its cycles and the state it is in."""
 
 from time import perf_counter
 
-from drivers.contract import Inspection, Sample, Status
-from drivers.errors import DriveConfigurationError, DriveError
-from drivers.joint import JointScale
+from drivers.contract import Inspection, Mode, Sample, Status
+from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError
+from drivers.joint import JointScale, Standstill
+from drivers.refusal import not_to_be_enabled
+from drivers.roboclaw import commands
+from drivers.roboclaw.commands import DUTY_FULL
 from drivers.roboclaw.link import Link
 from drivers.roboclaw.motor import Motor
-from drivers.roboclaw.opening import identify, set_watchdog
+from drivers.roboclaw.opening import identify, set_current_limit, set_watchdog
 from drivers.roboclaw.settings import RoboclawSettings
 from drivers.roboclaw.telemetry import Telemetry
+from drivers.serial_latency import latency_note
+
+_TRIES_TOGETHER = 3
 
 
 class Session:
@@ -19,62 +25,99 @@ class Session:
         settings: how to reach it.
         joint: scales and signs.
 
+    Attributes:
+        told: the state that the motor was told last to be in; the controller itself knows of faults alone.
+        notes: what the user should know of the line.
+
     Raises:
         DriveError: at the first step that fails. The motor is stopped then where it can be told, and the port is free.
     """
 
     def __init__(self, settings: RoboclawSettings, joint: JointScale) -> None:
-        device = settings.device
-        self.link = Link(settings, device)
-        self.motor = Motor(self.link, settings, device)
-        self._asks_together = settings.questions == "together"
+        self._device, self._motor_sign = settings.device, joint.motor_sign
+        self.told = Status.DISABLED
+        self._has_failed = False
+        self._braking = Standstill()
+        self.link = Link(settings, settings.device)
+        self.motor = Motor(self.link, settings)
         try:
-            self.identity = identify(self.link, device)
+            self.identity = identify(self.link, settings.device)
             self.motor.tell(0)
-            set_watchdog(self.link, settings.watchdog_steps, device)
+            set_watchdog(self.link, settings)
+            set_current_limit(self.link, settings)
             self.telemetry = Telemetry(self.link, settings, joint)
-            if self._asks_together:
-                self._try_together(device)
+            self._asks_together = settings.questions != "in turn" and self._answers_together(settings)
+            self.notes = latency_note(settings.port, lambda: self.link.read(commands.APPLIED_DUTY))
         except BaseException:
             self.leave()
             raise
 
-    def cycle(self, status: Status, counts: int) -> Sample:
-        """Send a duty [1/32767], and ask for the sample.
+    @property
+    def state(self) -> Status:
+        """FAULT from the first report of one until it is cleared; else what was told last."""
+        return Status.FAULT if self._has_failed else self.told
 
-        Args:
-            status: of the power stage, for the sample.
-            counts: the duty.
-
-        Raises:
-            DriveConnectionError: no valid answer within the time limit.
-        """
-        motor, telemetry = self.motor, self.telemetry
-        before, sent_s = motor.counts, perf_counter()
-        found = motor.tell_and_ask(counts, telemetry.quick) if self._asks_together else None
-        if found is not None:
-            times_s = [sent_s] * len(found)
-        else:
-            motor.tell(counts)
-            found, times_s = telemetry.ask()
-        sample = telemetry.sample(status, found, times_s)
-        if before and not sample.duty:  # demanded and not applied: something has switched it off
-            telemetry.read_status()
-        return sample
-
-    def inspect(self, status: Status) -> Inspection:
-        """State, fault and applied output, by questions alone.
-
-        Args:
-            status: as it was told last; the controller tells of faults only.
+    def begin(self) -> None:
+        """A call of the contract begins.
 
         Raises:
-            DriveConnectionError: no valid answer within the time limit.
+            DriveConnectionError: it did not answer, and its serial time-out is waited for in silence.
         """
-        telemetry = self.telemetry
-        faults = telemetry.read_status()
-        duty, current_a = telemetry.read_output()
-        return Inspection(Status.FAULT if faults else status, ", ".join(faults), duty, current_a)
+        self.motor.check_silence()
+        self.link.begin()
+
+    def switch_on(self, _mode: Mode) -> None:
+        """Let demands through, from a duty of 0 on; there is one mode.
+
+        Raises:
+            DriveStateError: it has a fault.
+        """
+        if self.telemetry.read_status():
+            self._has_failed = True
+            raise not_to_be_enabled(self._device, self.fault_text())
+        self.motor.tell(0)
+        self.told = Status.ENABLED
+
+    def switch_off(self) -> None:
+        """Set the duty to 0."""
+        self.told = Status.DISABLED
+        self.motor.tell(0)
+
+    def begin_quick_stop(self) -> None:
+        """Brake with a duty of 0, until the count stands still."""
+        if self.state is Status.ENABLED:
+            self.told = Status.QUICK_STOP
+            self._braking.restart()
+        try:
+            self.motor.tell(0)
+        except DriveConnectionError:
+            self._fall_silent()
+            raise
+
+    def clear_fault(self) -> None:
+        """Ask whether the fault is gone: it has none to be reset."""
+        self.switch_off()
+        self._has_failed = bool(self.telemetry.read_status())
+
+    def move(self, _mode: Mode, value: float) -> Sample:
+        """One cycle with a duty, -1 .. 1."""
+        return self._cycle(round(self._motor_sign * value * DUTY_FULL))
+
+    def rest(self) -> Sample:
+        """One cycle with a duty of 0."""
+        if self.told is Status.ENABLED:
+            self.told = Status.DISABLED
+        return self._cycle(0)
+
+    def inspect(self) -> Inspection:
+        """State, fault and applied output, by questions alone."""
+        faults = self.telemetry.read_status()
+        duty, current_a = self.telemetry.read_output()
+        return Inspection(Status.FAULT if faults else self.state, ", ".join(faults), duty, current_a)
+
+    def fault_text(self) -> str:
+        """The faults of the last status, by name."""
+        return ", ".join(self.telemetry.faults) or "a fault that is gone by now"
 
     def leave(self) -> None:
         """Stop the motor where it answers, and give the port back; otherwise its serial time-out stops it."""
@@ -86,13 +129,53 @@ class Session:
         finally:
             self.link.close()
 
-    def _try_together(self, device: str) -> None:
-        """Find out whether the controller answers all of a cycle's questions where they come in one write."""
+    def _cycle(self, counts: int) -> Sample:
+        """Send a duty [1/32767], ask for the sample, and follow the state."""
+        try:
+            sample = self._exchange(counts)
+        except DriveConnectionError:
+            self._fall_silent()
+            raise
+        if self.telemetry.faults and not self._has_failed:
+            # the demand goes back to 0, so that the motor does not start when the fault goes
+            self._has_failed = True
+            self.switch_off()
+            return sample._replace(status=Status.FAULT)
+        if self.told is Status.QUICK_STOP and self._braking.stands(sample.position_rad):
+            self.told = Status.DISABLED
+        return sample
+
+    def _exchange(self, counts: int) -> Sample:
+        motor, telemetry = self.motor, self.telemetry
+        before, sent_s = motor.counts, perf_counter()
+        found = motor.tell_and_ask(counts, telemetry.quick) if self._asks_together else None
+        if found is not None:
+            times_s = [sent_s] * len(found)
+        else:
+            motor.tell(counts)
+            found, times_s = telemetry.ask()
+        sample = telemetry.sample(self.state, found, times_s)
+        if before and not sample.duty:  # demanded and not applied: something has switched it off
+            telemetry.read_status()
+        return sample
+
+    def _fall_silent(self) -> None:
+        if self.state in (Status.ENABLED, Status.QUICK_STOP):
+            self.motor.fall_silent()
+            self.told = Status.DISABLED
+
+    def _answers_together(self, settings: RoboclawSettings) -> bool:
+        """Whether the controller answers all of a cycle's questions where they come in one write.
+
+        Raises:
+            DriveConfigurationError: it does not, and is wanted to.
+        """
         self.link.begin()
-        for _ in range(2):
-            if self.motor.tell_and_ask(0, self.telemetry.quick) is not None:
-                return
-        raise DriveConfigurationError(
-            device,
-            'does not answer all questions of a cycle where they are asked together; set drive.questions = "in turn"',
-        )
+        answered = [self.motor.tell_and_ask(0, self.telemetry.quick) is not None for _ in range(_TRIES_TOGETHER)]
+        if settings.questions == "together" and not any(answered):
+            raise DriveConfigurationError(
+                settings.device,
+                "does not answer all questions of a cycle where they are asked together; set drive.questions = "
+                '"in turn"',
+            )
+        return all(answered) or settings.questions == "together"

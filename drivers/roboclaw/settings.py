@@ -26,7 +26,8 @@ class RoboclawSettings:
             where it does not; then it takes the sign of the applied duty.
         questions: "in turn": each after the answer to the one before, as the maker's own library does; "together": a
             cycle's duty and questions in one write. The manual calls packet serial buffered and says no more; a
-            controller that does not answer them all is refused when it is opened.
+            controller that does not answer them all is refused when it is opened, and with "auto" asked in turn.
+        current_limit_a: highest motor current [A], set in the controller; None: the controller's own.
     """
 
     port: str
@@ -38,7 +39,8 @@ class RoboclawSettings:
     slow_every: int = 4
     velocity: Literal["drive", "none"] = "drive"
     current: Literal["signed", "magnitude"] = "signed"
-    questions: Literal["in turn", "together"] = "in turn"
+    questions: Literal["auto", "in turn", "together"] = "auto"
+    current_limit_a: float | None = None
 
     @property
     def device(self) -> str:

@@ -12,15 +12,32 @@ from drivers.contract import Ages, Sample, Status
 from drivers.errors import DriveConnectionError
 from drivers.joint import JointScale
 from drivers.roboclaw import commands
-from drivers.roboclaw.commands import DUTY_FULL, Read
-from drivers.roboclaw.encoder import EncoderCount
+from drivers.roboclaw.commands import BACKWARD, CURRENT_A, DUTY_FULL, Read
 from drivers.roboclaw.flags import FLAGS_16_BIT, FLAGS_32_BIT, Flag, faults
 from drivers.roboclaw.link import Link
 from drivers.roboclaw.settings import RoboclawSettings
 
-_CURRENT_A = 0.01  # one step of command 49
 _VOLTAGE_V = 0.1  # of command 24
 _TEMPERATURE_C = 0.1  # of command 82
+_TURN, _HALF = 1 << 32, 1 << 31  # of the encoder's count
+
+
+class EncoderCount:
+    """Follows a count that wraps at 2**32; right as long as less than half of that passes between two readings.
+
+    Args:
+        first: the first reading, u32; the upper half of the range is taken for negative counts.
+    """
+
+    def __init__(self, first: int) -> None:
+        self._last = first
+        self.counts = first - _TURN if first >= _HALF else first
+
+    def follow(self, reading: int) -> int:
+        """The next reading, u32. Returns the count without wraps."""
+        self.counts += (reading - self._last + _HALF) % _TURN - _HALF
+        self._last = reading
+        return self.counts
 
 
 class Telemetry:
@@ -74,7 +91,7 @@ class Telemetry:
             "position_rad": self._joint.count_rad,
             "velocity_rad_s": self._joint.count_rad,
             "duty": 1.0 / DUTY_FULL,
-            "current_a": _CURRENT_A,
+            "current_a": CURRENT_A,
             "supply_v": _VOLTAGE_V,
             "temperature_c": _TEMPERATURE_C,
         }
@@ -108,7 +125,7 @@ class Telemetry:
         joint, has_speed, has_current = self._joint, self._has_speed, self.has_current
         self._ask_slow()
         position_rad = joint.position_rad(self._encoder.follow(found[0][0]))
-        velocity_rad_s = joint.velocity_rad_s(found[1][0]) if has_speed else nan
+        velocity_rad_s = joint.velocity_rad_s(_signed(*found[1])) if has_speed else nan
         place = 2 if has_speed else 1
         duty = joint.motor_sign * found[place][self._index] / DUTY_FULL
         current_a = self._current_a(found[place + 1][self._index], duty) if has_current else nan
@@ -146,7 +163,7 @@ class Telemetry:
             self._slow[self._cycle // self._slow_every % len(self._slow)]()
 
     def _current_a(self, counts: int, duty: float) -> float:
-        reported_a = counts * _CURRENT_A
+        reported_a = counts * CURRENT_A
         if self._is_signed:
             return self._joint.motor_sign * reported_a
         return copysign(reported_a, duty) if reported_a else 0.0
@@ -173,6 +190,11 @@ class Telemetry:
         if self.has_temperature:
             others.append(self._read_temperature)
         return [read for other in others for read in (self.read_status, other)] or [self.read_status]
+
+
+def _signed(speed: int, direction: int) -> int:
+    """A speed with its sign: some firmware gives the magnitude, and the direction in a byte of its own."""
+    return -abs(speed) if direction & BACKWARD else speed
 
 
 def _status_layout(link: Link) -> tuple[Read, tuple[Flag, ...]]:

@@ -1,7 +1,6 @@
 """Draws a plant with mechanisms hidden in it."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -109,7 +108,7 @@ def hide(mechanism: Mechanism, size: float, joint: Joint, random: np.random.Gene
 
 def merged(*parts: Tables) -> Tables:
     """Return plant tables laid over each other, later ones on top."""
-    found: dict[str, dict[str, Any]] = {}
+    found: Tables = {}
     for part in parts:
         for name, table in part.items():
             found[name] = {**found.get(name, {}), **table}
@@ -121,5 +120,5 @@ def _agree(one: Mechanism, other: Mechanism) -> bool:
     return None in (one.current, other.current) or one.current == other.current
 
 
-def _sensor(joint: Joint, noise: float, present: bool) -> dict[str, Any]:
+def _sensor(joint: Joint, noise: float, present: bool) -> dict[str, float]:
     return {"present": present, "noise_a": noise * joint.peak_a, "resolution_a": joint.peak_a / 2000.0}

@@ -152,7 +152,7 @@ def _gear(drawn: _Drawn, ratio: float, rotor_kg_m2: float, arm_kg_m2: float) -> 
     }
 
 
-def _heat(drawn: _Drawn, loss_w: float) -> dict[str, Any]:
+def _heat(drawn: _Drawn, loss_w: float) -> dict[str, float]:
     """Return thermal masses that such a loss warms as far as was drawn, the winding well before the housing."""
     room_c, warming_k = drawn["room"], drawn["warming over the protocol"]
     housing_j_k = loss_w * SESSION_S / warming_k

@@ -1,7 +1,7 @@
 """What every simulated device offers to the threads around it."""
 
 from threading import RLock
-from typing import Any, Protocol
+from typing import Protocol
 
 from sim_backend.devices.axis import Axis
 
@@ -20,5 +20,5 @@ class Device(Protocol):
     def advance_to(self, time_s: float) -> None:
         """Let time pass up to a time [s] of the axis."""
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> dict[str, object]:
         """What the drive is about, for the side channel: its state, its watchdog, its fault."""

@@ -34,7 +34,7 @@ class Hand:
             "repair": self.repair,
         }
 
-    def do(self, deed: str, values: dict[str, Any]) -> Answer:
+    def do(self, deed: str, values: Answer) -> Answer:
         """Do a deed.
 
         Raises:

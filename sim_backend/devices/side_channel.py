@@ -8,13 +8,12 @@
 import contextlib
 import json
 import math
-import socket
 import socketserver
 import threading
 from typing import Any
 
 from sim_backend.devices.hand import Answer, Hand
-from sim_backend.errors import ParameterError, SimulationError
+from sim_backend.errors import SimulationError
 
 
 class SideChannel(socketserver.ThreadingTCPServer):
@@ -46,61 +45,6 @@ class SideChannel(socketserver.ThreadingTCPServer):
         self.shutdown()
         self._thread.join()
         self.server_close()
-
-
-class SideChannelClient:
-    """The other end.
-
-    Args:
-        address: host:port.
-        timeout_s: longest wait for an answer [s].
-    """
-
-    def __init__(self, address: str, timeout_s: float = 5.0) -> None:
-        host, _, port = address.rpartition(":")
-        self._socket = socket.create_connection((host, int(port)), timeout_s)
-        self._file = self._socket.makefile("rw", encoding="utf-8")
-
-    def ask(self, deed: str, **values: Any) -> Answer:
-        """Have something done.
-
-        Raises:
-            ParameterError: the device says no, and why.
-            OSError: it does not answer in time, or is gone.
-        """
-        self._file.write(json.dumps({"do": deed, **values}) + "\n")
-        self._file.flush()
-        line = self._file.readline()
-        if not line:
-            raise ConnectionError("the simulated device has closed its side channel; is its process still there?")
-        answer: Answer = json.loads(line)
-        if not answer.pop("ok"):
-            raise ParameterError(answer["error"])
-        return answer
-
-    def hang_load(self, load_kg: float, balanced: bool) -> None:
-        """Hang a load on the arm."""
-        self.ask("hang", load_kg=load_kg, balanced=balanced)
-
-    def close(self) -> None:
-        """Hang up."""
-        self._file.close()
-        self._socket.close()
-
-
-def ask_once(address: str, deed: str, **values: Any) -> Answer:
-    """Have one thing done.
-
-    Raises:
-        ParameterError: the device says no, and why.
-        OSError: it is not there, or does not answer in time.
-        ValueError: the address is no host:port.
-    """
-    client = SideChannelClient(address)
-    try:
-        return client.ask(deed, **values)
-    finally:
-        client.close()
 
 
 class _Visitor(socketserver.StreamRequestHandler):

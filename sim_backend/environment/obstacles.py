@@ -1,6 +1,6 @@
 """All that the arm may lean on, added up."""
 
-from sim_backend.environment.end_stops import stop_depth
+from sim_backend.environment.end_stops import stop_depth, wall_depth
 from sim_backend.environment.obstacle import (
     APART,
     CROSSING,
@@ -13,7 +13,6 @@ from sim_backend.environment.obstacle import (
     push_of,
     push_torque,
 )
-from sim_backend.environment.wall import wall_depth
 from sim_backend.plant.crossing import is_close
 from sim_backend.plant.jit import jitted
 from sim_backend.plant.parameters import PlantParameters

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 from sim_backend.drive.overload import Overload
-from sim_backend.environment.end_stops import EndStops
+from sim_backend.environment.end_stops import EndStops, Wall
 from sim_backend.environment.operator import Operator
-from sim_backend.environment.wall import Wall
 from sim_backend.errors import ParameterError
 from sim_backend.mechanisms.friction.bristle import Bristle
 from sim_backend.mechanisms.friction.coulomb_asymmetry import CoulombAsymmetry

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_backend.environment.end_stops import Wall
 from sim_backend.environment.operator import Operator
-from sim_backend.environment.wall import Wall
 from sim_backend.errors import ParameterError
 from sim_backend.mechanisms.joint.clutch import Clutch
 from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2, Load

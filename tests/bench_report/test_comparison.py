@@ -9,8 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from bench.cli.app import app
+from bench.errors import BaselineError
 from bench.evaluation.bench_report import campaign
-from bench.evaluation.bench_report.baseline import BaselineError, read_baseline, write_baseline
+from bench.evaluation.bench_report.baseline import read_baseline, write_baseline
 from bench.evaluation.bench_report.campaign import METRICS, SeedValues
 from bench.evaluation.bench_report.comparison import FAMILY_RATE, compare, permutation_p
 from bench.evaluation.bench_report.documents import is_bad, sections, write_junit

@@ -15,8 +15,8 @@ WITH_TOKEN = f"sessionStorage.setItem('friction-bench-token', '{TOKEN}')"
 
 
 def imported(module: str) -> str:
-    """JavaScript that imports a module of the page, such as "plots/thin"."""
-    return f"import('/static/modules/{module}.js')"
+    """JavaScript that imports a module of the page, such as "plots/thin": the one that the page itself uses."""
+    return f"import(document.querySelector('script[type=module]').src.replace('app/main', '{module}'))"
 
 
 @contextmanager

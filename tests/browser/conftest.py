@@ -38,7 +38,7 @@ def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
     complaints: list[str] = []
     pages = []
 
-    def opened(view: str = "", token: bool = True, width: int = 1280, scheme: str = "light") -> Any:
+    def opened(view: str = "#bench", token: bool = True, width: int = 1280, scheme: str = "light") -> Any:
         page = chromium.new_page()
         pages.append(page)
         page.set_viewport_size({"width": width, "height": 900})

@@ -24,18 +24,19 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     begin_s = time.monotonic()
     with tempfile.TemporaryDirectory() as store, running_service(Path(store)) as service, browser() as chromium:
-        page = _page(chromium, service.url, 1280, "light")
+        page = open_page(chromium, f"{service.url}/#bench", 1280, "light")
         shot = _camera(page, folder)
         _bench(page, shot)
         study = _challenge(page, shot, service)
         print(f"from the first page to the explained effect: {time.monotonic() - begin_s:.0f} s")
         page.close()
         for width, scheme in SIZES:
-            _every_view(_page(chromium, service.url, width, scheme), folder, f"{width}-{scheme}", study)
+            _every_view(open_page(chromium, service.url, width, scheme), folder, f"{width}-{scheme}", study)
     print(f"{len(list(folder.glob('*.png')))} pictures in {folder}")
 
 
-def _page(chromium: Any, url: str, width: int, scheme: str) -> Any:
+def open_page(chromium: Any, url: str, width: int, scheme: str) -> Any:
+    """A page of that width, with the token of the tests."""
     page = chromium.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
     page.set_default_timeout(WAIT_MS)
     page.add_init_script(WITH_TOKEN)

@@ -46,8 +46,8 @@ def test_older_experiments_are_a_page_away(service, open_page):
     newest = service.run("steps", repeats=1)["experiment_id"]
     page = open_page("#bench")
     page.route(
-        re.compile(r"/experiments\?.*limit=100"),
-        lambda route: route.continue_(url=route.request.url.replace("limit=100", "limit=1")),
+        re.compile(r"/experiments\?.*limit=10$"),
+        lambda route: route.continue_(url=route.request.url.replace("limit=10", "limit=1")),
     )
     page.get_by_role("link", name="Trials").click()
     page.get_by_role("button", name=f"Trials of experiment {newest}", exact=True).wait_for()

@@ -103,7 +103,7 @@ def test_a_spike_of_one_sample_is_drawn_however_many_there_are(call):
 def test_a_band_is_drawn_between_its_edges_and_not_where_it_is_unknown(call):
     painted = call(
         "plots/paint",
-        "import('/static/modules/bench/load.js').then((load) => {"
+        f"{imported('bench/load')}" + ".then((load) => {"
         " const canvas = document.createElement('canvas'); canvas.width = 300; canvas.height = 200;"
         " const context = canvas.getContext('2d', {willReadFrequently: true});"
         " const x = Float64Array.from({length: 20000}, (_, i) => i / 20000);"
@@ -216,8 +216,7 @@ def test_every_equation_of_the_catalogue_is_set(open_page, service):
     page = open_page()
     equations = [one["equation"] for one in service.client.get("/effects").json()["items"]]
     shown = (
-        "(all) => import('/static/modules/learn/equation.js')"
-        ".then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
+        f"(all) => {imported('learn/equation')}.then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
     )
     assert page.evaluate(shown, equations) == []
 

@@ -64,13 +64,13 @@ def test_the_queue_is_paused_after_a_trial_gone_on_with_moved_and_cleared(servic
 def test_a_campaign_is_planned_refused_where_it_is_wrong_and_run(service, open_page):
     page = open_page("#queue")
     page.get_by_label("What to do").select_option("steps")
-    page.get_by_label("Values of parameter 1").fill("0, 5")
+    page.get_by_label("Values of parameter 1").fill("0, 5000")
     page.get_by_role("button", name="Plan", exact=True).click()
     page.get_by_text(re.compile("load_kg is 5 kg; allowed is at most 0.1 kg")).wait_for()
-    page.get_by_label("Values of parameter 1").fill("0, 0.1")
+    page.get_by_label("Values of parameter 1").fill("0, 100")
     page.get_by_role("button", name="Vary another one").click()
     page.get_by_label("Parameter 2", exact=True).select_option("angle_rad")
-    page.get_by_label("Values of parameter 2").fill("1, 1.5")
+    page.get_by_label("Values of parameter 2").fill("60, 90")
     page.get_by_text("What all share").click()
     page.get_by_label("repeats", exact=True).fill("1")
     page.get_by_role("button", name="Plan", exact=True).click()
@@ -80,11 +80,11 @@ def test_a_campaign_is_planned_refused_where_it_is_wrong_and_run(service, open_p
     page.get_by_role("button", name="Put into the queue").click()
     page.get_by_text("4 experiments are in the queue.").wait_for()
     ended = page.get_by_role("region", name="Came out of the queue")
-    ended.get_by_text("load 0.1 kg").nth(1).wait_for()
+    ended.get_by_text("load 100 g").nth(1).wait_for()
     ended.get_by_text("completed", exact=True).nth(3).wait_for()
     done = [one for one in service.client.get("/queue").json()["ended"] if one["campaign_id"]][:4]
     assert {(one["parameters"]["load_kg"], one["parameters"]["angle_rad"]) for one in done} == {
-        (load_kg, angle_rad) for load_kg in (0.0, 0.1) for angle_rad in (1.0, 1.5)
+        (load_kg, angle_rad) for load_kg in (0.0, 0.1) for angle_rad in (1.0471975512, 1.57079632679)
     }
     assert {one["state"] for one in done} == {"completed"}
     open_page.complaints[:] = [text for text in open_page.complaints if "422" not in text]

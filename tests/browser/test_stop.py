@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from bench.service.auth.roles import Role
-from bench.service.auth.tokens import digest_of, make_token
+from bench.service.auth.tokens import Role, digest_of, make_token
+from tests.browser.browser import imported
 from tests.service.running_service import running_service
 
 pytestmark = pytest.mark.browser
@@ -51,7 +51,7 @@ def test_other_requests_that_hang_do_not_hold_up_a_stop(service, open_page):
     start(page)
     page.route("**/api/v1/effects*", lambda route: None)
     page.evaluate(
-        "import('/static/modules/app/api.js').then((api) => { for (let n = 0; n < 12; n++) api.get('/effects', {n}); })"
+        f"{imported('app/api')}.then((api) => {{ for (let n = 0; n < 12; n++) api.get('/effects', {{n}}); }})"
     )
     page.keyboard.press("Escape")
     page.get_by_text("Stop accepted and confirmed").wait_for()
@@ -59,9 +59,10 @@ def test_other_requests_that_hang_do_not_hold_up_a_stop(service, open_page):
 
 def test_a_failed_power_off_is_said(open_page):
     page = open_page()
-    text, level = page.evaluate(
-        "import('/static/modules/app/stop.js').then((stop) => stop.verdict("
-        "{outcome: 'stopped', experiment_id: 3, reason: 'STOP on the page; power-off failed: no answer'}))"
+    level, text = page.evaluate(
+        f"{imported('app/stop')}.then((stop) => stop.verdict("
+        "{outcome: 'stopped', experiment_id: 3, power_off: 'failed', "
+        "reason: 'STOP on the page; power-off failed: no answer'}))"
     )
     assert level == "unconfirmed"
     assert "NOT confirmed by the drive: STOP on the page; power-off failed: no answer" in text
@@ -76,7 +77,7 @@ def test_the_page_goes_on_when_the_service_comes_back(tmp_path, chromium):
     page.set_default_timeout(20_000)
     with running_service(first) as before:
         port = int(before.url.rsplit(":", 1)[1])
-        page.goto(before.url)
+        page.goto(f"{before.url}/#bench")
         page.locator(".badge.idle").wait_for()
         before.run("steps", repeats=1)
         page.get_by_text("Experiment 1 (steps): completed").wait_for()

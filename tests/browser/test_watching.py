@@ -8,7 +8,7 @@ import pytest
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from tests.control.fake_drive import FakeDrive
 from tests.service.running_service import TOKEN
 
 pytestmark = pytest.mark.browser

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from bench.calibration.curves import friction_fits, friction_lookup, inertia_of
-from bench.calibration.motor_constants import identify_motor
-from bench.calibration.points import friction_points
+from bench.calibration.points import friction_points, identify_motor
 from bench.config.configuration import default_configuration
 from compensator.errors import CalibrationError, LookupRangeError
 from compensator.motor.dc_motor import MotorConstants
-from tests.bench.bench_run import Ran
+from tests.experiments.bench_run import Ran
 
 CONFIGURATION = default_configuration()
 MOTOR = MotorConstants(8.0, 0.05)  # of the preset

@@ -118,11 +118,11 @@ def test_an_experiment_runs_with_the_curves_in_use_and_its_record_says_so(store,
 def test_the_picture_holds_points_and_curves_of_figs_2_and_3(configuration, row):
     picture = calibration.curve_data(row)
     motor, supply_v = configuration.rig.motor, configuration.rig.supply.voltage_v
-    for one in picture["curves"]:
-        points = one["points"]
-        assert min(points["motor_speed_rad_s"]) > 0.0
-        assert any(points["backward"])
-        assert not all(points["backward"])
-        for speed, friction_a, duty in zip(*(one["curve"][name] for name in one["curve"]), strict=True):
+    for one in picture.curves:
+        assert min(one.points.motor_speed_rad_s) > 0.0
+        assert any(one.points.backward)
+        assert not all(one.points.backward)
+        curve = one.curve
+        for speed, friction_a, duty in zip(curve.motor_speed_rad_s, curve.friction_a, curve.friction_duty, strict=True):
             voltage_v = motor.resistance_ohm * friction_a + motor.back_emf_v_s_rad * speed
             assert duty == pytest.approx(voltage_v / supply_v)

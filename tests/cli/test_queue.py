@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
+from bench.study.suggestion.suggested import Suggested, SuggestedTrial
 from tests.queue.waiting import wait_for
 from tests.service.running_service import TOKEN, running_service
 
@@ -77,8 +78,19 @@ def test_tags_of_a_run_are_found_again(command):
 
 
 def test_what_a_study_suggests_goes_into_the_queue_with_the_study_s_note(asked, command, monkeypatch):
-    trials = [{"kind": "steps", "parameters": {"repeats": 1, "load_kg": load_kg}} for load_kg in (0.0, 0.05)]
-    found = {"study_id": 4, "note": "suggested for study 4", "trials": trials}
+    trials = [
+        SuggestedTrial(
+            name="",
+            kind="steps",
+            parameters={"repeats": 1, "load_kg": load_kg},
+            minutes=1.0,
+            before=0.0,
+            after=6.0,
+            sentence="",
+        )
+        for load_kg in (0.0, 0.05)
+    ]
+    found = Suggested.model_construct(study_id=4, note="suggested for study 4", trials=trials)
     monkeypatch.setattr("bench.cli.lab.study_trials.suggested", lambda *_: found)
     assert asked("queue", "pause", "--json")["state"] == "held"
     assert asked("study", "suggest", "4", "--queue", "--json")["item_ids"] == [1, 2]

@@ -7,9 +7,17 @@ import pytest
 
 from bench.cli.exit_codes import ExitCode
 from bench.errors import LimitError
+from bench.study.extend import AddedTrial, Extended
+from bench.study.models.diagnosis import Diagnosis
+from bench.study.suggestion.suggested import PairOfRivals, Suggested, SuggestedTrial
 from drivers.errors import DriveError
 
-TRIALS = [{"name": name, "kind": "steps", "parameters": {"load_kg": 0.1}} for name in "abcd"]
+TRIALS = [
+    SuggestedTrial(
+        name=name, kind="steps", parameters={"load_kg": 0.1}, minutes=1.0, before=0.0, after=6.0, sentence=""
+    )
+    for name in "abcd"
+]
 
 
 @pytest.fixture
@@ -21,9 +29,13 @@ def started(command, monkeypatch):
 
         def suggested(session, study_id, model_id, most, refused):
             asked.append(sorted(refused))
-            offered = [one for one in TRIALS if one["name"] not in refused][:most] if left else []
-            pairs = [{"true": "spring", "rival": None, "before": len(asked), "after": 5.0 + len(asked)}]
-            return {"study_id": study_id, "note": "n", "trials": offered, "pairs": pairs}
+            offered = [one for one in TRIALS if one.name not in refused][:most] if left else []
+            rounds = float(len(asked))
+            pair = PairOfRivals(true="spring", rival=None, before=rounds, after=5.0 + rounds, promised=0.0)
+            return Suggested.model_construct(study_id=study_id, note="n", trials=offered, pairs=[pair])
+
+        def extend_study(_store, _study, numbers):
+            return Extended.model_construct(added=[AddedTrial(trial_id=number, name="") for number in numbers])
 
         def carry_out(*_, **__):
             outcome = left.pop(0)
@@ -33,12 +45,16 @@ def started(command, monkeypatch):
 
         monkeypatch.setattr("bench.cli.lab.study_trials.suggested", suggested)
         monkeypatch.setattr("bench.cli.lab.study_trials.carry_out", carry_out)
-        monkeypatch.setattr("bench.study.extend_study", lambda _store, _study, numbers: {"added": numbers})
-        monkeypatch.setattr("bench.study.diagnose", lambda _store, _study: {"sentence": "so"})
+        monkeypatch.setattr("bench.study.extend.extend_study", extend_study)
+        monkeypatch.setattr("bench.study.diagnose.diagnose", lambda *_: Diagnosis.model_construct(sentence="so"))
         told = command("study", "suggest", 1, "--start", "--json", *extra)
         return json.loads(told.stdout), told.exit_code, asked
 
     return start
+
+
+def added(told):
+    return [one["trial_id"] for one in told["extended"]["added"]]
 
 
 def outcomes(told):
@@ -48,7 +64,7 @@ def outcomes(told):
 def test_what_trips_is_replaced_and_the_rest_is_added_round_by_round(started):
     told, code, asked = started("completed", "tripped", "completed", "completed", extra=("--trials", 3))
     assert outcomes(told) == [["completed", "tripped"], ["completed", "completed"]]
-    assert [one["extended"]["added"] for one in told["rounds"]] == [[6], [8, 9]]
+    assert [added(one) for one in told["rounds"]] == [[6], [8, 9]]
     assert asked == [[], ["b"], []]  # the last: what came of the last round
     assert [one["came"] for one in told["rounds"]] == [
         [{"effect": "spring", "predicted": 6.0, "came": 2}],
@@ -69,7 +85,7 @@ def test_a_refused_one_is_told_and_replaced(started):
 def test_nothing_more_is_started_after_a_stop_or_without_a_drive(started, ending):
     told, code, _ = started("completed", ending, "completed")
     assert len(told["rounds"]) == 1
-    assert told["extended"] == {"added": [7]}
+    assert added(told) == [7]
     assert code == (130 if ending == "stopped" else ExitCode.NOT_COMPLETED)
 
 

@@ -10,7 +10,7 @@ from bench.client import Bench, Refused, Unreachable, connection
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from tests.control.fake_drive import FakeDrive
 from tests.service.running_service import TOKEN
 
 
@@ -136,10 +136,10 @@ def test_a_lease_is_kept_while_the_block_runs(bench, service):
 def test_a_study_names_what_is_missing(bench, study):
     assert repr(study).startswith("<Study 1 arm: 6 trials")
     found = study.diagnose()
-    assert found["verdict"] == "missing"
-    assert "viscous_asymmetry" in found["classes"][0]["effects"]
-    assert found["sentence"] in repr(found)
+    assert found.verdict == "missing"
+    assert "viscous_asymmetry" in found.classes[0].effects
+    assert found.sentence in repr(found)
     changed = study.add("viscous_asymmetry")
-    assert changed["after"]["held_out"] < changed["before"]["held_out"]
-    assert [len(rung["effects"]) for rung in study.ladder()][:2] != []
-    assert study.compare()["model_id"] == changed["model_id"]
+    assert changed.after.held_out < changed.before.held_out
+    assert [len(rung.effects) for rung in study.ladder().rungs][:2] != []
+    assert study.compare().model_id == changed.model_id

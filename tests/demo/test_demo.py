@@ -7,6 +7,7 @@ import pytest
 from bench.evaluation.demo import run_demo
 from bench.evaluation.demo.hidden_effect import draw
 from bench.store import Store
+from tests.paths import ROOT
 
 pytestmark = pytest.mark.timeout(600)  # a minute by itself; a shared machine may take several
 
@@ -36,6 +37,21 @@ def test_the_hidden_effect_is_named_and_its_addition_lowers_the_held_out_error(d
     assert section.tables[0].rows[0][0] == "Direction-asymmetric viscous friction"
     base, added, floor = (row[2] for row in section.tables[1].rows)
     assert floor < added < 0.6 * base
+
+
+def test_the_readme_states_what_the_demonstration_prints(demo):
+    """Its figures, within 3 %: another processor rounds a little otherwise."""
+    spreads, sweep, effect = demo[2]
+    with_friction, compensated = (row[3] for row in spreads.tables[0].rows)
+    mean, _, largest = sweep.tables[1].rows
+    base, added, floor = (row[2] for row in effect.tables[1].rows)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    [told] = re.findall(r"25 steps \| ([\d.]+) mA \| ([\d.]+) mA", readme)
+    told += re.findall(r"error of the load.* \| ([\d.]+) g \| ([\d.]+) g \|", readme)[0]
+    told += re.findall(r"largest error of the load.* \| ([\d.]+) g \| ([\d.]+) g \|", readme)[0]
+    told += re.findall(r"from ([\d.]+) % to ([\d.]+) %\. Repeated trials differ by ([\d.]+) %", readme)[0]
+    given = [with_friction, compensated, *mean[1:], *largest[1:], base, added, floor]
+    assert [float(one) for one in told] == pytest.approx(given, rel=0.03)
 
 
 def test_the_report_is_one_file_that_asks_nothing_of_the_network(demo):

@@ -23,7 +23,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from sim_backend.devices.side_channel import SideChannelClient
+from sim_backend.devices.side_channel_client import SideChannelClient
 from tests.devices.turns import ask_for_turns
 
 START_S = 90.0  # the first start on a machine compiles the plant

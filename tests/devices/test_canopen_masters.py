@@ -10,7 +10,7 @@ import pytest
 from canopen.profiles.p402 import BaseNode402
 
 from sim_backend.devices.canopen.serve import CanOpenSettings, data_sheet, serve_canopen
-from sim_backend.devices.side_channel import SideChannelClient
+from sim_backend.devices.side_channel_client import SideChannelClient
 from tests.devices.device_process import device_process
 
 NODE = 5

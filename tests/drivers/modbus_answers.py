@@ -171,11 +171,14 @@ class Answers(socketserver.ThreadingTCPServer):
         super().__init__(("127.0.0.1", 0), _Request)
         self.input = {0: 0x4242, 1: 207, 5: 240, 6: 650}
         self.holding = dict.fromkeys([*range(10, 16), *range(20, 28), 100], 0)
+        self.coils = {0: 0, 1: 0}
+        self.discrete = {8: 0, 9: 0, 10: 0}
+        self.unknown = frozenset()  # functions that this drive does not have
         self.sent = []  # PDUs
         self.obeys = True
         self.silent = False
         self.corrupt = 0
-        self.slips = 0  # what a watchdog register reads back too much
+        self.slips_at = {}  # what a register reads back too much, by address
         threading.Thread(target=self.serve_forever, args=(0.02,), daemon=True).start()
 
     @property
@@ -185,7 +188,11 @@ class Answers(socketserver.ThreadingTCPServer):
     def answer(self, pdu):
         self.sent.append(pdu)
         function = pdu[0]
+        if function in self.unknown:
+            return bytes([function | 0x80, 1])
         try:
+            if function in (1, 2, 5, 15):
+                return self._answer_bits(function, pdu)
             if function == 4:
                 return self._words(self.input, function, *unpack(">HH", pdu[1:5]))
             if function == 3:
@@ -207,9 +214,30 @@ class Answers(socketserver.ThreadingTCPServer):
 
     def _words(self, table, function, address, count):
         words = [table[place] for place in range(address, address + count)]
-        if table is self.holding and address == 100:
-            words[0] += self.slips
+        if table is self.holding:
+            words[0] += self.slips_at.get(address, 0)
         return pack(f">BB{count}H", function, 2 * count, *words)
+
+    def _answer_bits(self, function, pdu):
+        address, count = unpack(">HH", pdu[1:5])
+        if function in (1, 2):
+            return self._bits(self.coils if function == 1 else self.discrete, function, address, count)
+        if function == 5:
+            self._switch(address, [count == 0xFF00])
+            return pdu
+        self._switch(address, [pdu[6] >> place & 1 for place in range(count)])
+        return pdu[:5]
+
+    def _bits(self, table, function, address, count):
+        packed = sum(table[place] << at for at, place in enumerate(range(address, address + count)))
+        return bytes([function, (count + 7) // 8]) + packed.to_bytes((count + 7) // 8, "little")
+
+    def _switch(self, address, bits):
+        for place, bit in enumerate(bits, address):
+            if place not in self.coils:
+                raise KeyError(place)
+            self.coils[place] = int(bit)
+        self.discrete[8] = self.coils[0]  # it says that it is on
 
     def _store(self, address, words):
         for place, word in enumerate(words, address):

@@ -5,7 +5,7 @@ Checksums are computed here bit by bit from the polynomial in the manual; nothin
 
 import serial
 
-SIZES = {14: 5, 32: 6, 33: 6}  # of writes, with address, command and CRC; a read has 2 bytes
+SIZES = {14: 5, 32: 6, 33: 6, 133: 12, 134: 12}  # of writes, with address, command and CRC; a read has 2 bytes
 VERSION = b"USB Roboclaw 2x15a v4.1.34\n\0"
 
 
@@ -26,6 +26,7 @@ class Answers:
         self.data = {
             15: bytes([2]),
             16: bytes(5),
+            17: bytes(5),
             18: bytes(5),
             19: bytes(5),
             21: VERSION,
@@ -34,11 +35,13 @@ class Answers:
             49: bytes(4),
             82: (305).to_bytes(2, "big"),
             90: bytes(4),
+            135: bytes(8),
+            136: bytes(8),
         }
         self.sent = []
         self.corrupt = 0  # so many answers to come have a bit turned over
         self.duties = []
-        self.keeps_timeout = True
+        self.keeps_timeout = self.keeps_limit = True
         self.buffered = True
         self.closed = True
         self._waiting = b""
@@ -67,11 +70,13 @@ class Answers:
         address, number = packet[:2]
         if address != 0x80:
             return b""
-        if number in (14, 32, 33):
+        if number in SIZES:
             if packet[-2:] != crc(packet[:-2]):
                 return b""
             if number == 14 and self.keeps_timeout:
                 self.data[15] = packet[2:3]
+            elif number in (133, 134) and self.keeps_limit:
+                self.data[number + 2] = packet[2:10]
             elif number in (32, 33):
                 self.duties.append(int.from_bytes(packet[2:4], "big", signed=True))
             return b"\xff"
@@ -81,6 +86,10 @@ class Answers:
     def read(self, size):
         taken, self._waiting = self._waiting[:size], self._waiting[size:]
         return taken
+
+    @property
+    def in_waiting(self):
+        return len(self._waiting)
 
     def read_until(self, end, size):
         found = self._waiting.find(end)

@@ -98,6 +98,93 @@ def test_a_drive_without_that_function_takes_two(answers, made):
     ]
 
 
+def test_a_drive_that_takes_function_16_alone(answers, made):
+    answers.unknown = frozenset({6})
+    with pytest.raises(WatchdogError, match="exception 1, the drive does not know this function"):
+        made().open(0.01)
+    made(text=f"write_function = 16\n{MAP}").open(0.01)
+    assert "10 00 64 00 01 02 00 c8" in [pdu.hex(" ") for pdu in answers.sent]  # the watchdog, a single word
+
+
+def test_a_drive_that_takes_function_6_alone(answers, made):
+    answers.unknown = frozenset({16, 23})
+    drive = made(text=f"write_function = 6\n{MAP.replace('read_write = true', '')}")
+    drive.open(0.01)
+    drive.enable(Mode.POSITION)
+    answers.sent.clear()
+    drive.exchange(Command(Mode.POSITION, 70000 * COUNT_RAD))
+    assert [pdu.hex(" ") for pdu in answers.sent] == [
+        "06 00 0a 00 01", "06 00 0b 00 03", "06 00 0c 00 00", "06 00 0d 00 00", "06 00 0e 00 01", "06 00 0f 11 70",
+        "03 00 14 00 08",
+    ]  # fmt: skip
+
+
+COILS = (
+    MAP.replace("read_write = true", "")
+    .replace('[control]\nregister = "control"', '[control]\nregister = "run"')
+    .replace("quick_stop = 2\nclear_fault = 8\n", "")
+    .replace('register = "status"\nmask = 0x0F\nenabled = 1\nquick_stop = 2\nfault = 4', 'register = "on"\nenabled = 1')
+    + """
+[[register]]
+name = "run"
+space = "coil"
+address = 0
+type = "bit"
+[[register]]
+name = "on"
+space = "discrete"
+address = 8
+type = "bit"
+"""
+)
+
+
+def test_a_drive_that_is_switched_by_a_coil_and_tells_its_state_in_a_discrete_input(answers, made):
+    drive = made(text=COILS)
+    drive.open(0.01)
+    assert drive.exchange(OFF).status is Status.DISABLED
+    answers.sent.clear()
+    drive.enable(Mode.DUTY)
+    assert {"05 00 00 ff 00", "02 00 08 00 01"} <= {pdu.hex(" ") for pdu in answers.sent}
+    assert drive.exchange(Command(Mode.DUTY, 0.1)).status is Status.ENABLED
+    drive.disable()
+    assert answers.coils[0] == 0
+    assert drive.exchange(OFF).status is Status.DISABLED
+
+
+@pytest.mark.parametrize(("slips", "refusal"), [(0, None), (100, "current limit reads back as 2.6 A, set was 2.5 A")])
+def test_a_current_limit_is_set_and_read_back(answers, made, slips, refusal):
+    text = MAP + (
+        '[limits]\ncurrent_a = "limit"\n[[register]]\nname = "limit"\nspace = "holding"\naddress = 101\n'
+        'type = "uint16"\nscale = 1e-3\nunit = "A"\n'
+    )
+    answers.holding[101], answers.slips_at = 0, {101: slips}
+    drive = made(text=text, current_limit_a=2.5)
+    if refusal is None:
+        drive.open(0.01)
+        assert answers.holding[101] == 2500
+        return
+    with pytest.raises(DriveConfigurationError, match=refusal):
+        drive.open(0.01)
+
+
+def test_a_current_limit_that_the_map_has_no_register_for_is_refused(made):
+    with pytest.raises(DriveConfigurationError, match=r"has no register for a current limit \(\[limits\] current_a\)"):
+        made(current_limit_a=2.5).open(0.01)
+
+
+def test_what_a_watchdog_needs_elsewhere_is_set_and_read_back(answers, made):
+    needs = MAP.replace("fault = 0x8130", "fault = 0x8130\nneeds = { action = 2 }") + (
+        '[[register]]\nname = "action"\nspace = "holding"\naddress = 101\ntype = "uint16"\n'
+    )
+    answers.holding[101] = 0
+    made(text=needs).open(0.01)
+    assert answers.holding[101] == 2
+    answers.slips_at = {101: 1}
+    with pytest.raises(WatchdogError, match="its watchdog needs action = 2; it reads back as 3"):
+        made(text=needs).open(0.01)
+
+
 def test_a_sample_in_si_units(answers, drive):
     velocity = pack(">f", 2000.0)
     answers.holding |= {22: 0xFFFF, 23: 0xFC18}  # -1000 counts
@@ -223,7 +310,7 @@ def test_another_family_is_refused(answers, made):
 
 
 def test_the_watchdog_is_read_back(answers, made):
-    answers.slips = 100
+    answers.slips_at = {100: 100}
     with pytest.raises(WatchdogError, match=r"reads back as 0.3 s, set was 0.2 s"):
         made().open(0.01)
 
@@ -249,7 +336,7 @@ def test_a_host_that_was_late_is_told_that_the_watchdog_has_acted(answers, made)
     drive.enable(Mode.DUTY)
     drive.exchange(Command(Mode.DUTY, 0.1))
     time.sleep(0.15)
-    with pytest.raises(DriveFault, match=r"its watchdog has stopped the motor: no demand for .* 0.1 s are allowed"):
+    with pytest.raises(DriveFault, match=r"no demand for .*, and its watchdog allows 0.1 s: .* switched off"):
         drive.exchange(Command(Mode.DUTY, 0.1))
     assert answers.holding[10] == 0
 
@@ -349,3 +436,82 @@ def crc(frame):
         for _ in range(8):
             remainder = (remainder >> 1) ^ 0xA001 if remainder & 1 else remainder >> 1
     return remainder.to_bytes(2, "little")
+
+
+def frame(text):
+    found = bytes.fromhex(text)
+    return found + crc(found)
+
+
+SPEED = Register("speed", Space.INPUT, 0x2061, Number.INT16)
+ANSWER = frame("01 04 02 00 2a")
+
+
+def serial_link(path, **settings):
+    link = Link(ModbusSettings("roboteq", "rtu", path, **{"answer_timeout_s": TIMEOUT_S, **settings}))
+    link.begin()
+    return link
+
+
+def in_background(work):
+    """Do the drive's part while the driver waits."""
+    thread = threading.Thread(target=work)
+    thread.start()
+    return thread
+
+
+@pytest.mark.parametrize(
+    ("settings", "silence_s"),
+    [
+        ({"baud_rate": 9600}, 3.5 * 10 / 9600),
+        ({"baud_rate": 1200, "stop_bits": 2}, 3.5 * 11 / 1200),
+        ({"baud_rate": 115200, "silence_s": 0.02}, 0.02),
+    ],
+)
+def test_between_an_answer_and_the_next_request_the_line_is_silent_for_3_5_characters(line, settings, silence_s):
+    ours, path = line
+    link, answered_s, asked_s = serial_link(path, **settings), [], []
+
+    def answer():
+        for _ in range(2):
+            os.read(ours, 8)
+            asked_s.append(time.perf_counter())
+            answered_s.append(time.perf_counter())
+            os.write(ours, ANSWER)
+
+    drive = in_background(answer)
+    for _ in range(2):
+        link.read_one(SPEED)
+    drive.join()
+    link.close()
+    assert asked_s[1] - answered_s[0] >= silence_s
+
+
+def test_an_adapter_that_hears_itself(line):
+    ours, path = line
+    link = serial_link(path, echo=True)
+
+    def answer():
+        os.write(ours, os.read(ours, 8))  # the echo
+        os.write(ours, ANSWER)
+
+    drive = in_background(answer)
+    assert link.read_one(SPEED) == 42.0
+    drive.join()
+    link.close()
+
+
+def test_an_echo_that_does_not_come_is_named(line):
+    ours, path = line
+    link = serial_link(path, echo=True)
+
+    def answer():
+        for _ in range(2):
+            os.read(ours, 8)
+            os.write(ours, ANSWER)
+
+    drive = in_background(answer)
+    with pytest.raises(DriveConnectionError, match=r"the echo of 01 04 20 61.* \(drive.echo\), and does nobody else"):
+        link.read_one(SPEED)
+    drive.join()
+    link.close()

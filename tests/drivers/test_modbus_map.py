@@ -24,6 +24,10 @@ def register(number, **changes):
         (register(Number.INT32), -2, [0xFFFF, 0xFFFE]),
         (register(Number.INT32, low_word_first=True), 0x12345678, [0x5678, 0x1234]),
         (register(Number.UINT32), 4294967295, [0xFFFF, 0xFFFF]),
+        (register(Number.UINT16, low_byte_first=True), 0x1234, [0x3412]),
+        (register(Number.INT32, low_byte_first=True), 0x12345678, [0x3412, 0x7856]),
+        (register(Number.INT32, low_byte_first=True, low_word_first=True), 0x12345678, [0x7856, 0x3412]),
+        (register(Number.BIT, space=Space.COIL), 1, [1]),
         (register(Number.FLOAT32), 1.5, [0x3FC0, 0x0000]),
         (register(Number.LOW_INT16, scale=0.1), -0.7, [0x0000, 0xFFF9]),
     ],
@@ -43,6 +47,7 @@ def test_the_more_significant_word_of_a_low_number_has_no_meaning():
         (register(Number.INT16, scale=1e-3, unit="A"), 40.0, r"x is 40 A; its register holds -32.768 .. 32.767"),
         (register(Number.UINT16), -1, r"x is -1 ; its register holds 0 .. 65535"),
         (register(Number.FLOAT32), float("nan"), "a finite number is wanted"),
+        (register(Number.BIT, space=Space.COIL), 2, r"x is 2 ; its register holds 0 .. 1"),
     ],
 )
 def test_a_value_that_does_not_fit_is_refused(made, value, message):
@@ -55,6 +60,20 @@ def test_blocks_hold_what_lies_side_by_side():
     assert [(block.address, block.words) for block in blocks(registers)] == [(0, 2), (3, 1), (7, 1)]
     assert [(block.address, block.words) for block in blocks(registers, longest_gap=1)] == [(0, 4), (7, 1)]
     assert [(block.address, block.words) for block in blocks(registers, longest_gap=9, longest=4)] == [(0, 4), (7, 1)]
+
+
+def test_a_block_with_swapped_bytes_and_gaps_is_read_as_its_registers_are():
+    registers = (
+        register(Number.INT16, name="a", scale=0.5),
+        register(Number.INT32, name="b", address=2),
+        register(Number.LOW_INT16, name="c", address=4, offset=1.0),
+    )
+    words = [0xFFFE, 7, 0xFFFF, 0xFFFE, 9, 3]
+    [block] = blocks(registers, longest_gap=1)
+    assert block.decode(words) == {"a": -1.0, "b": -2.0, "c": 4.0}
+    swapped = [register(Number.INT16, name="d", address=6, low_byte_first=True)]
+    [mixed] = blocks([*registers, *swapped], longest_gap=1)
+    assert mixed.decode([*words, 0x0100]) == {"a": -1.0, "b": -2.0, "c": 4.0, "d": 1.0}
 
 
 def test_one_request_where_the_drive_can():
@@ -137,6 +156,16 @@ def test_the_published_map_of_roboteq():
         ('unit = "counts/s"', 'unti = "counts/s"', "register 'velocity': unti: unknown key"),
         ("quick_stop = 2\nclear_fault", "stop = 2\nclear_fault", "control: stop: unknown; known are off"),
         ("[mode]", "[mode", "is no TOML"),
+        ("read_write = true", "write_function = 5", "write_function is 5; 6 or 16 is wanted, or none"),
+        ("[fault]\n", '[limits]\ncurrent = "current"\n[fault]\n', "limits: current: unknown; known is current_a"),
+        ("[fault]\n", '[limits]\ncurrent_a = "supply"\n[fault]\n', "names register 'supply', which can only be read"),
+        (
+            "fault = 0x8130",
+            "needs = { nowhere = 1 }",
+            "watchdog.needs names register 'nowhere', which is not",
+        ),
+        ('type = "float32"', 'type = "bit"', "register 'velocity': a coil or discrete input has type bit, and nothing"),
+        ('duty = "duty_demand"', 'duty = "supply"', "demand names register 'supply', which can only be read"),
     ],
 )
 def test_a_map_that_is_not_as_wanted(before, after, message):

@@ -53,7 +53,7 @@ def test_the_conversation_of_opening(answers):
 
 
 def test_a_cycle_asks_in_this_order(answers):
-    drive = opened(slow_every=100)
+    drive = opened(slow_every=100, questions="in turn")
     drive.enable(Mode.DUTY)
     answers.sent.clear()
     drive.exchange(duty(0.5))
@@ -73,6 +73,15 @@ def test_a_controller_that_does_not_answer_them_together_is_refused(answers):
     with pytest.raises(DriveConfigurationError, match=r'set drive.questions = "in turn"'):
         opened(questions="together")
     assert answers.closed
+
+
+@pytest.mark.parametrize("buffered", [True, False])
+def test_where_nothing_is_said_a_cycle_is_one_write_if_the_controller_can(answers, buffered):
+    answers.buffered = buffered
+    drive = opened(slow_every=100)
+    answers.sent.clear()
+    drive.exchange(OFF)
+    assert len(answers.sent) == (1 if buffered else 5)
 
 
 def test_together_what_was_not_answered_whole_is_asked_in_turn(answers):
@@ -128,6 +137,33 @@ def test_speed_where_it_is_wanted(answers):
     answers.data[18] = (-2000).to_bytes(4, "big", signed=True) + b"\x01"
     assert opened().exchange(OFF).velocity_rad_s == pytest.approx(-2000 * COUNT_RAD)
     assert isnan(opened(velocity="none").exchange(OFF).velocity_rad_s)  # left to the loop, which derives it
+
+
+def test_firmware_that_gives_a_magnitude_has_the_sign_in_the_direction_byte(answers):
+    answers.data[18] = (2000).to_bytes(4, "big") + b"\x01"
+    assert opened().exchange(OFF).velocity_rad_s == pytest.approx(-2000 * COUNT_RAD)
+    answers.data[18] = (2000).to_bytes(4, "big") + b"\x00"
+    assert opened().exchange(OFF).velocity_rad_s == pytest.approx(2000 * COUNT_RAD)
+
+
+@pytest.mark.parametrize(("motor", "number"), [(1, 133), (2, 134)])
+def test_a_current_limit_is_set_and_read_back(answers, motor, number):
+    opened(motor=motor, current_limit_a=2.5)
+    [packet] = [packet for packet in answers.sent if packet[1] == number]
+    assert packet[2:10].hex(" ") == "00 00 00 fa 00 00 00 00"  # 250 x 10 mA, and no lower limit
+
+
+def test_a_current_limit_that_does_not_read_back_is_refused(answers):
+    answers.keeps_limit = False
+    answers.data[135] = (1500).to_bytes(4, "big") + bytes(4)
+    with pytest.raises(DriveConfigurationError, match=r"current limit reads back as 15 A, set was 2.5 A"):
+        opened(current_limit_a=2.5)
+    assert answers.closed
+
+
+def test_without_a_current_limit_that_of_the_controller_stays(answers):
+    opened()
+    assert not [packet for packet in answers.sent if packet[1] in (133, 134)]
 
 
 def test_what_is_not_answered_is_not_measured(answers):
@@ -297,7 +333,7 @@ def test_a_host_that_was_late_is_told_that_the_watchdog_has_acted(answers):
     drive.enable(Mode.DUTY)
     drive.exchange(duty(0.5))
     time.sleep(0.15)
-    with pytest.raises(DriveFault, match=r"serial time-out has stopped the motor: no demand for .* 0.1 s are allowed"):
+    with pytest.raises(DriveFault, match=r"no demand for .*, and its serial time-out allows 0.1 s: .* switched off"):
         drive.exchange(duty(0.5))
     assert answers.duties[-1] == 0
     with pytest.raises(DriveStateError, match="enable duty mode first"):

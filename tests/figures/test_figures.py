@@ -7,7 +7,7 @@ import pytest
 
 from bench.config.configuration import default_configuration
 from bench.config.reflected_load import load_current_a
-from bench.config.rest_knowledge import RestSettings
+from bench.config.sections import RestSettings
 from bench.evaluation.figures import figures_table, rigs
 from bench.evaluation.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
 from bench.evaluation.figures.coverage import Share, true_load_a

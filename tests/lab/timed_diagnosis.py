@@ -24,18 +24,21 @@ def main() -> None:
 
     study = timed("import", _imported)
     with study.Store.open(sys.argv[1]) as store:
-        study_id = timed("study", lambda: study.create_study(store, "rates", [1]))["study_id"]
+        study_id = timed("study", lambda: study.create_study(store, "rates", [1])).study_id
         timed("comparison", lambda: study.compare(store, study_id))
         found = timed("diagnosis", lambda: study.diagnose(store, study_id))
         page = timed("report", lambda: study.report_html(store, study_id))
-    pictures = sum(bool(one["picture"]) for one in found["ranking"])
+    pictures = sum(bool(one.picture) for one in found.ranking)
     peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     print(json.dumps({"laps": laps, "pictures": pictures, "page": len(page), "peak_mb": peak_mb}))
 
 
 def _imported() -> Any:
     from bench.store import Store
-    from bench.study import compare, create_study, diagnose, report_html
+    from bench.study.compare import compare
+    from bench.study.create import create_study
+    from bench.study.diagnose import diagnose
+    from bench.study.report.report import report_html
 
     names = {"Store": Store, "create_study": create_study, "compare": compare}
     return SimpleNamespace(**names, diagnose=diagnose, report_html=report_html)

@@ -8,8 +8,8 @@ from pydantic import ValidationError
 from bench.config.configuration import default_configuration
 from bench.errors import ConfigurationError, LimitError, ParameterError, UnknownKindError
 from bench.runs.queue import Campaign, plan_campaign
-from bench.runs.queue.campaign_file import read_campaign
-from bench.runs.queue.load_order import fewest_changes, load_changes
+from bench.runs.queue.campaign import read_campaign
+from bench.runs.queue.items import fewest_changes, load_changes
 from bench.store.tables.queue import NewItem
 
 CONFIGURATION = default_configuration()

@@ -14,7 +14,7 @@ from bench.runs.queue import Conductor, Order, queue_state
 from bench.runs.queue.conductor import RESTARTED
 from bench.runs.runner import Runner
 from bench.store.errors import NotFoundError, StoreStateError
-from tests.bench.fake_drive import FakeDrive
+from tests.control.fake_drive import FakeDrive
 from tests.queue.waiting import wait_for
 
 

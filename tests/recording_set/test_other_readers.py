@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.control.cycle import RECORDED
-from bench.control.pair.cycle import PAIR_RECORDED
+from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.recording_set import (
     RecordingSetError,
     csv_chunks,

@@ -25,7 +25,7 @@ SMALL = {
 
 
 def curve(load_kg):
-    """What the preset says of itself; see `tests/bench/test_speed_sweep.py`."""
+    """What the preset says of itself; see `tests/experiments/test_speed_sweep.py`."""
     growth = 1.0 + 1.7 * 9.80665 * load_kg
     coulomb_a, static_a = 0.06 * growth + 0.00625, 0.1 * growth + 0.0075
     return FrictionCurve(

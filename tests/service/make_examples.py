@@ -11,7 +11,7 @@ import numpy as np
 
 from bench.evaluation.challenge import difficulty
 from bench.evaluation.challenge.difficulty import Difficulty
-from bench.service.http.examples import FILE, key
+from bench.service.http.openapi import FILE, key
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
 from tests.service.running_service import RunningService, running_service
@@ -63,6 +63,8 @@ def bench(asking: Asking, service: RunningService) -> None:
     ask("GET /lease")
     service.client.delete("/lease")
     ask("GET /experiment-kinds")
+    ask("GET /channels")
+    ask("POST /experiments/plan", STEPS)
     ask("POST /experiments", STEPS | {"pace": "real-time"})
     wait_for(lambda: len(service.runner.live().rows) > 20)
     ask("GET /live/now")
@@ -75,6 +77,7 @@ def bench(asking: Asking, service: RunningService) -> None:
     ask("GET /experiments/{number}", number=finished)
     ask("GET /experiments", query={"limit": LISTED})
     ask("GET /trials", query={"limit": 1, "experiment_id": finished})
+    ask("GET /trials/search", query={"limit": 1, "words": "step-001"})
     trial_id = service.store.trials(finished)[0].id
     ask("GET /trials/{number}", number=trial_id)
     ask("GET /trials/{number}/samples", query={"points": 10, "channels": "time_s,current_a"}, number=trial_id)

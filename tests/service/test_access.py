@@ -14,6 +14,7 @@ from tests.service.running_service import TOKEN, running_service
 
 CHANGES = [
     ("POST", "/experiments"),
+    ("POST", "/experiments/plan"),
     ("POST", "/stop"),
     ("POST", "/continue"),
     ("POST", "/lease"),

@@ -16,7 +16,7 @@ from bench.runs.bench_control import BenchControl
 from bench.runs.live import LiveRows
 from bench.service.http import turns
 from bench.service.live import live_events
-from bench.service.live.live_rows import Rows, rows_of
+from bench.service.live.status import Rows, rows_of
 from tests.service import running_service as service_of_tests
 from tests.service.running_service import TOKEN, RunningService, running_service
 

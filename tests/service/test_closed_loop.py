@@ -35,7 +35,7 @@ def test_an_unknown_model_is_refused(service, path):
 
 def test_what_is_kept_with_a_model_later_is_seen(service, path):
     """The error in closed loop, kept from the command line, is part of the ladder: it is not the same as before."""
-    from bench.study import keep_motion_errors
+    from bench.study.closed_loop import keep_motion_errors
 
     before = service.stranger.get(f"{path}/ladder")
     assert before.json()["rungs"][0]["motion"] is None

@@ -11,7 +11,7 @@ import pytest
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
-from tests.bench.fake_drive import FakeDrive
+from tests.control.fake_drive import FakeDrive
 
 
 def test_kinds_have_a_schema_with_units_bounds_and_defaults(service):

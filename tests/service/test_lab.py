@@ -12,6 +12,9 @@ from bench.recording_set import import_recording_set, read_recording_set
 from bench.service.lab import NICENESS, LabEndedError, LabHere, LabProcesses
 from bench.store import Store
 from bench.store.errors import NotFoundError
+from bench.study.compare import compare
+from bench.study.create import create_study, describe, list_studies
+from bench.study.diagnose import diagnose
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
 
@@ -53,23 +56,23 @@ def lab_processes() -> set[int]:
 
 
 def test_it_answers_as_the_lab_of_this_process_does(lab, store, experiment_id):
-    found = lab.call("create_study", name="arm", experiment_ids=[experiment_id], hold_out=["repeat=2"])
+    found = lab.call(create_study, "arm", [experiment_id], hold_out=["repeat=2"])
     here = LabHere(store)
-    assert lab.call("list_studies") == here.call("list_studies")
-    study_id = found["study_id"]
-    assert lab.call("compare", study_id, model_id=None) == here.call("compare", study_id, model_id=None)
+    assert lab.call(list_studies) == here.call(list_studies)
+    study_id = found.study_id
+    assert lab.call(compare, study_id).model_dump_json() == here.call(compare, study_id).model_dump_json()
 
 
 def test_its_errors_are_those_of_the_lab(lab):
     with pytest.raises(NotFoundError, match="99"):
-        lab.call("describe", 99)
-    assert lab.call("list_studies") is not None  # the process goes on
+        lab.call(describe, 99)
+    assert lab.call(list_studies) is not None  # the process goes on
 
 
 def test_it_lets_other_programs_go_first_and_is_used_again(lab):
     before = lab_processes()
-    lab.call("list_studies")
-    lab.call("list_studies")
+    lab.call(list_studies)
+    lab.call(list_studies)
     (process,) = lab_processes() - before
     ours = os.getpriority(os.PRIO_PROCESS, 0)
     assert os.getpriority(os.PRIO_PROCESS, process) == min(ours + NICENESS, 19)
@@ -77,24 +80,24 @@ def test_it_lets_other_programs_go_first_and_is_used_again(lab):
 
 def test_one_that_was_killed_is_said_and_another_one_answers(lab):
     before = lab_processes()
-    lab.call("list_studies")
+    lab.call(list_studies)
     (process,) = lab_processes() - before
     os.kill(process, signal.SIGKILL)
     wait_for(lambda: process not in lab_processes(), 10.0)
     with pytest.raises(LabEndedError, match="ask again"):
-        lab.call("list_studies")
-    assert lab.call("list_studies") is not None
+        lab.call(list_studies)
+    assert lab.call(list_studies) is not None
 
 
 def test_the_end_of_the_service_does_not_wait_for_a_search(lab, store, experiment_id):
-    study_id = LabHere(store).call("create_study", "long", [experiment_id], hold_out=["repeat=2"])["study_id"]
+    study_id = LabHere(store).call(create_study, "long", [experiment_id], hold_out=["repeat=2"]).study_id
     before = lab_processes()
     ended = []
 
     def search() -> None:
         try:
             while True:
-                lab.call("diagnose", study_id)
+                lab.call(diagnose, study_id)
         except LabEndedError:
             ended.append(True)
 
@@ -106,4 +109,4 @@ def test_the_end_of_the_service_does_not_wait_for_a_search(lab, store, experimen
     assert ended
     assert not lab_processes() - before
     with pytest.raises(LabEndedError, match="ending"):
-        lab.call("list_studies")
+        lab.call(list_studies)

@@ -6,6 +6,7 @@ from datetime import timedelta
 import pytest
 
 from bench.service.http.repeated_start import KeyInUseError, KeyReusedError, once
+from bench.service.routes.experiments import Started
 from bench.store import Store
 from bench.store.tables import start_keys
 from bench.store.tables.experiments import now
@@ -101,6 +102,9 @@ def test_keys_that_cannot_be_used(idle, key):
     assert idle.client.post("/experiments", json=BODY, headers={"Idempotency-Key": key}).status_code == 422
 
 
+SEVEN, EIGHT = Started(experiment_id=7, kind="steps"), Started(experiment_id=8, kind="steps")
+
+
 @pytest.fixture
 def store(tmp_path):
     with Store.open(f"sqlite:///{tmp_path / 'bench.sqlite'}") as opened:
@@ -110,31 +114,31 @@ def store(tmp_path):
 def test_of_many_at_once_one_starts(store):
     started = []
 
-    def start() -> dict:
+    def start() -> Started:
         started.append(1)
-        return {"experiment_id": 7}
+        return SEVEN
 
-    def ask(_number: int) -> dict | None:
+    def ask(_number: int) -> Started | None:
         try:
-            return once(store.access.start_keys, "ada", "key", {}, start)
+            return once(store.access.start_keys, "ada", "key", {}, start, Started)
         except KeyInUseError:
             return None
 
     with ThreadPoolExecutor(8) as pool:
         found = list(pool.map(ask, range(16)))
     assert len(started) == 1
-    assert {"experiment_id": 7} in found
-    assert all(one in (None, {"experiment_id": 7}) for one in found)
+    assert SEVEN in found
+    assert all(one in (None, SEVEN) for one in found)
 
 
 def test_a_start_without_an_answer_is_not_begun_again(store):
     store.access.start_keys.claim("ada", "key", "digest of a service that was killed")
     with pytest.raises(KeyReusedError):
-        once(store.access.start_keys, "ada", "key", {}, lambda: pytest.fail("it started"))
+        once(store.access.start_keys, "ada", "key", {}, lambda: pytest.fail("it started"), Started)
 
 
 def test_keys_are_kept_for_a_day(store, monkeypatch):
-    assert once(store.access.start_keys, "ada", "key", {}, lambda: {"n": 7}) == {"n": 7}
-    assert once(store.access.start_keys, "ada", "key", {}, lambda: {"n": 8}) == {"n": 7}
+    assert once(store.access.start_keys, "ada", "key", {}, lambda: SEVEN, Started) == SEVEN
+    assert once(store.access.start_keys, "ada", "key", {}, lambda: EIGHT, Started) == SEVEN
     monkeypatch.setattr(start_keys, "now", lambda: now() + timedelta(hours=25))
-    assert once(store.access.start_keys, "ada", "key", {}, lambda: {"n": 9}) == {"n": 9}
+    assert once(store.access.start_keys, "ada", "key", {}, lambda: EIGHT, Started) == EIGHT

@@ -1,7 +1,7 @@
 """Teleoperation over REST."""
 
-from bench.control.pair.cycle import PAIR_RECORDED
-from tests.bench.calibrated import calibrated_configuration
+from bench.config.channels import PAIR_RECORDED
+from tests.experiments.calibrated import calibrated_configuration
 from tests.service.running_service import running_service
 
 

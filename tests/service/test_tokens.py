@@ -12,10 +12,9 @@ import pytest
 from bench.errors import ConfigurationError
 from bench.service.auth import token_register
 from bench.service.auth.attempts import BURST, MOST_ADDRESSES, REFILL_S, Attempts
-from bench.service.auth.first_token import first_token, has_valid_token
-from bench.service.auth.roles import Role
-from bench.service.auth.token_register import TokenRegister
+from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import (
+    Role,
     check_name,
     chosen_token,
     digest_of,

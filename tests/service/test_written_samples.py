@@ -3,8 +3,7 @@
 import numpy as np
 
 from bench.service.http import written_samples
-from bench.service.http.json_numbers import column
-from bench.service.http.written_samples import samples_json
+from bench.service.http.downloads import column, samples_json
 from bench.service.routes.trials import Samples
 
 

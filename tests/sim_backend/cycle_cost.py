@@ -16,10 +16,10 @@ from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.control.clock import VirtualClock
 from bench.control.cycle import Action, Procedure, Reading
 from bench.control.drive_factory import Equipment, make_equipment
+from bench.control.ending import StopRequest
 from bench.control.limits import Guard
-from bench.control.loop import ControlLoop
+from bench.control.loop import ControlLoop, joint_loop
 from bench.control.servo import current_servo
-from bench.control.stop_request import StopRequest
 from bench.evaluation.paper.measurements import run_experiment
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
@@ -112,10 +112,10 @@ def opened(configuration: BenchConfiguration, plan: TrialPlan) -> Equipment:
     return equipment
 
 
-def loop_of(configuration: BenchConfiguration, drive: Any) -> ControlLoop:
+def loop_of(configuration: BenchConfiguration, drive: Any) -> ControlLoop[Action, Reading]:
     """The loop as a station makes it."""
     guard, servo = Guard(configuration.limits), current_servo(configuration.rig)
-    return ControlLoop(drive, VirtualClock(), guard, configuration.control.period_s, servo)
+    return joint_loop(drive, VirtualClock(), guard, configuration.control.period_s, servo)
 
 
 def take_notes(configuration: BenchConfiguration, plan: TrialPlan) -> Notes:

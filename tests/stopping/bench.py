@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,13 +16,14 @@ from typing import Any
 import httpx
 import tomli_w
 
-from bench.config.configuration import BenchConfiguration
+from bench.config.configuration import BenchConfiguration, parse_configuration
 from bench.control.commissioned import KIND
 from bench.control.drive_factory import make_equipment
 from bench.provenance import provenance
 from bench.store import Store
 from tests.devices.device_process import DeviceProcess, device_process
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured
+from tests.experiments.calibrated import calibrated_configuration
 
 TOKEN = "a-token-for-the-kill-tests"
 WATCHDOG_S = 1.0  # a busy machine keeps a host waiting for longer than a lab's would
@@ -30,6 +31,7 @@ HARDWARE_PRIORITY = 20  # of the device, where that is permitted: real ones do n
 ROOT = Path(__file__).parents[2]
 PATIENCE_S = 120.0
 PARAMETERS = {"loads_kg": [0.05], "waveforms": ["multisine"], "duration_s": 600, "repeats": 1}
+PAIR_PARAMETERS = {"load_kg": 0.05, "angles_rad": [0.2] * 10, "rest_s": 60, "reflect": ["none"]}
 CLIENTS, ASKED_FOR = 40, ("trials?limit=1000", "experiments?limit=1000", "bench", "live/now")
 OPTIONS = ["--loads-kg", "0.05", "--waveforms", "multisine", "--duration-s", "600", "--repeats", "1"]
 
@@ -40,14 +42,28 @@ class Bench:
 
     Attributes:
         folder: where all is kept.
-        device: behind the wire.
+        devices: behind the wire: the joint's; or the slave's, and the master's.
         configuration: of the bench.
     """
 
     folder: Path
-    device: DeviceProcess
+    devices: tuple[DeviceProcess, ...]
     configuration: BenchConfiguration
     starts: int = field(default=0)
+
+    @property
+    def device(self) -> DeviceProcess:
+        """That of the joint, or of the slave."""
+        return self.devices[0]
+
+    def wait_for_power(self, on: bool) -> float:
+        """Wait until every motor has power, or none has; when that began, by `time.monotonic()` [s]."""
+        return max(device.wait_for_power(on, PATIENCE_S) for device in self.devices)
+
+    def repair(self) -> None:
+        """Put right whatever a deed has broken."""
+        for device in self.devices:
+            device.side.ask("repair")
 
     @property
     def database(self) -> Path:
@@ -86,18 +102,31 @@ class Bench:
 
 
 @contextmanager
-def kills_bench(folder: Path) -> Iterator[Bench]:
-    """A bench whose drive has passed the commissioning move, as the store remembers it."""
-    with device_process("modbus", "--transport", "tcp") as device:
-        _do_not_share(device)
-        configuration = configured(**device.drive, watchdog_s=WATCHDOG_S, answer_timeout_s=ANSWER_TIMEOUT_S)
-        drive = configuration.drive.model_copy(update={"side_channel": device.drive["side_channel"]})
-        configuration = configuration.model_copy(update={"drive": drive})
-        values = configuration.model_dump(mode="json", exclude_none=True, exclude={"store"})
+def kills_bench(folder: Path, joints: int = 1) -> Iterator[Bench]:
+    """A bench whose drives have passed the commissioning move, as the store remembers it.
+
+    Args:
+        folder: for store and configuration.
+        joints: 1, or 2 for a master and a slave.
+    """
+    with ExitStack() as stack:
+        devices = [stack.enter_context(device_process("modbus", "--transport", "tcp")) for _ in range(joints)]
+        for device in devices:
+            _do_not_share(device)
+        values = configured().model_dump(mode="json", exclude_none=True, exclude={"store"})
+        values["drive"] = _section(devices[0])
+        if joints == 2:
+            told = calibrated_configuration().model_dump(mode="json", exclude_none=True, include={"friction", "rest"})
+            master = {"drive": _section(devices[1]), "limits": values["limits"]}
+            values |= {**told, "master": master}
         (folder / "bench.toml").write_text(tomli_w.dumps(values))
-        found = Bench(folder, device, configuration)
+        found = Bench(folder, tuple(devices), parse_configuration(values, "bench.toml"))
         _commission(found)
         yield found
+
+
+def _section(device: DeviceProcess) -> dict[str, Any]:
+    return {**device.drive, "watchdog_s": WATCHDOG_S, "answer_timeout_s": ANSWER_TIMEOUT_S}
 
 
 def _do_not_share(device: DeviceProcess) -> None:
@@ -107,14 +136,16 @@ def _do_not_share(device: DeviceProcess) -> None:
 
 
 def _commission(bench: Bench) -> None:
-    opened = make_equipment(bench.configuration).drive
-    opened.open(PERIOD_S)
-    try:
-        identity = provenance(bench.configuration, opened.describe())
-    finally:
-        opened.close()
+    benches = [bench.configuration] + ([bench.configuration.of_master()] if len(bench.devices) == 2 else [])
     with Store.open(f"sqlite:///{bench.database}") as store:
-        store.finish_experiment(store.begin_experiment(KIND, {}, "simulated", identity, {}), "completed")
+        for one in benches:
+            opened = make_equipment(one).drive
+            opened.open(PERIOD_S)
+            try:
+                identity = provenance(one, opened.describe())
+            finally:
+                opened.close()
+            store.finish_experiment(store.begin_experiment(KIND, {}, "simulated", identity, {}), "completed")
 
 
 class Service:
@@ -139,11 +170,20 @@ class Service:
 
         wait_for(lambda: answers() or self.process.poll() is not None, bench)
 
-    def start(self) -> None:
-        body = {"kind": "excitation", "parameters": PARAMETERS, "pace": "real-time"}
+    def start(self, bench: Bench) -> None:
+        kind, parameters = ("teleoperation", PAIR_PARAMETERS) if len(bench.devices) == 2 else ("excitation", PARAMETERS)
+        body = {"kind": kind, "parameters": parameters, "pace": "real-time"}
         answer = self.client.post("/experiments", json=body)
         if answer.status_code != 201:
             raise RuntimeError(f"the next start did not work: {answer.text}")
+        if kind == "teleoperation":
+            self._take_hold(bench)
+
+    def _take_hold(self, bench: Bench) -> None:
+        """Say that somebody holds the master, as soon as that is asked for."""
+        wait_for(lambda: self.client.get("/bench").json()["prompt"], bench)
+        prompt = self.client.get("/bench").json()["prompt"]
+        self.client.post("/continue", json={"prompt": prompt["number"]}).raise_for_status()
 
     def runs(self) -> bool:
         return bool(self.client.get("/bench").json()["state"] == "running")

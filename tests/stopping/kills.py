@@ -1,6 +1,6 @@
 """Ends runs at random moments, in every way a run can end, and looks at what is left: `python -m tests.stopping.kills`.
 
-    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"]
+    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"] [--joints 2]
 
 The drive is a simulated device in a process of its own, over Modbus TCP; when the motor was off is what the device
 says. All runs share one store and one drive: that the next run starts is part of what is tested. After each: the
@@ -27,7 +27,7 @@ import numpy as np
 from bench.store import Store
 from bench.store.records import Trial
 from tests.drivers.conformance.benches import PERIOD_S
-from tests.stopping.bench import OPTIONS, PATIENCE_S, Bench, Service, is_there, kills_bench, wait_for
+from tests.stopping.bench import OPTIONS, Bench, Service, is_there, kills_bench, wait_for
 from tests.stopping.ways import WAYS, Scene, Way
 
 ALLOWED_LOSS_S = 0.2
@@ -74,15 +74,15 @@ class Killer:
     def end_one(self, way: Way) -> Ending:
         """Start a run, end it at a random moment, and look at what is left."""
         scene = self._started(way)
-        on_s = self._bench.device.wait_for_power(True, PATIENCE_S)
+        on_s = self._bench.wait_for_power(True)
         wait_for(lambda: self._bench.committed() > 0 or scene.process.poll() is not None, self._bench)
         time.sleep(float(self._generator.uniform(0.0, LONGEST_S)))
         seen = self._bench.committed()
         loop = scene.loop_process()
         deed_s = way.deed(scene)
         wait_for(lambda: self._has_ended(scene), self._bench)
-        off_s = self._bench.device.wait_for_power(False, PATIENCE_S)
-        self._bench.device.side.ask("repair")
+        off_s = self._bench.wait_for_power(False)
+        self._bench.repair()
         if not way.survives:
             self.leave()
             wait_for(lambda: not is_there(loop), self._bench)  # nobody is left behind
@@ -97,7 +97,7 @@ class Killer:
 
     def _started(self, way: Way) -> Scene:
         if way.served and self._scene is not None and self._scene.service is not None:
-            self._scene.service.start()
+            self._scene.service.start(self._bench)
             return self._scene
         self.leave()
         words = ["serve", "--port", str(port := free_port())] if way.served else ["run", "excitation", *OPTIONS]
@@ -105,7 +105,7 @@ class Killer:
         service = Service(process, port) if way.served else None
         if service is not None:
             service.wait_until_up(self._bench)
-            service.start()
+            service.start(self._bench)
         self._scene = Scene(self._bench, process, service)
         return self._scene
 
@@ -135,8 +135,10 @@ def look(bench: Bench, way: Way, seen: int, times: Times) -> Ending:
     with Store.open(f"sqlite:///{bench.database}") as store:
         (experiment,) = store.experiments(limit=1)
         trial = store.trials(experiment.id)[-1]
-        samples = store.samples(trial.id, ["time_s", "enabled"])
-    off_s, lost_s = times.off_s - times.deed_s, _lost_s(way, samples, times)
+        # of a pair, the master gets its power last: the run is ended while both have it
+        enabled = "master_enabled" if len(bench.devices) == 2 else "enabled"
+        samples = store.samples(trial.id, ["time_s", enabled])
+    off_s, lost_s = times.off_s - times.deed_s, _lost_s(way, samples["time_s"], samples[enabled], times)
     problems = [] if sound == "ok" else [f"integrity_check says {sound}"]
     problems += list(_wrong_in_record(way, trial, samples["time_s"], seen))
     if off_s > way.off_s:
@@ -146,9 +148,8 @@ def look(bench: Bench, way: Way, seen: int, times: Times) -> Ending:
     return Ending(way, off_s, lost_s, trial.rows, problems)
 
 
-def _lost_s(way: Way, samples: dict[str, np.ndarray], times: Times) -> float:
+def _lost_s(way: Way, time_s: np.ndarray, enabled: np.ndarray, times: Times) -> float:
     """Samples that the record lacks [s]. Its first row with power is from the moment when the device had power."""
-    time_s, enabled = samples["time_s"], samples["enabled"]
     if not enabled.any():
         return max(times.deed_s - times.on_s, 0.0)
     last_s = times.on_s + time_s[-1] - time_s[np.flatnonzero(enabled)[0]]
@@ -192,12 +193,17 @@ def main() -> None:
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--way", action="append", help="only this one; repeatable")
+    parser.add_argument("--joints", type=int, choices=(1, 2), default=1, help="2: a master and a slave, served")
     arguments = parser.parse_args()
     for number in (signal.SIGINT, signal.SIGTERM):  # a shell has what it starts in the background ignore the first
         signal.signal(number, signal.default_int_handler)
     ways = [way for way in WAYS if not arguments.way or way.name in arguments.way]
+    ways = [way for way in ways if way.served or arguments.joints == 1]
     endings = []
-    with tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder, kills_bench(Path(folder)) as bench:
+    with (
+        tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder,
+        kills_bench(Path(folder), arguments.joints) as bench,
+    ):
         killer = Killer(bench, arguments.seed)
         try:
             for number in range(arguments.kills):

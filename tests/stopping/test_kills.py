@@ -13,10 +13,10 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 CHOSEN = ("stop by REST", "limit trip", "drive gone", "kill -9 of the loop", "kill -9 of the service")
 
 
-@pytest.fixture(scope="module")
-def killer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Killer]:
-    """One store and one drive for all: that the next run starts is part of the test."""
-    with kills_bench(tmp_path_factory.mktemp("kills")) as bench:
+@pytest.fixture(scope="module", params=[1, 2], ids=["one joint", "a pair"])
+def killer(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Killer]:
+    """One store and the same drives for all: that the next run starts is part of the test."""
+    with kills_bench(tmp_path_factory.mktemp("kills"), request.param) as bench:
         made = Killer(bench, seed=1)
         yield made
         made.leave()

@@ -18,10 +18,11 @@ from typing import NamedTuple
 import numpy as np
 from sqlalchemy import insert
 
-from bench.control.cycle import RECORDED
+from bench.config.channels import RECORDED
 from bench.store import Store, TrialWriter
 from bench.store.schema import TRIAL, TRIAL_CONDITION
 from bench.store.tables.experiments import now
+from bench.store.tables.trial_search import TrialQuery
 
 CHANNELS = RECORDED[:10]
 APPENDED_ROWS = 32_768
@@ -117,6 +118,17 @@ def listing(folder: Path, count: int) -> list[Line]:
             taken_ms = 1e3 * best(REPEATS, lambda filters=filters: store.trials(**filters, limit=100))
             what = f"list of {count} trials, page of 100: {name}"
             found.append(Line(what, "< 50 ms", f"{taken_ms:.1f} ms", taken_ms < 50))
+        looked_for = {
+            "newest first": TrialQuery(descending=True),
+            "sorted by name": TrialQuery(sort="name"),
+            "one word": TrialQuery(words=("77",)),
+            "two words": TrialQuery(words=("steps", "nlgi")),
+        }
+        for name, query in looked_for.items():
+            taken_ms = 1e3 * best(REPEATS, lambda query=query: store.search_trials(query, 50, 200))
+            found.append(
+                Line(f"search in {count} trials, page of 50: {name}", "< 200 ms", f"{taken_ms:.1f} ms", taken_ms < 200)
+            )
         return found
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from bench.store import Event, Store
 from bench.store.errors import NotFoundError, StoreValueError
+from bench.store.records import NewExperiment
 from bench.store.upkeep.importing import Import
 from compensator.lab.recordings.recording import Recording
 from tests.store.examples import begin, begin_trial, rows
@@ -18,10 +19,9 @@ def recording(name: str, count: int = 10) -> Recording:
 
 
 def begin_import(store: Store) -> Import:
-    values = {"kind": "import", "parameters": {}, "provenance": {}, "rig": {}}
     with store._database.writing():
         token = store.custody.token()
-    return Import(store._database, token, values)
+    return Import(store._database, token, NewExperiment("import", {}, {}, {}, "imported"))
 
 
 def tables(store: Store) -> dict[str, int]:

@@ -138,7 +138,7 @@ def test_what_is_removed_leaves_no_row(store: Store) -> None:
 
 
 def test_a_trial_that_does_not_fit_on_the_disk_is_refused_with_numbers() -> None:
-    need = SpaceNeed.of(trial_s=600.0, period_s=0.001, reserve_mb=200.0)
+    need = SpaceNeed.of(trial_s=600.0, period_s=0.001, reserve_mb=200.0, channels=14)
     need.check(10**9, 3, "bench.sqlite")
     need.check(None, 10**6, "a server's disk is not known")
     with pytest.raises(

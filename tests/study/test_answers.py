@@ -7,38 +7,33 @@ import numpy as np
 import pytest
 
 from bench.cli.output import print_json
-from bench.service.http.json_numbers import plain
-from bench.service.models.study_models import Changed, Comparison, Diagnosis, Ladder, Searched, Study
 from bench.store.errors import NotFoundError
-from bench.study import (
-    add_effect,
-    compare,
-    create_study,
-    describe,
-    diagnose,
-    drop_effect,
-    effects_catalogue,
-    ladder,
-    search,
-)
-from bench.study.changes import _sentence
+from bench.study.changes import _sentence, add_effect, drop_effect
+from bench.study.compare import compare
+from bench.study.create import create_study, describe
+from bench.study.diagnose import diagnose
+from bench.study.effects import effects_catalogue
 from bench.study.errors import StudyError
+from bench.study.ladder import ladder
+from bench.study.models.base import StudyModel
+from bench.study.models.study import Study
+from bench.study.search import search
 from compensator.lab.model.gain import Gain
 from tests.lab.synthetic import Joint, plans
 from tests.study.conftest import imported
 
 
 @pytest.fixture(scope="module")
-def study(store, experiment_id) -> dict:
+def study(store, experiment_id) -> Study:
     return create_study(store, "joint", [experiment_id], hold_out=["repeat=2"], cutoff_hz=6.0)
 
 
 @pytest.fixture(scope="module")
-def story(store, study) -> dict[str, dict]:
+def story(store, study) -> dict[str, StudyModel]:
     """The whole of a study, in the order of its use."""
-    number = study["study_id"]
+    number = study.study_id
     told = {"compare": compare(store, number), "diagnose": diagnose(store, number)}
-    told["add"] = add_effect(store, number, told["diagnose"]["ranking"][0]["effect"])
+    told["add"] = add_effect(store, number, told["diagnose"].ranking[0].effect)
     told["compare after"] = compare(store, number)
     told["diagnose after"] = diagnose(store, number)
     told["drop"] = drop_effect(store, number, "viscous_asymmetry")
@@ -48,79 +43,71 @@ def story(store, study) -> dict[str, dict]:
 
 def test_the_hidden_effect_is_named_added_and_helps(story):
     found = story["diagnose"]
-    assert found["verdict"] == "missing"
-    assert found["ranking"][0]["effect"] == "viscous_asymmetry"
-    assert found["classes"][0]["effects"][0] == "viscous_asymmetry"
-    assert [one["effect"] for one in found["ranking"] if one["in_class"]] == found["classes"][0]["effects"]
-    assert story["add"]["gain_low"] > 0
-    assert "It helps: keep it." in story["add"]["sentence"]
-    assert "It harms: drop it." in story["drop"]["sentence"]
+    assert found.verdict == "missing"
+    assert found.ranking[0].effect == "viscous_asymmetry"
+    assert found.classes[0].effects[0] == "viscous_asymmetry"
+    assert [one.effect for one in found.ranking if one.in_class] == found.classes[0].effects
+    assert story["add"].gain_low > 0
+    assert "It helps: keep it." in story["add"].sentence
+    assert "It harms: drop it." in story["drop"].sentence
     after = story["diagnose after"]
-    assert after["verdict"] == "nothing"
-    assert after["classes"] == []
-    assert not any(one["in_class"] for one in after["ranking"])
+    assert after.verdict == "nothing"
+    assert after.classes == []
+    assert not any(one.in_class for one in after.ranking)
 
 
 def test_the_numbers_of_all_answers_agree(story, study):
-    base, better, again = story["ladder"]["rungs"]
+    base, better, again = story["ladder"].rungs
     for rung, compared in ((base, story["compare"]), (better, story["compare after"])):
-        assert rung["training"] == pytest.approx(compared["error"]["training"]["relative"], rel=1e-9)
-        assert rung["held_out"] == pytest.approx(compared["error"]["held_out"]["relative"], rel=1e-9)
-        assert rung["held_out_kind"] == compared["error"]["held_out"]["kind"] == "hold-out"
-        assert rung["held_out_low"] < rung["held_out"] < rung["held_out_high"]
-    added, best = story["add"], story["diagnose"]["ranking"][0]
-    assert added["before"] == pytest.approx({key: base[key] for key in ("training", "held_out")}, rel=1e-9)
-    assert added["after"] == pytest.approx({key: better[key] for key in ("training", "held_out")}, rel=1e-9)
-    assert added["gain"] == pytest.approx(1 - better["held_out"] / base["held_out"])
-    assert best["held_out_before"] == pytest.approx(base["held_out"], rel=1e-9)
-    assert best["held_out_after"] == pytest.approx(better["held_out"], rel=1e-6)
-    assert again["held_out"] == pytest.approx(base["held_out"], rel=1e-6)
-    assert story["ladder"]["floor"] == pytest.approx(story["compare after"]["error"]["floor"]["relative"], rel=0.05)
-    assert [rung["added"] for rung in (base, better, again)] == [None, "viscous_asymmetry", None]
-    assert [rung["removed"] for rung in (base, better, again)] == [None, None, "viscous_asymmetry"]
-    assert [rung["parent_id"] for rung in (base, better, again)] == [None, base["model_id"], better["model_id"]]
-    assert base["model_id"] == study["model_id"]
-    assert story["ladder"]["floor"] < better["held_out"] * 1.2
-    assert better["held_out"] < base["held_out"]
+        assert rung.training == pytest.approx(compared.error.training.relative, rel=1e-9)
+        assert rung.held_out == pytest.approx(compared.error.held_out.relative, rel=1e-9)
+        assert rung.held_out_kind == compared.error.held_out.kind == "hold-out"
+        assert rung.held_out_low < rung.held_out < rung.held_out_high
+    added, best = story["add"], story["diagnose"].ranking[0]
+    for change, rung in ((added.before, base), (added.after, better)):
+        assert (change.training, change.held_out) == pytest.approx((rung.training, rung.held_out), rel=1e-9)
+    assert added.gain == pytest.approx(1 - better.held_out / base.held_out)
+    assert best.held_out_before == pytest.approx(base.held_out, rel=1e-9)
+    assert best.held_out_after == pytest.approx(better.held_out, rel=1e-6)
+    assert again.held_out == pytest.approx(base.held_out, rel=1e-6)
+    assert story["ladder"].floor == pytest.approx(story["compare after"].error.floor.relative, rel=0.05)
+    assert [rung.added for rung in (base, better, again)] == [None, "viscous_asymmetry", None]
+    assert [rung.removed for rung in (base, better, again)] == [None, None, "viscous_asymmetry"]
+    assert [rung.parent_id for rung in (base, better, again)] == [None, base.model_id, better.model_id]
+    assert base.model_id == study.model_id
+    assert story["ladder"].floor < better.held_out * 1.2
+    assert better.held_out < base.held_out
 
 
 def test_errors_are_those_of_the_series(store, experiment_id):
     study = create_study(store, "all rows", [experiment_id], hold_out=["repeat=2"], cutoff_hz=6.0, rows="all")
-    found = compare(store, study["study_id"])
+    found = compare(store, study.study_id)
     powers = {"training": np.zeros(3), "held_out": np.zeros(3)}
-    for series, trial in zip(found["series"], found["trials"], strict=True):
-        measured, predicted, residual = (np.array(series[key]) for key in ("measured", "predicted", "residual"))
-        assert series["trial_id"] == trial["trial_id"]
-        assert len(series["time_s"]) == len(measured)
-        assert (np.diff(series["time_s"]) > 0).all()
+    for series, trial in zip(found.series, found.trials, strict=True):
+        measured, predicted, residual = map(np.array, (series.measured, series.predicted, series.residual))
+        assert series.trial_id == trial.trial_id
+        assert len(series.time_s) == len(measured)
+        assert (np.diff(series.time_s) > 0).all()
         assert measured - predicted == pytest.approx(residual, abs=1e-12)
-        assert trial["rms"] == pytest.approx(np.sqrt(np.mean(residual**2)), rel=1e-9)
-        assert trial["relative"] == pytest.approx(np.linalg.norm(residual) / np.linalg.norm(measured), rel=1e-9)
-        powers[trial["role"]] += [residual @ residual, measured @ measured, len(measured)]
+        assert trial.rms == pytest.approx(np.sqrt(np.mean(residual**2)), rel=1e-9)
+        assert trial.relative == pytest.approx(np.linalg.norm(residual) / np.linalg.norm(measured), rel=1e-9)
+        powers[trial.role] += [residual @ residual, measured @ measured, len(measured)]
     for role, (residual, effort, count) in powers.items():
-        assert found["error"][role]["relative"] == pytest.approx(np.sqrt(residual / effort), rel=1e-9)
-        assert found["error"][role]["rms"] == pytest.approx(np.sqrt(residual / count), rel=1e-9)
+        error = found.error.training if role == "training" else found.error.held_out
+        assert error.relative == pytest.approx(np.sqrt(residual / effort), rel=1e-9)
+        assert error.rms == pytest.approx(np.sqrt(residual / count), rel=1e-9)
 
 
 def test_held_out_alone_counts_as_held_out(story):
-    names = {trial["name"]: trial["role"] for trial in story["compare"]["trials"]}
+    names = {trial.name: trial.role for trial in story["compare"].trials}
     assert all(role == ("held_out" if name.endswith("-2") else "training") for name, role in names.items())
 
 
-@pytest.mark.parametrize(
-    ("answer", "model"),
-    [
-        ("compare", Comparison),
-        ("compare after", Comparison),
-        ("diagnose", Diagnosis),
-        ("diagnose after", Diagnosis),
-        ("add", Changed),
-        ("drop", Changed),
-        ("ladder", Ladder),
-    ],
-)
-def test_answers_have_the_shape_that_the_service_publishes(story, answer, model):
-    assert model.model_validate(plain(story[answer]))
+@pytest.mark.parametrize("answer", ["compare", "compare after", "diagnose", "diagnose after", "add", "drop", "ladder"])
+def test_answers_come_back_from_json_as_they_were(story, answer):
+    found = story[answer]
+    text = found.model_dump_json()
+    assert type(found).model_validate_json(text).model_dump_json() == text
 
 
 def test_json_has_no_nan(store, story, study, capsys):
@@ -134,64 +121,64 @@ def test_json_has_no_nan(store, story, study, capsys):
             yield value
 
     for answer in [*story.values(), study, effects_catalogue()]:
-        listed = list(numbers(json.loads(json.dumps(plain(answer), allow_nan=False))))
-        assert all(math.isfinite(one) for one in listed)
         print_json(answer)
-        assert "NaN" not in capsys.readouterr().out
-    assert Study.model_validate(plain(describe(store, study["study_id"])))
+        out = capsys.readouterr().out
+        assert "NaN" not in out
+        assert all(math.isfinite(one) for one in numbers(json.loads(out)))
+    assert describe(store, study.study_id).trials == study.trials
 
 
 def test_pictures_and_residuals_are_drawable(story):
-    for one in story["diagnose"]["ranking"]:
-        picture = one["picture"]
-        lengths = {len(picture[key]) for key in ("x", "residual", "low", "high")}
+    for one in story["diagnose"].ranking:
+        picture = one.picture
+        lengths = {len(values) for values in (picture.x, picture.residual, picture.low, picture.high)}
         assert len(lengths) == 1
-        assert lengths.pop() > 3 or picture["driver"] == "load at the tip"
-        assert len(picture["curve_x"]) == len(picture["curve"])
-    for against in story["compare"]["residual_against"]:
-        for group in against["groups"]:
-            assert len({len(group[key]) for key in ("x", "mean", "low", "high", "count")}) == 1
+        assert lengths.pop() > 3 or picture.driver == "load at the tip"
+        assert len(picture.curve_x) == len(picture.curve)
+    for against in story["compare"].residual_against:
+        for group in against.groups:
+            assert len({len(one) for one in (group.x, group.mean, group.low, group.high, group.count)}) == 1
 
 
 def test_parameters_have_units_and_intervals(story):
-    found = {(one["effect"], one["name"]): one for one in story["compare after"]["parameters"]}
+    found = {(one.effect, one.name): one for one in story["compare after"].parameters}
     viscous = found["viscous", "viscous friction"]
-    assert viscous["unit"] == "N m s/rad"
-    assert viscous["low"] < viscous["value"] < viscous["high"]
-    assert viscous["low"] <= 0.03 <= viscous["high"]
-    assert found["viscous_asymmetry", "half difference of viscous friction"]["value"] == pytest.approx(0.012, rel=0.1)
+    assert viscous.unit == "N m s/rad"
+    assert viscous.low < viscous.value < viscous.high
+    assert viscous.low <= 0.03 <= viscous.high
+    assert found["viscous_asymmetry", "half difference of viscous friction"].value == pytest.approx(0.012, rel=0.1)
 
 
 def test_without_held_out_trials_each_is_left_out_in_turn(store, experiment_id):
     study = create_study(store, "joint", [experiment_id], where=["repeat=1"], cutoff_hz=6.0)
-    found = compare(store, study["study_id"])
-    assert found["error"]["held_out"]["kind"] == "leave-one-trial-out"
-    assert found["error"]["floor"] is None
-    assert any("No trial repeats another" in note for note in found["notes"])
-    assert ladder(store, study["study_id"])["floor"] is None
+    found = compare(store, study.study_id)
+    assert found.error.held_out.kind == "leave-one-trial-out"
+    assert found.error.floor is None
+    assert any("No trial repeats another" in note for note in found.notes)
+    assert ladder(store, study.study_id).floor is None
 
 
 def test_few_trials_leave_out_stretches_and_say_so(store):
     number = imported(store, plans(loads_kg=(0.2,)))
     study = create_study(store, "joint", [number], cutoff_hz=6.0)
-    found = compare(store, study["study_id"])
-    assert found["error"]["held_out"]["kind"] == "leave-one-block-out"
-    assert any("stretches of 2 s are left out instead" in note for note in found["notes"])
+    found = compare(store, study.study_id)
+    assert found.error.held_out.kind == "leave-one-block-out"
+    assert any("stretches of 2 s are left out instead" in note for note in found.notes)
 
 
 def test_what_does_not_exist_is_told(store, study):
-    number = study["study_id"]
+    number = study.study_id
     with pytest.raises(StudyError, match="effect 'magic' is not in the catalogue"):
         add_effect(store, number, "magic")
     with pytest.raises(StudyError, match=r"model \d+ has viscous already; its effects are: inertia"):
-        add_effect(store, number, "viscous", study["model_id"])
+        add_effect(store, number, "viscous", study.model_id)
     with pytest.raises(StudyError, match=r"model \d+ has no spring; its effects are: inertia"):
-        drop_effect(store, number, "spring", study["model_id"])
+        drop_effect(store, number, "spring", study.model_id)
     for ask in (compare, diagnose, ladder, describe):
         with pytest.raises(NotFoundError, match="99999"):
             ask(store, 99999)
     for ask in (compare, diagnose):
-        with pytest.raises(StudyError, match=f"study {number} has no model 99999; its models are: {study['model_id']}"):
+        with pytest.raises(StudyError, match=f"study {number} has no model 99999; its models are: {study.model_id}"):
             ask(store, number, 99999)
     before = len(store.models(number))
     with pytest.raises(StudyError, match="has no model 99999"):
@@ -203,22 +190,25 @@ def test_an_effect_that_the_trials_cannot_show_is_refused(store):
     number = imported(store, plans(loads_kg=(0.2,), temperatures_c=(30.0,)))
     study = create_study(store, "joint", [number], cutoff_hz=6.0)
     with pytest.raises(StudyError, match="weight_friction needs load_kg to differ over the data, and it does not"):
-        add_effect(store, study["study_id"], "weight_friction")
-    notes = diagnose(store, study["study_id"])["notes"]
+        add_effect(store, study.study_id, "weight_friction")
+    found = diagnose(store, study.study_id)
+    told = {one.values["effect"]: one for one in found.findings if one.code == "not-judged"}
+    assert told["viscous_temperature"].text in found.notes
+    notes = found.notes
     assert any("Not judged: viscous_temperature needs temperature_c to differ" in note for note in notes)
-    assert len(store.models(study["study_id"])) == 1
+    assert len(store.models(study.study_id)) == 1
 
 
 def test_a_model_is_fitted_again_as_it_was(store, story, study):
-    again = compare(store, study["study_id"], study["model_id"])
-    assert plain(again) == plain(story["compare"])
+    again = compare(store, study.study_id, study.model_id)
+    assert again.model_dump_json() == story["compare"].model_dump_json()
 
 
 def test_a_model_keeps_the_shapes_it_was_fitted_at(store, study):
-    model = store.model(study["model_id"])
+    model = store.model(study.model_id)
     result = {**model.result, "shapes": {**model.result["shapes"], "stribeck": [0.5, 1.5]}}
-    other = store.add_model(study["study_id"], model.id, model.effects, result)
-    found = {one["name"]: one["value"] for one in compare(store, study["study_id"], other)["parameters"]}
+    other = store.add_model(study.study_id, model.id, model.effects, result)
+    found = {one.name: one.value for one in compare(store, study.study_id, other).parameters}
     assert (found["Stribeck speed"], found["Stribeck exponent"]) == (0.5, 1.5)
     store.remove_model(other)
 
@@ -226,53 +216,51 @@ def test_a_model_keeps_the_shapes_it_was_fitted_at(store, study):
 def test_the_last_effect_cannot_be_dropped(store, experiment_id):
     study = create_study(store, "joint", [experiment_id], base=["gravity"], cutoff_hz=6.0)
     with pytest.raises(StudyError, match="the model has no effects; add at least one"):
-        drop_effect(store, study["study_id"], "gravity")
+        drop_effect(store, study.study_id, "gravity")
 
 
 def test_an_unknown_effect_names_its_driver(store):
     bump = Joint(extra=lambda x: 0.06 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
     study = create_study(store, "joint", [imported(store, plans(), bump)])
-    found = diagnose(store, study["study_id"])
-    assert found["verdict"] == "unknown-effect"
-    assert "position against motion" in found["sentence"]
-    assert found["classes"] == []
+    found = diagnose(store, study.study_id)
+    assert found.verdict == "unknown-effect"
+    assert "position against motion" in found.sentence
+    assert found.classes == []
 
 
 def test_the_catalogue_as_json():
-    found = {one["name"]: one for one in effects_catalogue()}
-    assert found["load_friction"]["parameters"] == [
-        {"name": "share of the load lost", "unit": "1", "low": 0.0, "high": 1.0}
-    ]
-    assert found["gravity"]["parameters"][0]["low"] is None
-    assert found["viscous_temperature"]["channels"] == ["temperature_c"]
+    found = {one.name: one for one in effects_catalogue()}
+    (share,) = found["load_friction"].parameters
+    assert (share.name, share.unit, share.low, share.high) == ("share of the load lost", "1", 0.0, 1.0)
+    assert found["gravity"].parameters[0].low is None
+    assert found["viscous_temperature"].channels == ["temperature_c"]
 
 
 def test_a_search_keeps_every_model_on_its_way(store, experiment_id):
-    number = create_study(store, "searched", [experiment_id], hold_out=["repeat=2"], cutoff_hz=6.0)["study_id"]
+    number = create_study(store, "searched", [experiment_id], hold_out=["repeat=2"], cutoff_hz=6.0).study_id
     found = search(store, number)
-    Searched.model_validate(plain(found))
-    assert found["added"] == ["viscous_asymmetry"]
-    assert found["verdict"] == "nothing"
-    base, better = ladder(store, number)["rungs"]
-    (step,) = found["steps"]
-    assert (step["change"], step["effect"]) == ("add", "viscous_asymmetry")
-    assert step["model_id"] == better["model_id"] == found["model_id"]
-    assert (step["before"], step["after"]) == pytest.approx((base["held_out"], better["held_out"]))
-    assert step["sentence"].startswith("Added viscous_asymmetry: held-out error ")
+    assert found.added == ["viscous_asymmetry"]
+    assert found.verdict == "nothing"
+    base, better = ladder(store, number).rungs
+    (step,) = found.steps
+    assert (step.change, step.effect) == ("add", "viscous_asymmetry")
+    assert step.model_id == better.model_id == found.model_id
+    assert (step.before, step.after) == pytest.approx((base.held_out, better.held_out))
+    assert step.sentence.startswith("Added viscous_asymmetry: held-out error ")
 
 
 def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the_study_looks(store):
     from tests.lab.diagnosis.test_diagnose import WITH_MEMORY
 
     joint = Joint(extra=WITH_MEMORY["pre_sliding"])
-    number = create_study(store, "memory", [imported(store, plans((0.0, 0.2)), joint)], cutoff_hz=6.0)["study_id"]
+    number = create_study(store, "memory", [imported(store, plans((0.0, 0.2)), joint)], cutoff_hz=6.0).study_id
     change = add_effect(store, number, "pre_sliding")
-    assert change["gain_low"] > 0.5  # near reversals
-    regimes = {one["name"]: one["relative"] for one in compare(store, number)["regimes"]}
-    before = {one["name"]: one["relative"] for one in compare(store, number, change["parent_id"])["regimes"]}
+    assert change.gain_low > 0.5  # near reversals
+    regimes = {one.name: one.relative for one in compare(store, number).regimes}
+    before = {one.name: one.relative for one in compare(store, number, change.parent_id).regimes}
     assert regimes["transient"] < 0.5 * before["transient"]
-    rungs = ladder(store, number)["rungs"]
-    assert rungs[1]["held_out"] < rungs[0]["held_out"] < change["before"]["held_out"]
+    rungs = ladder(store, number).rungs
+    assert rungs[1].held_out < rungs[0].held_out < change.before.held_out
 
 
 @pytest.mark.parametrize(("after", "told"), [(0.23, True), (0.0315, False)])

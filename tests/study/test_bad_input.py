@@ -171,7 +171,11 @@ REFUSED = {
     ),
     "speed the other way": Bad(every(against), "position_rad and velocity_rad_s have opposite signs"),
     "a position that wraps": Bad(
-        every(put("position_rad", lambda q: np.mod(q, 1.0))), "against the motion at .* it wraps"
+        every(put("position_rad", lambda q: np.mod(q, 1.0))),
+        r"against the motion at .* it wraps, every (1|0\.99\d*|1\.00\d*) rad; unwrap it \(numpy.unwrap\(",
+    ),
+    "a position that wraps once a turn": Bad(
+        every(put("position_rad", lambda q: np.mod(10 * q, 2 * np.pi))), "it wraps, once a turn; unwrap it"
     ),
     "unsigned effort": Bad(every(put("torque_n_m", as_unsigned)), "signed values were read as unsigned"),
     "unsigned duty": Bad(every(duty_of_an_unsigned_register), "duty goes up to 65.*, wanted is -1 .. 1"),

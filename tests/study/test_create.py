@@ -1,15 +1,16 @@
 """Which trials a study uses, which judge, and what it says when none fit."""
 
+import json
 import math
 
 import pytest
 
 from bench.config.rig import Rig
-from bench.service.http.json_numbers import plain
-from bench.service.models.study_models import Comparison
 from bench.store import Store
 from bench.store.errors import NotFoundError
-from bench.study import compare, create_study, describe, diagnose, list_studies
+from bench.study.compare import compare
+from bench.study.create import create_study, describe, list_studies
+from bench.study.diagnose import diagnose
 from bench.study.errors import StudyError
 from bench.study.material import facts_of, load
 from tests.lab.synthetic import plans, recordings
@@ -17,16 +18,16 @@ from tests.study.conftest import RIG, imported
 
 
 def roles(study: dict) -> dict[str, str]:
-    return {trial["name"]: trial["role"] for trial in study["trials"]}
+    return {trial.name: trial.role for trial in study.trials}
 
 
 def test_held_out_trials_are_those_that_meet_a_criterion(store, experiment_id):
     study = create_study(store, "a", [experiment_id], hold_out=["load_kg=0.2", "trial=load-0g-1-1"])
-    for trial in study["trials"]:
-        held = trial["conditions"]["load_kg"] == 0.2 or trial["name"] == "load-0g-1-1"
-        assert trial["role"] == ("held_out" if held else "training")
-    material = load(store, study["study_id"])
-    held_trials = {index for index, trial in enumerate(study["trials"]) if trial["role"] == "held_out"}
+    for trial in study.trials:
+        held = trial.conditions["load_kg"] == 0.2 or trial.name == "load-0g-1-1"
+        assert trial.role == ("held_out" if held else "training")
+    material = load(store, study.study_id)
+    held_trials = {index for index, trial in enumerate(study.trials) if trial.role == "held_out"}
     assert set(material.dataset.trial_index[material.training]).isdisjoint(held_trials)
     assert set(material.dataset.trial_index[material.training]) | held_trials == set(range(12))
 
@@ -41,7 +42,7 @@ def test_held_out_trials_do_not_touch_the_parameters(store):
         rig = RIG.model_dump(mode="json", exclude_none=True)
         number = store.add_imported("import", {}, {}, rig, [(one, "completed", "") for one in made])
         study = create_study(store, "a", [number], hold_out=["load_kg=0.2"], cutoff_hz=6.0)
-        (model,) = store.models(study["study_id"])
+        (model,) = store.models(study.study_id)
         found.append(model.result)
     assert found[0]["coefficients"] == found[1]["coefficients"]
     assert found[0]["shapes"] == found[1]["shapes"]
@@ -73,9 +74,9 @@ def test_how_criteria_are_read(store, experiment_id, criterion, held):
         ({"hold_out": ["load"]}, "'load' is no criterion; wanted key=value, for instance load_kg=0.1"),
         ({"hold_out": ["=0.2"]}, "'=0.2' is no criterion"),
         ({"hold_out": ["load_kg="]}, "'load_kg=' is no criterion"),
-        ({"hold_out": ["load_kg=0.3"]}, "no trial has load_kg=0.3; the keys of these trials are: arm_m, kind, load_kg"),
+        ({"hold_out": ["load_kg=0.3"]}, "no trial has load_kg=0.3; these trials have load_kg = 0.0, 0.2"),
         ({"hold_out": ["load_kg=heavy"]}, "no trial has load_kg=heavy"),
-        ({"hold_out": ["colour=red"]}, "no trial has colour=red"),
+        ({"hold_out": ["colour=red"]}, "no trial has colour=red; the keys of these trials are: arm_m, kind, load_kg"),
         ({"hold_out": ["load_kg=0", "load_kg=0.2"]}, "takes all 12 trials"),
         ({"where": ["load_kg=0.3"]}, "no trial of these experiments has load_kg=0.3"),
         ({"where": ["load_kg=0", "style=7"]}, "no trial of these experiments has load_kg=0 and style=7"),
@@ -102,35 +103,35 @@ def test_held_out_trials_at_rest_judge_nothing(store):
     with pytest.raises(StudyError, match="hold-out trial=load-0g-1-1 have no row that counts"):
         create_study(store, "a", [number], hold_out=["trial=load-0g-1-1"], cutoff_hz=6.0)
     study = create_study(store, "a", [number], cutoff_hz=6.0)
-    compared = compare(store, study["study_id"])
-    assert math.isnan(compared["trials"][1]["relative"])
-    assert Comparison.model_validate(plain(compared)).trials[1].relative is None
-    problems = diagnose(store, study["study_id"])["data_problems"]
+    compared = compare(store, study.study_id)
+    assert math.isnan(compared.trials[1].relative)
+    assert json.loads(compared.model_dump_json())["trials"][1]["relative"] is None
+    problems = diagnose(store, study.study_id).data_problems
     assert any("does not move in any usable row of theirs: 'load-0g-1-1'" in problem for problem in problems)
 
 
 def test_where_keeps_some_trials(store, experiment_id):
     study = create_study(store, "a", [experiment_id], where=["load_kg=0", "style=0,1"], cutoff_hz=6.0)
-    assert len(study["trials"]) == 4
-    assert {trial["conditions"]["load_kg"] for trial in study["trials"]} == {0.0}
+    assert len(study.trials) == 4
+    assert {trial.conditions["load_kg"] for trial in study.trials} == {0.0}
 
 
 def test_rows_and_cutoff_are_kept(store, experiment_id):
     wide = create_study(store, "a", [experiment_id], cutoff_hz=7.5, rows="all")
-    assert (wide["cutoff_hz"], wide["rows"]) == (7.5, "all")
-    again = describe(store, wide["study_id"])
+    assert (wide.cutoff_hz, wide.rows) == (7.5, "all")
+    again = describe(store, wide.study_id)
     assert again == wide
-    assert load(store, wide["study_id"]).dataset.cutoff_hz == 7.5
+    assert load(store, wide.study_id).dataset.cutoff_hz == 7.5
     chosen = create_study(store, "a", [experiment_id])
-    assert 2.0 <= chosen["cutoff_hz"] <= 40.0
-    assert chosen["rows"] == "sliding"
-    assert int(load(store, wide["study_id"]).training.sum()) > int(load(store, chosen["study_id"]).training.sum())
+    assert 2.0 <= chosen.cutoff_hz <= 40.0
+    assert chosen.rows == "sliding"
+    assert int(load(store, wide.study_id).training.sum()) > int(load(store, chosen.study_id).training.sum())
 
 
 def test_experiments_are_joined_and_may_be_named_twice(store, experiment_id):
     other = imported(store, plans(loads_kg=(0.1,)))
     study = create_study(store, "a", [experiment_id, other, experiment_id], cutoff_hz=6.0)
-    assert len(study["trials"]) == 15
+    assert len(study.trials) == 15
 
 
 def test_experiments_that_are_not_fit(store, experiment_id):
@@ -155,8 +156,8 @@ def test_a_stopped_trial_is_not_used(store):
 
 
 def test_studies_are_listed_newest_first(store: Store, experiment_id):
-    made = [create_study(store, name, [experiment_id], cutoff_hz=6.0)["study_id"] for name in ("one", "two")]
-    assert [(row["study_id"], row["name"]) for row in list_studies(store)][:2] == [(made[1], "two"), (made[0], "one")]
+    made = [create_study(store, name, [experiment_id], cutoff_hz=6.0).study_id for name in ("one", "two")]
+    assert [(row.study_id, row.name) for row in list_studies(store)][:2] == [(made[1], "two"), (made[0], "one")]
 
 
 def test_what_the_lab_is_told_of_a_rig():

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from bench import study
 from bench.calibration import in_use, with_friction
-from bench.service.http.json_numbers import plain
-from bench.service.models.study_models import Ladder
-from bench.service.models.suggestion_models import Used
+from bench.study.changes import add_effect
+from bench.study.create import create_study
 from bench.study.errors import StudyError
-from bench.study.use import studied_model
+from bench.study.ladder import ladder
+from bench.study.on_bench import bench_configurations, keep_bench_error
+from bench.study.use import studied_model, use
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.online import works_online
-from tests.bench.calibrated import CURVES, REST, calibrated_configuration
+from tests.experiments.calibrated import CURVES, REST, calibrated_configuration
 from tests.study.test_suggest import run
 
 BASE = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction")
@@ -29,39 +29,37 @@ CONFIGURATION = bench_with({"viscous_asymmetry": {"fraction": 0.5}})
 
 @pytest.fixture(scope="module")
 def number(store):
-    made = study.create_study(
+    made = create_study(
         store, "with a hidden effect", [run(store, "excitation", MOTIONS, configuration=CONFIGURATION)], base=BASE
     )
-    study.add_effect(store, made["study_id"], "viscous_asymmetry")
-    return made["study_id"]
+    add_effect(store, made.study_id, "viscous_asymmetry")
+    return made.study_id
 
 
 def test_the_reflected_load_is_nearer_with_each_rung(store, number):
-    for model_id, configuration in study.bench_configurations(store, number, CONFIGURATION):
-        study.keep_bench_error(store, model_id, run(store, "sinusoid", {}, configuration=configuration))
-    found = study.ladder(store, number)
-    Ladder.model_validate(plain(found))
-    first, second = found["rungs"]
-    assert second["held_out"] < first["held_out"]
-    assert second["reflected_error_g"] < 0.8 * first["reflected_error_g"]
-    assert not list(study.bench_configurations(store, number, CONFIGURATION))
+    for model_id, configuration in bench_configurations(store, number, CONFIGURATION):
+        keep_bench_error(store, model_id, run(store, "sinusoid", {}, configuration=configuration))
+    found = ladder(store, number)
+    first, second = found.rungs
+    assert second.held_out < first.held_out
+    assert second.reflected_error_g < 0.8 * first.reflected_error_g
+    assert not list(bench_configurations(store, number, CONFIGURATION))
 
 
 def test_a_model_is_chosen_like_a_calibration(store, number):
     bare = CONFIGURATION.model_copy(update={"friction": None, "rest": None})
     with pytest.raises(StudyError, match="this bench has no calibration"):
-        study.use(store, number, bare)
+        use(store, number, bare)
     base = store.calibrations.add(
         note="", source="simulated", rig=bare.rig.model_dump(mode="json", exclude_none=True),
         drive={**bare.drive.model_dump(mode="json", exclude_none=True, exclude={"seed", "faults"})}, provenance={},
         experiment_ids=[], trial_ids=[],
         result={"curves": [one.model_dump() for one in CURVES], "rest": REST.model_dump()},
     )  # fmt: skip
-    used = study.use(store, number, bare)
-    Used.model_validate(plain(used))
+    used = use(store, number, bare)
     chosen = in_use(store, bare)
     assert chosen is not None
-    assert chosen.id == used["calibration_id"] != base
+    assert chosen.id == used.calibration_id != base
     told = with_friction(store, bare).friction
     assert told.study == studied_model(store, number, bare)[0]
     assert "viscous_asymmetry" in [one.effect for one in told.study.effects]
@@ -113,6 +111,6 @@ def test_a_study_in_ampere_cannot_be_used(store):
     )
     bare = CONFIGURATION.model_copy(update={"rig": rig, "friction": None, "rest": None})
     experiment = run(store, "excitation", {**MOTIONS, "loads_kg": [0.0]}, configuration=bare)
-    made = study.create_study(store, "in ampere", [experiment])
+    made = create_study(store, "in ampere", [experiment])
     with pytest.raises(StudyError, match="the compensator takes joint torque"):
-        study.use(store, made["study_id"], bare)
+        use(store, made.study_id, bare)

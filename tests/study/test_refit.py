@@ -5,34 +5,35 @@ import sys
 import pytest
 
 from bench.store.errors import NotFoundError
-from bench.study import create_study, refit
+from bench.study.create import create_study
 from bench.study.errors import StudyError
+from bench.study.refit import refit
 from tests.lab.synthetic import plans
 from tests.study.conftest import RIG, imported
 
 
 @pytest.fixture(scope="module")
 def study_id(store, experiment_id) -> int:
-    return create_study(store, "some", [experiment_id], cutoff_hz=6.0)["study_id"]
+    return create_study(store, "some", [experiment_id], cutoff_hz=6.0).study_id
 
 
 def test_on_the_trials_of_the_study_itself_the_model_stays_as_it_is(store, study_id, experiment_id):
     found = refit(store, study_id, [experiment_id])
-    assert found["trials"] == 12
-    assert found["samples"] == 12 * 1800
-    assert [one["all"] for one in found["parameters"]] == pytest.approx(
-        [one["study"] for one in found["parameters"]], rel=1e-6, abs=1e-9
+    assert found.trials == 12
+    assert found.samples == 12 * 1800
+    assert [one.all for one in found.parameters] == pytest.approx(
+        [one.study for one in found.parameters], rel=1e-6, abs=1e-9
     )
-    assert found["skipped"] == []
+    assert found.skipped == []
 
 
 def test_more_trials_move_the_parameters_within_reason(store, study_id, experiment_id):
     more = imported(store, plans(loads_kg=(0.1,), seed=9))
     found = refit(store, study_id, [experiment_id, more])
-    assert found["trials"] == 15
-    inertia = next(one for one in found["parameters"] if one["effect"] == "inertia")
-    assert inertia["all"] == pytest.approx(inertia["study"], rel=0.05)
-    assert inertia["all"] != inertia["study"]
+    assert found.trials == 15
+    inertia = next(one for one in found.parameters if one.effect == "inertia")
+    assert inertia.all == pytest.approx(inertia.study, rel=0.05)
+    assert inertia.all != inertia.study
 
 
 def test_long_trials_are_read_in_pieces(store, study_id, experiment_id, monkeypatch):
@@ -40,9 +41,9 @@ def test_long_trials_are_read_in_pieces(store, study_id, experiment_id, monkeypa
     for module in ("compensator.lab.model.streaming", "bench.study.refit"):
         monkeypatch.setattr(sys.modules[module], "PIECE_ROWS", 900)
     found = refit(store, study_id, [experiment_id])
-    assert found["rows"] == pytest.approx(whole["rows"], rel=0.03)
-    assert found["training"] == pytest.approx(whole["training"], rel=0.05)
-    assert found["trials"] == 12
+    assert found.rows == pytest.approx(whole.rows, rel=0.03)
+    assert found.training == pytest.approx(whole.training, rel=0.05)
+    assert found.trials == 12
 
 
 def test_another_rig_and_unknown_experiments_are_refused(store, study_id):

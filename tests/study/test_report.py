@@ -4,20 +4,22 @@ import re
 
 import pytest
 
-from bench import study
 from bench.config.configuration import default_configuration
-from bench.study.report.report import report
+from bench.study.changes import add_effect
+from bench.study.create import create_study
+from bench.study.ladder import ladder
+from bench.study.report.report import report, report_html
 from tests.lab.synthetic import plans
 from tests.study.conftest import imported
 
 
 @pytest.fixture(scope="module")
 def number(store):
-    made = study.create_study(
+    made = create_study(
         store, "arm <1>", [imported(store, plans((0.0, 0.2), repeats=2))], hold_out=["repeat=2"], cutoff_hz=6.0
     )
-    study.add_effect(store, made["study_id"], "viscous_asymmetry")
-    return made["study_id"]
+    add_effect(store, made.study_id, "viscous_asymmetry")
+    return made.study_id
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +41,10 @@ def test_everything_that_a_lab_files_is_in_it(store, number, sections):
         "Where it comes from",
     ]
     assert "12 trials, of which 6 are held out" in sections["What was measured"].sentences[0]
-    (ladder,) = sections["The ladder"].tables
-    rungs = study.ladder(store, number)["rungs"]
-    assert [row[3] for row in ladder.rows] == [f"{rung['held_out']:.2%}" for rung in rungs]
-    assert ladder.rows[1][1] == "+ viscous_asymmetry"
+    (table,) = sections["The ladder"].tables
+    rungs = ladder(store, number).rungs
+    assert [row[3] for row in table.rows] == [f"{rung.held_out:.2%}" for rung in rungs]
+    assert table.rows[1][1] == "+ viscous_asymmetry"
     assert "no model of the motion can beat that floor" in sections["The ladder"].sentences[0]
 
 
@@ -61,7 +63,7 @@ def test_another_rig_leaves_out_what_to_record_next_and_says_why(sections):
 
 
 def test_the_page_is_whole_and_escaped(store, number):
-    page = study.report_html(store, number)
+    page = report_html(store, number)
     assert page.startswith("<!doctype html>")
     assert page.rstrip().endswith("</html>")
     assert "arm &lt;1&gt;" in page

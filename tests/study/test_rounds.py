@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from bench.study.suggestion.came import in_words, what_came
+from bench.study.suggestion.earlier_trials import in_words, what_came
 from bench.study.suggestion.rounds import MOST_FAILED, Ended, Tried, in_rounds
+from bench.study.suggestion.suggested import Came, PairOfRivals, Suggested
 
 
 @dataclass(frozen=True)
@@ -81,15 +82,18 @@ def test_it_ends_where_nothing_more_is_to_be_told(enough):
 
 
 def suggested(*pairs):
-    return {"pairs": [{"true": true, "rival": None, "before": before, "after": after} for true, before, after in pairs]}
+    found = [
+        PairOfRivals(true=true, rival=None, before=before, after=after, promised=0.0) for true, before, after in pairs
+    ]
+    return Suggested.model_construct(pairs=found)
 
 
 def test_what_was_predicted_is_held_against_what_came():
     first = suggested(("spring", 1.0, 8.0), ("spring", 2.0, 6.0), ("cogging", 0.5, 5.0))
     came = what_came(first, suggested(("spring", 5.5, 9.0), ("spring", 7.0, 9.0), ("warm_up", 1.0, 4.0)))
     assert came == [
-        {"effect": "spring", "predicted": 6.0, "came": 5.5},
-        {"effect": "cogging", "predicted": 5.0, "came": None},
+        Came(effect="spring", predicted=6.0, came=5.5),
+        Came(effect="cogging", predicted=5.0, came=None),
     ]
     told = in_words(came)
     assert "6.0 was predicted, 5.5 came" in told

@@ -8,17 +8,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench import study
 from bench.config.configuration import default_configuration
 from bench.runs.runner import Runner
-from bench.service.http.json_numbers import plain
-from bench.service.models.suggestion_models import Extended, Suggested
 from bench.study import judged
+from bench.study.compare import compare
+from bench.study.create import create_study, describe
+from bench.study.diagnose import diagnose
 from bench.study.errors import StudyError
-from bench.study.extend import note_for
+from bench.study.extend import extend_study, note_for
+from bench.study.ladder import ladder
 from bench.study.material import load
 from bench.study.suggestion.options import LONGEST_S, choices
 from bench.study.suggestion.predict import predicted
+from bench.study.suggestion.suggest import suggest
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
 from compensator.lab.rows.assembly import more_trials
@@ -49,7 +51,7 @@ def run(store, kind, parameters, note="", configuration=CONFIGURATION, outcome="
 
 @pytest.fixture(scope="module")
 def made(store):
-    return study.create_study(store, "to be settled", [run(store, "excitation", MOTIONS)])
+    return create_study(store, "to be settled", [run(store, "excitation", MOTIONS)])
 
 
 @pytest.fixture(autouse=True)
@@ -62,7 +64,7 @@ def few_options(monkeypatch):
 def found(store, made):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(SUGGEST, "choices", lambda *args: choices(*args)[::9])
-        return study.suggest(store, made["study_id"], CONFIGURATION, trials=2)
+        return suggest(store, made.study_id, CONFIGURATION, trials=2)
 
 
 def test_every_option_is_one_that_the_bench_may_run():
@@ -86,8 +88,8 @@ def test_where_starts_from_rest_tell_ramps_of_every_rate_are_run_on_the_model_af
     told = [(one.parameters["rates_a_s"][0], one.parameters["dwells_s"][0]) for one in found]
     assert max(rate for rate, _ in told) >= 10.0 * min(rate for rate, _ in told)
     assert max(dwell for _, dwell in told) >= 10.0 * min(dwell for _, dwell in told)
-    number = store.trial(made["trials"][0]["trial_id"]).experiment_id
-    material = load(store, study.create_study(store, "quick", [number], cutoff_hz=8.0)["study_id"])
+    number = store.trial(made.trials[0].trial_id).experiment_id
+    material = load(store, create_study(store, "quick", [number], cutoff_hz=8.0).study_id)
     fit = material.fit(list(material.definition.base))
     chosen = [one for one in found if one.parameters["load_kg"] == 0.0 and one.parameters["dwells_s"] == [2.0]][:2]
     dataset = more_trials(fit.dataset, [one for o in predicted(fit, CONFIGURATION, chosen) for one in o.recordings])
@@ -99,44 +101,42 @@ def test_where_starts_from_rest_tell_ramps_of_every_rate_are_run_on_the_model_af
 
 
 def test_a_suggestion_can_be_started_as_it_is(store, made, found):
-    Suggested.model_validate(plain(found))
-    json.dumps(plain(found), allow_nan=False)
-    assert found["trials"], found["sentence"]
-    assert f"rises from {found['trials'][0]['before']:.1f} to {found['trials'][-1]['after']:.1f}" in found["sentence"]
-    assert found["note"] == note_for(made["study_id"])
-    assert all("predict efforts that differ by" in one["sentence"] for one in found["trials"])
-    number = run(store, found["trials"][0]["kind"], found["trials"][0]["parameters"], found["note"])
-    before = study.diagnose(store, made["study_id"], made["model_id"])
-    extended = study.extend_study(store, made["study_id"])
-    Extended.model_validate(plain(extended))
-    assert [one["trial_id"] for one in extended["added"]] == [trial.id for trial in store.trials(number)]
-    described = study.describe(store, made["study_id"])
-    assert len(described["trials"]) == len(made["trials"]) + len(extended["added"])
-    assert all(one["role"] == "training" for one in described["trials"])
+    json.loads(found.model_dump_json())
+    assert found.trials, found.sentence
+    assert f"rises from {found.trials[0].before:.1f} to {found.trials[-1].after:.1f}" in found.sentence
+    assert found.note == note_for(made.study_id)
+    assert all("predict efforts that differ by" in one.sentence for one in found.trials)
+    number = run(store, found.trials[0].kind, found.trials[0].parameters, found.note)
+    before = diagnose(store, made.study_id, made.model_id)
+    extended = extend_study(store, made.study_id)
+    assert [one.trial_id for one in extended.added] == [trial.id for trial in store.trials(number)]
+    described = describe(store, made.study_id)
+    assert len(described.trials) == len(made.trials) + len(extended.added)
+    assert all(one.role == "training" for one in described.trials)
     # the first model stays what it was: compared and diagnosed on its own trials
-    assert plain(study.diagnose(store, made["study_id"], made["model_id"])) == plain(before)
-    assert len(study.compare(store, made["study_id"], made["model_id"])["trials"]) == len(made["trials"])
-    assert len(study.compare(store, made["study_id"])["trials"]) == len(described["trials"])
-    rungs = study.ladder(store, made["study_id"])["rungs"]
-    assert [rung["trials"] for rung in rungs] == [len(made["trials"]), len(described["trials"])]
-    assert rungs[1]["effects"] == rungs[0]["effects"]
+    assert diagnose(store, made.study_id, made.model_id).model_dump_json() == before.model_dump_json()
+    assert len(compare(store, made.study_id, made.model_id).trials) == len(made.trials)
+    assert len(compare(store, made.study_id).trials) == len(described.trials)
+    rungs = ladder(store, made.study_id).rungs
+    assert [rung.trials for rung in rungs] == [len(made.trials), len(described.trials)]
+    assert rungs[1].effects == rungs[0].effects
     with pytest.raises(StudyError, match="no completed trial that study"):
-        study.extend_study(store, made["study_id"])
+        extend_study(store, made.study_id)
 
 
 def test_a_simulated_joint_which_repeats_its_samples_is_not_asked_for_the_same_trial_again(store, monkeypatch):
     alone = [one for one in choices(CONFIGURATION, hung_by_hand=False) if one.kind == "excitation"][:2]
     monkeypatch.setattr(SUGGEST, "choices", lambda *_: alone)
     number = run(store, "excitation", MOTIONS)
-    made = study.create_study(store, "repeats", [number])
-    found = study.suggest(store, made["study_id"], CONFIGURATION, trials=6)
-    names = [one["name"] for one in found["trials"]]
+    made = create_study(store, "repeats", [number])
+    found = suggest(store, made.study_id, CONFIGURATION, trials=6)
+    names = [one.name for one in found.trials]
     assert names
     assert len(set(names)) == len(names)
-    first = found["trials"][0]
-    study.extend_study(store, made["study_id"], [run(store, first["kind"], first["parameters"])])
-    again = study.suggest(store, made["study_id"], CONFIGURATION, trials=6)
-    assert first["name"] not in [one["name"] for one in again["trials"]]
+    first = found.trials[0]
+    extend_study(store, made.study_id, [run(store, first.kind, first.parameters)])
+    again = suggest(store, made.study_id, CONFIGURATION, trials=6)
+    assert first.name not in [one.name for one in again.trials]
 
 
 @pytest.mark.parametrize(("promised", "told"), [(5.5, "to at least 4.0 for nine in ten"), (0.0, "that is no promise")])
@@ -157,40 +157,36 @@ def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, suppo
 
 def test_suggestions_start_from_the_diagnosis_that_was_made(store, made, found, monkeypatch):
     monkeypatch.setattr(judged, "diagnose", None)  # nothing is judged again
-    again = study.suggest(store, made["study_id"], CONFIGURATION, made["model_id"], trials=2)
-    assert (again["verdict"], again["diagnosis"]) == (found["verdict"], found["diagnosis"])
+    again = suggest(store, made.study_id, CONFIGURATION, made.model_id, trials=2)
+    assert (again.verdict, again.diagnosis) == (found.verdict, found.diagnosis)
 
 
 def test_what_tripped_on_the_joint_is_named_and_not_suggested_again_until_it_completes(store, made, found):
-    one = found["trials"][0]
+    one = found.trials[0]
     fault = {"kind": "encoder-jump", "at_s": 0.4, "jump_rad": 1.0}
     drive = default_configuration().drive.model_dump() | {"plant": CONFIGURATION.drive.plant, "faults": [fault]}
     faulty = type(CONFIGURATION).model_validate({**CONFIGURATION.model_dump(), "drive": drive})
-    number = run(store, one["kind"], one["parameters"], found["note"], faulty, outcome="tripped")
-    again = study.suggest(store, made["study_id"], CONFIGURATION, made["model_id"], trials=2)
-    Suggested.model_validate(plain(again))
-    assert [(out["experiment_id"], out["outcome"]) for out in again["kept_out"]] == [(number, "tripped")]
-    assert "speed" in again["kept_out"][0]["reason"]
-    assert again["trials"]
-    assert one["name"] not in [other["name"] for other in again["trials"]]
-    (other, *_) = again["trials"]
-    third = study.suggest(store, made["study_id"], CONFIGURATION, made["model_id"], 2, [other["name"]])
-    assert not {one["name"], other["name"]} & {trial["name"] for trial in third["trials"]}
-    store.annotate(run(store, one["kind"], one["parameters"], found["note"]), note="")
+    number = run(store, one.kind, one.parameters, found.note, faulty, outcome="tripped")
+    again = suggest(store, made.study_id, CONFIGURATION, made.model_id, trials=2)
+    assert [(out.experiment_id, out.outcome) for out in again.kept_out] == [(number, "tripped")]
+    assert "speed" in again.kept_out[0].reason
+    assert again.trials
+    assert one.name not in [other.name for other in again.trials]
+    (other, *_) = again.trials
+    third = suggest(store, made.study_id, CONFIGURATION, made.model_id, 2, [other.name])
+    assert not {one.name, other.name} & {trial.name for trial in third.trials}
+    store.annotate(run(store, one.kind, one.parameters, found.note), note="")
     store.annotate(number, note="")
 
 
 def test_what_is_held_out_by_condition_is_not_suggested_and_stays_held_out(store, made):
     number = run(store, "excitation", {**MOTIONS, "repeats": 2})
-    held = study.create_study(store, "held", [number], hold_out=["load_kg=0.05"])
-    found = study.suggest(store, held["study_id"], CONFIGURATION, trials=1)
-    assert all(0.05 not in one["parameters"].get("loads_kg", []) for one in found["trials"])
+    held = create_study(store, "held", [number], hold_out=["load_kg=0.05"])
+    found = suggest(store, held.study_id, CONFIGURATION, trials=1)
+    assert all(0.05 not in one.parameters.get("loads_kg", []) for one in found.trials)
     again = run(store, "excitation", MOTIONS)
-    study.extend_study(store, held["study_id"], [again])
-    roles = {
-        one["trial_id"]: (one["role"], one["conditions"]["load_kg"])
-        for one in study.describe(store, held["study_id"])["trials"]
-    }
+    extend_study(store, held.study_id, [again])
+    roles = {one.trial_id: (one.role, one.conditions["load_kg"]) for one in describe(store, held.study_id).trials}
     added = [roles[trial.id] for trial in store.trials(again)]
     assert set(added) == {("held_out", 0.05), ("training", 0.0)}
 
@@ -199,16 +195,16 @@ def test_another_rig_is_refused(store, made):
     rig = CONFIGURATION.rig.model_copy(update={"arm": CONFIGURATION.rig.arm.model_copy(update={"length_m": 0.7})})
     other = CONFIGURATION.model_copy(update={"rig": rig})
     with pytest.raises(StudyError, match="of another rig than this bench"):
-        study.suggest(store, made["study_id"], other)
+        suggest(store, made.study_id, other)
     number = run(store, "excitation", MOTIONS, configuration=other)
     with pytest.raises(StudyError, match=f"experiment {number} is of another rig"):
-        study.extend_study(store, made["study_id"], [number])
+        extend_study(store, made.study_id, [number])
 
 
 def test_without_any_inertia_nobody_can_tell_what_a_trial_shows(store):
     rig = CONFIGURATION.rig.model_copy(update={"arm": CONFIGURATION.rig.arm.model_copy(update={"inertia_kg_m2": None})})
     configuration = CONFIGURATION.model_copy(update={"rig": rig})
     number = run(store, "excitation", MOTIONS, configuration=configuration)
-    still = study.create_study(store, "still", [number], base=["gravity", "coulomb"])
+    still = create_study(store, "still", [number], base=["gravity", "coulomb"])
     with pytest.raises(StudyError, match="neither the model nor the rig tells the inertia"):
-        study.suggest(store, still["study_id"], configuration)
+        suggest(store, still.study_id, configuration)

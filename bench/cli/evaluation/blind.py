@@ -1,6 +1,7 @@
 """`friction-bench blind`: how often the lab is right, on joints that it knows nothing of."""
 
 import math
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,13 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.evaluation.blind.judge import Result
 
 
+class Plant(StrEnum):
+    """Which simulator the joints are of: the bench's own, or the second plant, which was written without knowing it."""
+
+    OWN = "own"
+    SECOND = "second"
+
+
 def blind(
     plants: Annotated[int, typer.Option(min=1, help="Rounds; each asks fifteen items of fifteen joints.")] = 20,
     seed: Annotated[int, typer.Option(min=0, help="Draws joints, mechanisms and noise.")] = 1,
@@ -25,6 +33,7 @@ def blind(
     only: Annotated[
         list[str] | None, typer.Option(help="Ask this family of items alone, for instance complete; repeatable.")
     ] = None,
+    plant: Annotated[Plant, typer.Option(help="Simulator that the joints are drawn from.")] = Plant.OWN,
     workers: Workers = None,
     cluster: Cluster = None,
     html: Annotated[Path | None, typer.Option(help="Write tables and calibration plots to this page, too.")] = None,
@@ -35,15 +44,18 @@ def blind(
     The lab sees recordings and rig alone. What is asked stands beside what was measured.
     """
     from bench.evaluation.blind.items import items_of
+    from bench.evaluation.blind.judge import judge
     from bench.evaluation.blind.pool import run_items
+    from bench.evaluation.blind.second_judge import judge_second, second_items_of
 
-    items = items_of(seed, plants, only or ())
-    done = run_items(items, results, progress, workers, cluster)
+    draw, ask = (second_items_of, judge_second) if plant is Plant.SECOND else (items_of, judge)
+    done = run_items(draw(seed, plants, only or ()), results, progress, workers, cluster, ask)
     if html is not None:
         from bench.evaluation.blind.pictures import write_page
 
         chosen = "".join(f" --only {name}" for name in only or ())
-        write_page(html, done, f"friction-bench blind --plants {plants} --seed {seed}{chosen}")
+        other = "" if plant is Plant.OWN else f" --plant {plant}"
+        write_page(html, done, f"friction-bench blind{other} --plants {plants} --seed {seed}{chosen}")
     if as_json:
         print_json(_as_json(done, seed, plants))
     else:

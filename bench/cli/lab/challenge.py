@@ -3,7 +3,7 @@
 import secrets
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -82,16 +82,16 @@ def reveal(
 
 
 def _guess_of(context: typer.Context, study: int) -> "Guess":
-    from bench.service.models.study_guess import guess_of_study
+    from bench.evaluation.challenge.guess import guess_of_study
 
     with session_of(context).open_store() as store:
         return guess_of_study(store, study)
 
 
-def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, Any]:
+def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, object]:
     from dataclasses import asdict
 
-    found: dict[str, Any] = {"answer": answer.to_json()}
+    found: dict[str, object] = {"answer": answer.to_json()}
     if guess is not None and score is not None:
         found |= {"guess": asdict(guess), "score": {**asdict(score), "perfect": score.perfect, "points": score.points}}
     return found

@@ -1,11 +1,14 @@
 """`friction-bench effects`: the catalogue."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from bench.cli.output import Json, print_json, say, table
 from bench.errors import ParameterError
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.study.effects import Effect
 
 
 def effects(
@@ -13,25 +16,24 @@ def effects(
     as_json: Json = False,
 ) -> None:
     """List the physical effects that a model can be made of."""
-    from bench.study import effects_catalogue
+    from bench.study.effects import effects_catalogue
 
     catalogue = effects_catalogue()
     if name is not None:
-        catalogue = [one for one in catalogue if one["name"] == name]
+        catalogue = [one for one in catalogue if one.name == name]
         if not catalogue:
             raise ParameterError(f"there is no effect '{name}'; list them with: friction-bench effects")
     if as_json:
         print_json(catalogue)
     elif name is None:
-        rows = [(one["name"], one["title"], one["driver"], ", ".join(one["confused_with"])) for one in catalogue]
+        rows = [(one.name, one.title, one.driver, ", ".join(one.confused_with)) for one in catalogue]
         table("Effects", ["name", "title", "driven by", "confused with"], rows)
     else:
         _describe(catalogue[0])
 
 
-def _describe(effect: dict[str, object]) -> None:
-    say(f"{effect['title']}\n\n{effect['physics']}\n\n  {effect['equation']}\n")
-    say(f"driven by: {effect['driver']}\nexcited by: {effect['excited_by']}\nsource: {effect['source']}")
-    parameters = effect["parameters"]
-    rows = [(one["name"], one["unit"], one["low"], one["high"]) for one in parameters if isinstance(parameters, list)]  # type: ignore[attr-defined]
+def _describe(effect: "Effect") -> None:
+    say(f"{effect.title}\n\n{effect.physics}\n\n  {effect.equation}\n")
+    say(f"driven by: {effect.driver}\nexcited by: {effect.excited_by}\nsource: {effect.source}")
+    rows = [(one.name, one.unit, one.low, one.high) for one in effect.parameters]
     table("Parameters", ["name", "unit", "low#", "high#"], rows)

@@ -1,17 +1,23 @@
 """`friction-bench study ...`: compare, simulate, diagnose, suggest, add, drop, search, ladder, report."""
 
+from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Concatenate, ParamSpec, TypeVar
 
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.evaluation.cores import Cluster, Workers
-from bench.cli.lab import study_tables as tables
+from bench.cli.evaluation.cores import Cluster, Workers, progress
+from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.operation.service import DEFAULT_URL, Url
 from bench.cli.output import Json, print_json, say, table, write_whole
 
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.store import Store
+
+P = ParamSpec("P")
+T = TypeVar("T")
 app = typer.Typer(no_args_is_help=True)
 StudyId = Annotated[int, typer.Argument(metavar="STUDY", help="Number of the study.")]
 Effect = Annotated[str, typer.Argument(help="Name of the effect; list them with: friction-bench effects")]
@@ -49,7 +55,7 @@ def _study() -> None:
 
 
 @app.command("new")
-def new(
+def new_command(
     context: typer.Context,
     name: Annotated[str, typer.Argument(help="Name of the study.")],
     experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are used; repeatable.")],
@@ -61,8 +67,21 @@ def new(
     as_json: Json = False,
 ) -> None:
     """Create a study: which trials are fitted, and which judge the fit."""
-    chosen = {"hold_out": hold_out or [], "where": where or [], "base": base or None, "rows": rows.value}
-    _show(context, as_json, tables.study, "create_study", name, experiment, **chosen, cutoff_hz=cutoff_hz)
+    from bench.study.create import create_study
+
+    _show(
+        context,
+        as_json,
+        study_tables.study,
+        create_study,
+        name,
+        experiment,
+        hold_out=hold_out or [],
+        base=base or None,
+        where=where or [],
+        cutoff_hz=cutoff_hz,
+        rows=rows.value,
+    )
 
 
 @app.command("list")
@@ -77,13 +96,15 @@ def list_(context: typer.Context, as_json: Json = False) -> None:
 
 
 @app.command("compare")
-def compare(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+def compare_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Measured against predicted: error per trial and regime, parameters, the floor."""
-    _show(context, as_json, tables.comparison, "compare", study, model_id=model)
+    from bench.study.compare import compare
+
+    _show(context, as_json, study_tables.comparison, compare, study, model)
 
 
 @app.command("simulate")
-def simulate(
+def simulate_command(
     context: typer.Context,
     study: StudyId,
     model: Model = None,
@@ -91,17 +112,21 @@ def simulate(
     as_json: Json = False,
 ) -> None:
     """The model under the servo that the trials ran under: does it go where the joint went."""
-    _show(context, as_json, tables.simulation, "simulate", study, model_id=model, refined=refine)
+    from bench.study.closed_loop import simulate
+
+    _show(context, as_json, study_tables.simulation, simulate, study, model, refine)
 
 
 @app.command("diagnose")
-def diagnose(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+def diagnose_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Which physical effect is missing, how sure is that, and what would adding it bring."""
-    _show(context, as_json, tables.diagnosis, "diagnose", study, model_id=model)
+    from bench.study.diagnose import diagnose
+
+    _show(context, as_json, diagnosis_tables.diagnosis, diagnose, study, model)
 
 
 @app.command("diagnose-many")
-def diagnose_many(
+def diagnose_many_command(
     context: typer.Context,
     studies: Annotated[list[int] | None, typer.Argument(metavar="[STUDY]...", help="Without any, all.")] = None,
     workers: Workers = None,
@@ -109,26 +134,34 @@ def diagnose_many(
     as_json: Json = False,
 ) -> None:
     """Diagnose the newest models of many studies, on all cores or on a cluster."""
-    from bench.cli.lab.study_many import diagnose_studies, show
+    from bench.study.diagnose_many import diagnose_many
 
-    found = diagnose_studies(session_of(context), studies or [], workers, cluster)
-    print_json(found) if as_json else show(found)
+    with session_of(context).open_store() as store:
+        chosen = studies or sorted(row.id for row in store.studies())
+        found = diagnose_many(store, chosen, progress, workers, cluster)
+    print_json(found) if as_json else diagnosis_tables.diagnoses(found)
 
 
 @app.command("add")
-def add(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
+def add_command(
+    context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False
+) -> None:
     """Add an effect to a model and refit: the error before and after."""
-    _show(context, as_json, tables.change, "add_effect", study, effect, model_id=model)
+    from bench.study.changes import add_effect
+
+    _show(context, as_json, study_tables.change, add_effect, study, effect, model)
 
 
 @app.command("drop")
 def drop(context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False) -> None:
     """Drop an effect from a model and refit: the error before and after."""
-    _show(context, as_json, tables.change, "drop_effect", study, effect, model_id=model)
+    from bench.study.changes import drop_effect
+
+    _show(context, as_json, study_tables.change, drop_effect, study, effect, model)
 
 
 @app.command("search")
-def search(
+def search_command(
     context: typer.Context,
     study: StudyId,
     model: Model = None,
@@ -136,11 +169,13 @@ def search(
     as_json: Json = False,
 ) -> None:
     """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
-    _show(context, as_json, tables.search, "search", study, model_id=model, most=most)
+    from bench.study.search import search
+
+    _show(context, as_json, diagnosis_tables.search, search, study, model, most)
 
 
 @app.command("suggest")
-def suggest(
+def suggest_command(
     context: typer.Context,
     study: StudyId,
     model: Model = None,
@@ -163,22 +198,24 @@ def suggest(
     if queue:
         queue_all(session_of(context), found, url, as_json)
     else:
-        print_json(found) if as_json else tables.suggestion(found)
+        print_json(found) if as_json else diagnosis_tables.suggestion(found)
 
 
 @app.command("extend")
-def extend(
+def extend_command(
     context: typer.Context,
     study: StudyId,
     experiment: Annotated[list[int] | None, typer.Option(help=_EXTEND)] = None,
     as_json: Json = False,
 ) -> None:
     """Add trials to a study and refit its newest model to all of them."""
-    _show(context, as_json, tables.extended, "extend_study", study, experiment or [])
+    from bench.study.extend import extend_study
+
+    _show(context, as_json, diagnosis_tables.extended, extend_study, study, experiment or [])
 
 
 @app.command("refit")
-def refit(
+def refit_command(
     context: typer.Context,
     study: StudyId,
     experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are read; repeatable.")],
@@ -186,27 +223,29 @@ def refit(
     as_json: Json = False,
 ) -> None:
     """Fit a model anew to all trials of experiments, however many rows they have; nothing is kept."""
-    _show(context, as_json, tables.refitted, "refit", study, experiment, model_id=model)
+    from bench.study.refit import refit
+
+    _show(context, as_json, study_tables.refitted, refit, study, experiment, model)
 
 
 @app.command("use")
-def use(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+def use_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Hand a model to the online compensator: the load in motion is estimated with it from now on."""
     from bench.cli.lab.study_bench import use_model
 
     found = use_model(session_of(context), study, model)
-    print_json(found) if as_json else say(found["sentence"])
+    print_json(found) if as_json else say(found.sentence)
 
 
 @app.command("report")
-def report(
+def report_command(
     context: typer.Context,
     study: StudyId,
     html: Annotated[Path, typer.Option(help="File to write.")],
     suggest: Annotated[bool, typer.Option(help="Say which trials to record next; takes longer.")] = True,
 ) -> None:
     """One HTML file to be filed: trials, ladder, model, pictures, diagnosis, what to record next, provenance."""
-    from bench.study import report_html
+    from bench.study.report.report import report_html
 
     session = session_of(context)
     with session.open_store() as store:
@@ -216,7 +255,7 @@ def report(
 
 
 @app.command("ladder")
-def ladder(
+def ladder_command(
     context: typer.Context,
     study: StudyId,
     bench: Annotated[bool, typer.Option("--bench", help=_BENCH)] = False,
@@ -225,19 +264,27 @@ def ladder(
 ) -> None:
     """The error from model to model, training and held-out, down towards the floor; in motion; in grams."""
     if motion:
-        from bench.cli.lab.study_motion import simulate_models
+        from bench.cli.lab.study_bench import simulate_models
 
         simulate_models(session_of(context), study, quiet=as_json)
     if bench:
         from bench.cli.lab.study_bench import measure_models
 
         measure_models(session_of(context), study, quiet=as_json)
-    _show(context, as_json, tables.ladder, "ladder", study)
+    from bench.study.ladder import ladder
+
+    _show(context, as_json, study_tables.ladder, ladder, study)
 
 
-def _show(context: typer.Context, as_json: bool, show: Any, name: str, *args: Any, **kwargs: Any) -> None:
-    from bench import study
-
+def _show(
+    context: typer.Context,
+    as_json: bool,
+    show: Callable[[T], None],
+    function: Callable[Concatenate["Store", P], T],
+    *args: P.args,
+    **kwargs: P.kwargs,
+) -> None:
+    """Ask the study on the store of this session, and print the answer."""
     with session_of(context).open_store() as store:
-        found = getattr(study, name)(store, *args, **kwargs)
+        found = function(store, *args, **kwargs)
     print_json(found) if as_json else show(found)

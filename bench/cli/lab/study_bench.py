@@ -1,6 +1,6 @@
-"""`friction-bench study use` and `study ladder --bench`: a study's model back on the bench, and its worth there."""
+"""`friction-bench study use`, `study ladder --motion` and `--bench`: a study's models, simulated and on the bench."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -13,21 +13,32 @@ from bench.cli.output import complain, say
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.configuration import BenchConfiguration
     from bench.store import Store
+    from bench.study.use import Used
 
 KIND = "sinusoid"  # accelerated motion and reversals: what a study is good for
 
 
-def use_model(session: BenchSession, study_id: int, model_id: int | None) -> dict[str, Any]:
+def use_model(session: BenchSession, study_id: int, model_id: int | None) -> "Used":
     """Keep a model as a calibration, and choose it."""
-    from bench.study import use
+    from bench.study.use import use
 
     with session.open_store() as store:
         return use(store, study_id, session.configuration(), model_id)
 
 
+def simulate_models(session: BenchSession, study_id: int, quiet: bool) -> None:
+    """Simulate each model of a study that was not yet, and keep the error of its motion."""
+    from bench.study.closed_loop import keep_motion_errors
+
+    with session.open_store() as store:
+        for model_id in keep_motion_errors(store, study_id):
+            if not quiet:
+                say(f"model {model_id} simulated")
+
+
 def measure_models(session: BenchSession, study_id: int, quiet: bool) -> None:
     """Move the joint once with each model of a study that has not been tried on the bench, and keep the error."""
-    from bench.study import bench_configurations, keep_bench_error
+    from bench.study.on_bench import bench_configurations, keep_bench_error
 
     with session.open_store() as store:
         for model_id, configuration in bench_configurations(store, study_id, session.configuration()):

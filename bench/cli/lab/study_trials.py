@@ -2,36 +2,36 @@
 with --queue has a service run it."""
 
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING, Any
 
 import typer
+from pydantic import BaseModel
 
 from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import ExitCode
-from bench.cli.lab import study_tables as tables
+from bench.cli.lab import diagnosis_tables as tables
 from bench.cli.operation.run import carry_out
 from bench.cli.operation.service import ask
 from bench.cli.output import print_json, say
 from bench.errors import LimitError, ParameterError
+from bench.store import Experiment
+from bench.study import diagnose, extend
 from bench.study.errors import StudyError
-from bench.study.suggestion.came import in_words, what_came
+from bench.study.models.diagnosis import Diagnosis
+from bench.study.suggestion import suggest
+from bench.study.suggestion.earlier_trials import in_words, what_came
 from bench.study.suggestion.rounds import Ended, in_rounds
+from bench.study.suggestion.suggested import Came, Suggested, SuggestedTrial
 from drivers.errors import DriveError
-
-if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.store import Experiment
 
 REPLACED = ("tripped", "failed", "refused")  # outcomes after which the next best trial is run
 
 
 def suggested(
     session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] = ()
-) -> dict[str, Any]:
+) -> Suggested:
     """What to record next."""
-    from bench.study import suggest
-
     with session.open_store() as store:
-        return suggest(store, study_id, session.configuration(), model_id, trials, refused)
+        return suggest.suggest(store, study_id, session.configuration(), model_id, trials, refused)
 
 
 def carry_out_all(
@@ -43,79 +43,101 @@ def carry_out_all(
     running.tell_last()
     if as_json:
         print_json(running.told())
-    elif running.rounds[-1].get("diagnosis"):
-        tables.diagnosis(running.rounds[-1]["diagnosis"])
+    elif (last := running.rounds[-1].diagnosis) is not None:
+        tables.diagnosis(last)
     if running.signal_code is not None:
         raise typer.Exit(running.signal_code)
     if tried and tried[-1].reason:  # the end of it: what was replaced has others after it
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
-class _Suggested:
-    """A suggested trial, by the name that it has among the options."""
+class _Tried(BaseModel):
+    """What became of one suggested trial."""
 
-    def __init__(self, values: dict[str, Any]) -> None:
-        self.values, self.name = values, str(values["name"])
+    experiment_id: int | None
+    outcome: str
+    reason: str
+
+
+class _Round(BaseModel):
+    """What was suggested, which experiments came of it, and what the study says then."""
+
+    suggested: Suggested
+    experiments: list[_Tried] = []
+    extended: extend.Extended | None = None
+    diagnosis: Diagnosis | None = None
+    came: list[Came] | None = None
+    end: str | None = None
+
+
+class _Told(BaseModel):
+    """Every round; and what was suggested first, and what the study says at last."""
+
+    suggested: Suggested
+    rounds: list[_Round]
+    extended: extend.Extended | None = None
+    diagnosis: Diagnosis | None = None
 
 
 class _Running:
     """Rounds on this bench.
 
     Attributes:
-        rounds: what was suggested in each, which experiments came of it, and what the study says then.
+        rounds: one after the other.
         signal_code: exit code where a signal ended a trial.
     """
 
     def __init__(self, session: BenchSession, study_id: int, model_id: int | None, quiet: bool) -> None:
         self._session, self._study_id, self._model_id, self._quiet = session, study_id, model_id, quiet
-        self.rounds: list[dict[str, Any]] = []
+        self.rounds: list[_Round] = []
         self.signal_code: int | None = None
 
-    def told(self) -> dict[str, Any]:
-        """Every round; and what was suggested first, and what the study says at last."""
-        last: dict[str, Any] = {}
-        for one in self.rounds:
-            last.update({name: one[name] for name in ("extended", "diagnosis") if name in one})
-        return {"suggested": self.rounds[0]["suggested"], "rounds": self.rounds, **last}
+    def told(self) -> dict[str, object]:
+        """All of it as JSON; what there was none of is left out."""
+        learnt = [one for one in self.rounds if one.diagnosis is not None]
+        found = _Told(suggested=self.rounds[0].suggested, rounds=self.rounds)
+        if learnt:
+            found.extended, found.diagnosis = learnt[-1].extended, learnt[-1].diagnosis
+        return _without_none(found)
 
-    def ask(self, most: int, kept_out: Collection[str]) -> Sequence[_Suggested]:
+    def ask(self, most: int, kept_out: Collection[str]) -> Sequence[SuggestedTrial]:
         """What is suggested now."""
         found = self._next(most, kept_out)
         if found is None:
             return []
-        self.rounds.append({"suggested": found, "experiments": []})
+        self.rounds.append(_Round(suggested=found))
         if not self._quiet:
             tables.suggestion(found)
-        return [_Suggested(one) for one in found["trials"]]
+        return found.trials
 
     def tell_last(self) -> None:
         """What came of the last round, where nothing was suggested after it."""
-        if self.signal_code is None and self.rounds[-1].get("diagnosis") and "end" not in self.rounds[-1]:
+        if self.signal_code is None and self.rounds[-1].diagnosis is not None and self.rounds[-1].end is None:
             self._next(1, ())
 
-    def _next(self, most: int, kept_out: Collection[str]) -> dict[str, Any] | None:
+    def _next(self, most: int, kept_out: Collection[str]) -> Suggested | None:
         """What is suggested now, with what came of the last round; None where the rounds end."""
         try:
             found = suggested(self._session, self._study_id, self._model_id, most, kept_out)
         except StudyError as error:
             if not self.rounds:
                 raise
-            self.rounds[-1]["end"] = str(error)  # what was recorded since is in the study all the same
+            self.rounds[-1].end = str(error)  # what was recorded since is in the study all the same
             if not self._quiet:
                 say(str(error))
             return None
-        if self.rounds and "diagnosis" in self.rounds[-1]:
-            self.rounds[-1]["came"] = what_came(self.rounds[-1]["suggested"], found)
-            if not self._quiet and self.rounds[-1]["came"]:
-                say(in_words(self.rounds[-1]["came"]))
+        if self.rounds and self.rounds[-1].diagnosis is not None:
+            came = self.rounds[-1].came = what_came(self.rounds[-1].suggested, found)
+            if not self._quiet and came:
+                say(in_words(came))
         return found
 
-    def run(self, trial: _Suggested) -> str:
+    def run(self, trial: SuggestedTrial) -> str:
         """One trial; however it ends, the joint is powered off."""
-        one, note = trial.values, self.rounds[-1]["suggested"]["note"]
+        note = self.rounds[-1].suggested.note
         try:
             found, signal_code = carry_out(
-                self._session, one["kind"], one["parameters"], "", note, None, quiet=self._quiet
+                self._session, trial.kind, dict(trial.parameters), "", note, None, quiet=self._quiet
             )
         except (LimitError, ParameterError) as error:
             self._note(None, "refused", str(error))
@@ -131,32 +153,37 @@ class _Running:
 
     def learn(self) -> None:
         """Add what completed in this round, and diagnose."""
-        from bench.study import diagnose, extend_study
-
-        completed = [one["experiment_id"] for one in self.rounds[-1]["experiments"] if one["outcome"] == "completed"]
+        tried = self.rounds[-1].experiments
+        completed = [one.experiment_id for one in tried if one.outcome == "completed" and one.experiment_id is not None]
         with self._session.open_store() as store:
-            extended = extend_study(store, self._study_id, completed)
-            self.rounds[-1].update(extended=extended, diagnosis=diagnose(store, self._study_id))
+            extended = self.rounds[-1].extended = extend.extend_study(store, self._study_id, completed)
+            self.rounds[-1].diagnosis = diagnose.diagnose(store, self._study_id)
         self._model_id = None  # the newest, from now on
         if not self._quiet:
             tables.extended(extended)  # what it says comes with the next suggestion, or at the end
 
-    def _note(self, found: "Experiment | None", outcome: str, reason: str) -> None:
+    def _note(self, found: Experiment | None, outcome: str, reason: str) -> None:
         number = None if found is None else found.id
-        self.rounds[-1]["experiments"].append({"experiment_id": number, "outcome": outcome, "reason": reason})
+        self.rounds[-1].experiments.append(_Tried(experiment_id=number, outcome=outcome, reason=reason))
         if not self._quiet:
             name = "a trial" if number is None else f"experiment {number}"
             say(f"{name}: {outcome}{f': {reason}' if reason else ''}")
 
 
-def queue_all(session: BenchSession, found: dict[str, Any], url: str, as_json: bool) -> None:
+def _without_none(found: _Told) -> dict[str, object]:
+    """As JSON, without what a round, or all of them, did not come to."""
+    told = {name: value for name, value in found if value is not None}
+    told["rounds"] = [{name: value for name, value in one if value is not None} for one in found.rounds]
+    return told
+
+
+def queue_all(session: BenchSession, found: Suggested, url: str, as_json: bool) -> None:
     """Put every suggested trial into the queue of a service: all or none."""
-    names = ("kind", "parameters")
-    items = [{**{name: one[name] for name in names}, "note": found["note"]} for one in found["trials"]]
+    items = [{"kind": one.kind, "parameters": one.parameters, "note": found.note} for one in found.trials]
     queued = ask(session, "POST", url, "/queue", {"items": items}) if items else {"item_ids": []}
     if as_json:
         print_json({"suggested": found, **queued})
         return
     tables.suggestion(found)
     if items:
-        say(f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found['study_id']}")
+        say(f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found.study_id}")

@@ -1,6 +1,6 @@
 """`friction-bench calibrate ...`: friction curves of the joint: measured, fitted, kept, shown, chosen."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,6 +10,8 @@ from bench.cli.operation.run import Pace, carry_out
 from bench.cli.output import Json, print_json, say, table
 
 if TYPE_CHECKING:
+    from bench.calibration.curves import Curve, Estimate
+    from bench.json_types import Value
     from bench.store import CalibrationRow
 
 app = typer.Typer(no_args_is_help=True)
@@ -38,8 +40,8 @@ def run(
 ) -> None:
     """Sweep the balanced arm over speeds and loads, search F_load under each, fit, and keep. The joint moves."""
     session, loads, levels = session_of(context), _numbers(loads_kg), _numbers(duties)
-    sweep = {"loads_kg": loads, "duties": levels, "strokes": STROKES}
-    search = {"loads_kg": loads, "angles_rad": [0.0, 1.5708], "searches": SEARCHES}
+    sweep: dict[str, Value] = {"loads_kg": loads, "duties": levels, "strokes": STROKES}
+    search: dict[str, Value] = {"loads_kg": loads, "angles_rad": [0.0, 1.5708], "searches": SEARCHES}
     ids = []
     for kind, parameters in (("speed-sweep", sweep), ("load-sweep", search)):
         found, signal_code = carry_out(session, kind, parameters, "", note, pace, quiet=as_json)
@@ -121,24 +123,25 @@ def _show(row: "CalibrationRow", as_json: bool) -> None:
 
         print_json(represent(row, None).model_dump(mode="json", exclude={"in_use"}))
         return
+    from bench.calibration.curves import Curve, Estimate
+
     experiments = ", ".join(map(str, row.experiment_ids))
     say(f"calibration {row.id} of rig '{row.rig.get('name')}', from experiments {experiments} ({row.source})")
     table(
         "Friction of the balanced joint; 95 % intervals",
         ["load [g]#", "F_load [mA]#", "Coulomb [mA]#", "static [mA]#", "Stribeck [rad/s]#", "shape#",
          "viscous [mA s/rad]#", "scatter [mA]#", "points#"],
-        [_curve_cells(one) for one in row.result["curves"]],
+        [_curve_cells(Curve.model_validate(one)) for one in row.result["curves"]],
     )  # fmt: skip
-    constants = [
-        (name, _interval(row.result["motor"].get(name), 1.0)) for name in ("resistance_ohm", "back_emf_v_s_rad")
-    ]
+    motor = {name: row.result["motor"].get(name) for name in ("resistance_ohm", "back_emf_v_s_rad")}
+    constants = [(name, _interval(one and Estimate.model_validate(one), 1.0)) for name, one in motor.items()]
     table("Motor, as the sweep tells it", ["", "value"], constants)
     for sentence in dict.fromkeys(row.result["motor"]["unidentified"].values()):
         say(sentence)
 
 
-def _curve_cells(curve: dict[str, Any]) -> tuple[object, ...]:
-    found = curve["parameters"]
+def _curve_cells(curve: "Curve") -> tuple[object, ...]:
+    found = curve.parameters
     intervals = [
         _interval(found[name], scale)
         for name, scale in (
@@ -147,17 +150,17 @@ def _curve_cells(curve: dict[str, Any]) -> tuple[object, ...]:
         )
     ]  # fmt: skip
     return (
-        1e3 * curve["load_kg"], 1e3 * curve["f_load_a"], *intervals, 1e3 * curve["scatter_a"], curve["points"],
+        1e3 * curve.load_kg, 1e3 * curve.f_load_a, *intervals, 1e3 * curve.scatter_a, curve.points,
     )  # fmt: skip
 
 
-def _interval(one: dict[str, Any] | None, scale: float) -> str:
+def _interval(one: "Estimate | None", scale: float) -> str:
     """Value, and its interval where there is one."""
-    if one is None or one["value"] is None:
+    if one is None or one.value is None:
         return "not told"
-    if one["low"] is None:
-        return f"{scale * one['value']:.4g} (no interval)"
-    return f"{scale * one['value']:.4g} ({scale * one['low']:.4g} .. {scale * one['high']:.4g})"
+    if one.low is None or one.high is None:
+        return f"{scale * one.value:.4g} (no interval)"
+    return f"{scale * one.value:.4g} ({scale * one.low:.4g} .. {scale * one.high:.4g})"
 
 
 def _numbers(text: str) -> list[float]:

@@ -1,7 +1,7 @@
 """`friction-bench campaign`: many experiments over a grid of parameters, from a TOML file."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -25,7 +25,7 @@ def _campaign() -> None:
 def plan(context: typer.Context, file: File, as_json: Json = False) -> None:
     """Show what it comes to on this bench: order, duration, load changes. Nothing moves; no service is needed."""
     from bench.runs.queue import plan_campaign
-    from bench.runs.queue.campaign_file import read_campaign
+    from bench.runs.queue.campaign import read_campaign
 
     campaign = read_campaign(file)
     found = plan_campaign(campaign, session_of(context).configuration())
@@ -43,7 +43,7 @@ def plan(context: typer.Context, file: File, as_json: Json = False) -> None:
 @app.command()
 def start(context: typer.Context, file: File, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
     """Put it into the queue of a running service: all of its experiments, or none."""
-    from bench.runs.queue.campaign_file import read_campaign
+    from bench.runs.queue.campaign import read_campaign
 
     body = read_campaign(file).model_dump(mode="json")
     found = ask(session_of(context), "POST", url, "/campaigns", body)
@@ -54,8 +54,8 @@ def start(context: typer.Context, file: File, url: Url = DEFAULT_URL, as_json: J
     say(f"campaign '{found['name']}': {len(found['item_ids'])} experiments in the queue, about {minutes:.1f} min")
 
 
-def _fields(name: str, found: "CampaignPlan") -> dict[str, Any]:
-    from bench.service.models.queue_models import planned
+def _fields(name: str, found: "CampaignPlan") -> dict[str, object]:
+    from bench.service.routes.queue_models import planned
 
     items = [planned(item).model_dump() for item in found.items]
     return {"name": name, "items": items, "duration_s": found.duration_s, "load_changes": found.load_changes}

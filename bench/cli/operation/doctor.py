@@ -35,7 +35,7 @@ def doctor(
     found = connect(session.configuration())
     if not as_json:
         _show(found)
-    answer: dict[str, Any] = {"connection": _represent(found)}
+    answer: dict[str, object] = {"connection": _represent(found)}
     passed = True
     if move:
         passed = _move(session, operator, answer, as_json)
@@ -47,7 +47,7 @@ def doctor(
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
-def _move(session: BenchSession, operator: str, answer: dict[str, Any], quiet: bool) -> bool:
+def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet: bool) -> bool:
     """The silence and the commissioning move. Returns whether both are as wanted."""
     from bench.cli.operation.run import carry_out
     from bench.control.commissioned import KIND

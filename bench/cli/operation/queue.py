@@ -1,13 +1,16 @@
 """`friction-bench queue`: the queue of a service that is running."""
 
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.operation.service import DEFAULT_URL, Url, ask
 from bench.cli.output import Json, print_json, say, table
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.json_types import Values
 
 app = typer.Typer(no_args_is_help=True)
 ItemId = Annotated[int, typer.Argument(min=1, help="Number of the item.")]
@@ -116,7 +119,7 @@ def _minutes(seconds: float) -> str:
     return f"{seconds / 60.0:.1f} min" if seconds >= 60.0 else f"{seconds:.0f} s"
 
 
-def _given(name: str, words: list[str]) -> dict[str, Any]:
+def _given(name: str, words: list[str]) -> "Values":
     """NAME=VALUE words as the parameters of a kind."""
     from bench.cli.parameters import given
     from bench.experiments.registry import find_kind

@@ -15,7 +15,8 @@ from bench.cli.output import print_json, say, table
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.experiments.kind import ExperimentKind
-    from bench.runs.runner import RunnerStatus
+    from bench.json_types import Values
+    from bench.runs.bench_control import RunnerStatus
     from bench.store import Experiment
 
 
@@ -96,7 +97,7 @@ def _run(
 def carry_out(
     session: BenchSession,
     kind: str,
-    parameters: dict[str, Any],
+    parameters: "Values",
     operator: str,
     note: str,
     pace: Pace | None,
@@ -105,15 +106,14 @@ def carry_out(
     """Run it to its end, whatever that is. Returns its record, and the exit code where a signal ended it."""
     from bench.control import scheduling
     from bench.control.drive_factory import is_simulated
-    from bench.runs.runner import Runner
-    from bench.runs.surroundings import Surroundings
+    from bench.runs.runner import HostProcess, Runner
 
     configuration = session.configuration()
     wanted = pace or (Pace.FAST if is_simulated(configuration) else Pace.REAL_TIME)
     facts = {"control_loop": {"process": "that of the command", "scheduling": scheduling.describe()}}
-    surroundings = Surroundings(during_run=scheduling.undisturbed, facts=facts)
+    host = HostProcess(during_run=scheduling.undisturbed, facts=facts)
     with session.open_store() as store:
-        runner = Runner(configuration, store, surroundings)
+        runner = Runner(configuration, store, host)
         try:
             with stopping_on_signals(runner) as received:
                 experiment_id = runner.start(kind, parameters, operator=operator, note=note, pace=wanted.value)

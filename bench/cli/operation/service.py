@@ -1,5 +1,6 @@
 """`friction-bench status` and `stop`: a service that is running, by its address."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import urlsplit
 
@@ -39,7 +40,7 @@ def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) 
     print_json(found) if as_json else say(found["detail"])
 
 
-def ask(session: BenchSession, method: str, url: str, path: str, body: dict[str, Any] | None = None) -> Any:
+def ask(session: BenchSession, method: str, url: str, path: str, body: Mapping[str, object] | None = None) -> Any:
     """What a service answers; None where it answers nothing.
 
     Raises:

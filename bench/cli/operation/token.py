@@ -17,7 +17,7 @@ Name = Annotated[str, typer.Argument(help="Of the person or the program that get
 
 
 class RoleName(StrEnum):
-    """As `bench.service.auth.roles.Role`, which is imported when needed."""
+    """As `bench.service.auth.tokens.Role`, which is imported when needed."""
 
     VIEWER = "viewer"
     OPERATOR = "operator"

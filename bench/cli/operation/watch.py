@@ -8,7 +8,8 @@ from bench.cli.operation.prompt import attend
 from bench.cli.output import console, say
 
 if TYPE_CHECKING:
-    from bench.runs.runner import Runner, RunnerStatus
+    from bench.runs.bench_control import RunnerStatus
+    from bench.runs.runner import Runner
 
 _POLL_S = 0.1
 _SOON_S = 0.01

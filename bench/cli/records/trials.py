@@ -60,7 +60,7 @@ def trial(
     if as_json:
         from bench.service.routes.trials import represent
 
-        print_json({**represent(found), "events": [event._asdict() for event in events]})
+        print_json({**dict(represent(found)), "events": [event._asdict() for event in events]})
         return
     facts = {"experiment": found.experiment_id, "kind": found.kind, "outcome": found.outcome, "reason": found.reason}
     facts |= {"rows": found.rows, "channels": ", ".join(found.channels), **found.conditions}

@@ -30,3 +30,14 @@ class ModbusDriveSettings(RealDriveSettings):
         ge=1,
         le=100,
     )
+    silence_s: float | None = quantity(
+        None,
+        "s",
+        "Rest of the line between an answer and the next request; left out: 3.5 characters",
+        ge=0,
+        le=0.1,
+    )
+    echo: bool = quantity(False, "", "True where the serial adapter hears what it sends itself (two-wire RS-485)")
+    current_limit_a: float | None = quantity(
+        None, "A", "Highest motor current, set in the drive by the map's [limits]; left out: the drive's own", gt=0
+    )

@@ -29,8 +29,12 @@ class RoboclawDriveSettings(RealDriveSettings):
     current: Literal["signed", "magnitude"] = quantity(
         "signed", "", "'magnitude' where it reports the current without the sign of the torque"
     )
-    questions: Literal["in turn", "together"] = quantity(
-        "in turn",
+    questions: Literal["auto", "in turn", "together"] = quantity(
+        "auto",
         "",
-        "'together': a cycle's duty and questions in one write; quicker, and tried when the drive is opened",
+        "'together': a cycle's duty and questions in one write, which is quicker; 'auto': together where it answers "
+        "them all when it is opened, otherwise in turn",
+    )
+    current_limit_a: float | None = quantity(
+        None, "A", "Highest motor current, set in the controller; left out: the controller's own", gt=0, le=1000
     )

@@ -1,4 +1,4 @@
-"""What only a simulated joint has: the operator's hand and the surroundings in software, and torques that are known."""
+"""What only a simulated joint has: the operator's hand and the environment in software, and torques that are known."""
 
 from math import nan
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ def make_hand(drive: Drive) -> "Hand | None":
     return Hand(drive.plant) if isinstance(drive, SimulatedDrive) else None
 
 
-def make_surroundings(drive: Drive) -> "Surroundings | None":
+def make_environment(drive: Drive) -> "Surroundings | None":
     """What the arm of a simulated drive meets; None at a real one."""
     from sim_backend.drive.simulated_drive import SimulatedDrive
     from sim_backend.environment.surroundings import Surroundings

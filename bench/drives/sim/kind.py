@@ -1,9 +1,12 @@
 """The simulated drive as a kind."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.rig import Rig
+from bench.drives.sim import faults as settings_of
+from bench.drives.sim.faults import FaultSettings
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
@@ -31,11 +34,24 @@ def make(settings: SimulatedDriveSettings, _rig: Rig) -> Drive:
 
 
 def _script(settings: SimulatedDriveSettings) -> "list[Fault]":
-    """The faults of bench.toml as the simulation plays them; both name each kind alike."""
+    """The faults of bench.toml as the simulation plays them."""
     from sim_backend.faults import script as faults
 
+    kinds: dict[type[FaultSettings], Callable[..., Fault]] = {
+        settings_of.EncoderStuck: faults.EncoderStuck,
+        settings_of.EncoderJump: faults.EncoderJump,
+        settings_of.SamplesLost: faults.SamplesLost,
+        settings_of.SamplesLate: faults.SamplesLate,
+        settings_of.OverTemperature: faults.OverTemperature,
+        settings_of.OverCurrent: faults.OverCurrent,
+        settings_of.SupplyLost: faults.SupplyLost,
+        settings_of.DriveFailed: faults.DriveFailed,
+        settings_of.TorqueDisabled: faults.TorqueDisabled,
+        settings_of.ClutchSlips: faults.ClutchSlips,
+        settings_of.LoadFalls: faults.LoadFalls,
+    }
     return [
-        getattr(faults, type(fault).__name__)(
+        kinds[type(fault)](
             start_s=fault.at_s,
             duration_s=fault.for_s or faults.FOR_GOOD_S,
             by_the_wall=fault.clock == "wall",

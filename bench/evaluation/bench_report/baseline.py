@@ -1,19 +1,14 @@
 """The baseline: what the same campaign gave before, as JSON."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.errors import BenchError
-from bench.evaluation.bench_report.campaign import SeedValues, fingerprint
+from bench.errors import BaselineError
+from bench.evaluation.bench_report.campaign import SeedValues, fingerprint, metric_names
 from bench.evaluation.bench_report.comparison import mean_interval
 from bench.provenance import software
-
-
-class BaselineError(BenchError, ValueError):
-    """Raised when there is no baseline, or one that these measurements cannot be held against."""
-
 
 HOW = "make it with: friction-bench bench-report --update-baseline"
 
@@ -52,7 +47,7 @@ def read_baseline(path: Path) -> list[SeedValues]:
         raise BaselineError(f"{path}: there is no baseline; {HOW}") from error
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BaselineError(f"{path}: is no baseline ({error}); {HOW}") from error
-    if campaign != fingerprint() or any(set(one.values) != set(fingerprint()["metrics"]) for one in seeds):
+    if campaign != fingerprint() or any(set(one.values) != set(metric_names()) for one in seeds):
         raise BaselineError(f"{path}: was made with another campaign, which cannot be compared; {HOW}")
     return seeds
 
@@ -66,5 +61,5 @@ def _means(found: Sequence[SeedValues]) -> dict[str, dict[str, float]]:
     return listed
 
 
-def _numbers(values: dict[str, Any]) -> dict[str, float]:
+def _numbers(values: Mapping[str, float]) -> dict[str, float]:
     return {str(name): float(value) for name, value in values.items()}

@@ -1,6 +1,6 @@
 """What is run, and what is taken from it. A baseline holds for one campaign: a change here needs a new one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -9,6 +9,7 @@ from typing import Any
 
 from bench.config.configuration import default_configuration
 from bench.evaluation.paper.measurements import Measurement, measure, quietly
+from bench.json_types import Value
 from bench.store import Store
 
 LOAD_KG = 0.1
@@ -33,7 +34,7 @@ class Metric:
     name: str
     title: str
     measurement: Measurement
-    of: Callable[[dict[str, Any]], float]
+    of: Callable[[Mapping[str, Any]], float]
     lower_is_better: bool = True
 
 
@@ -99,11 +100,16 @@ class SeedValues:
     failures: tuple[str, ...] = ()
 
 
-def fingerprint() -> dict[str, Any]:
+def fingerprint() -> dict[str, Value]:
     """What a baseline must have been made with, JSON-able."""
     kinds = {one.kind: dict(one.parameters) for one in (STEPS, LOADS)}
     listed = {kind: {key: _plain(value) for key, value in values.items()} for kind, values in kinds.items()}
-    return {"experiments": listed, "metrics": [metric.name for metric in METRICS]}
+    return {"experiments": listed, "metrics": metric_names()}
+
+
+def metric_names() -> list[str]:
+    """Of every seed of a baseline."""
+    return [metric.name for metric in METRICS]
 
 
 def run_seed(seed: int) -> SeedValues:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from bench.evaluation.bench_report.baseline import BaselineError
+from bench.errors import BaselineError
 from bench.evaluation.bench_report.campaign import METRICS, Metric, SeedValues
 
 FAMILY_RATE = 0.01

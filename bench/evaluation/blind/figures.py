@@ -59,6 +59,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     promised = [one for one in settled if one.settled is not None and one.settled.promised >= MUST_NAME]
     return [
         *_false_alarms(answered),
+        _named_by_other_laws(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
         _share("truth among the first three, r >= 0.15", 0.98, ranked, _among_three),
         _share("truth in the class, r >= 0.15", 0.97, shown, _in_class),
@@ -105,6 +106,13 @@ def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
         _share(words[name], asked, [one for one in answered if one.family == name], alarm, at_most=True)
         for name, asked in families.items()
     ]
+
+
+def _named_by_other_laws(answered: Sequence[Result]) -> Figure:
+    """Friction by laws that the base model does not have may be flagged; a name for it is wrong."""
+    what = "named though nothing is hidden, friction by laws outside the base model"
+    among = [one for one in answered if one.family == "other-laws"]
+    return _share(what, 0.02, among, lambda one: _answer(one).verdict == "missing", at_most=True)
 
 
 def _outside(answered: Sequence[Result]) -> list[Figure]:

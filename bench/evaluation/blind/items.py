@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from bench.evaluation.blind.memory_protocol import memory_protocol
 from bench.evaluation.challenge.hidden_plant import MECHANISMS, DrawnPlant, Wanted, draw_plant
 from bench.evaluation.challenge.names import ABSORBED, ACCEPTED, accepted
 from bench.evaluation.challenge.session import Protocol
+from bench.json_types import Value
 
 MEMORY = ("bristle", "backlash", "dwell", "shaft")
 OUTSIDE = tuple(name for name, names in ACCEPTED.items() if not names)
@@ -138,9 +138,12 @@ def protocol_of(item: Item, heaviest_kg: float, top_rad_s: float, configuration:
     """What is recorded: three loads and all motions; for memory, what shows rests, starts, reversals and twist."""
     if FAMILIES[item.family].memory:
         return memory_protocol(configuration, heaviest_kg, top_rad_s, DURATION_S)
-    loads: dict[str, Any] = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4), heaviest_kg], "repeats": 1}
+    loads: dict[str, Value] = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4), heaviest_kg], "repeats": 1}
     motions = {**loads, "speed_rad_s": round(top_rad_s, 2), "duration_s": DURATION_S}
     if FAMILIES[item.family].settled:
-        few = {"loads_kg": [0.0, round(0.5 * heaviest_kg, 4)], "waveforms": ["slow-sine", "multisine", "triangles"]}
+        few: dict[str, Value] = {
+            "loads_kg": [0.0, round(0.5 * heaviest_kg, 4)],
+            "waveforms": ["slow-sine", "multisine", "triangles"],
+        }
         return [("excitation", {**motions, **few})]
     return [("excitation", motions)]

@@ -56,7 +56,7 @@ class Result:
     withheld: LabAnswer | None = None
     withheld_left: Standing | None = None
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Nested dicts."""
         return asdict(self)
 
@@ -98,7 +98,7 @@ def judge(item: Item) -> Result:
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
         more_left = unexplained(item, found) if names == ("",) else None
         unlisted = _unlisted(fit, truths) if FAMILIES[item.family].withheld else None
-        left = None if unlisted is None else _left(fit, gathered, names[0], unlisted.first[:1])
+        left = None if unlisted is None else left_beside(fit, gathered, names[0], unlisted.first[:1])
         settled = settle(bench_for(item, drawn), recordings, fit, names[0]) if FAMILIES[item.family].settled else None
     except LabError as refusal:
         empty = (None,) * len(truths)
@@ -120,16 +120,16 @@ def _unlisted(fit: Fit, truths: tuple[str, ...]) -> LabAnswer | None:
         return ask_lab(fit, several=False)
 
 
-def _left(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -> Standing | None:
+def left_beside(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -> Standing | None:
     """How far a truth stands out of the model with what was named in its place: all that is left to be flagged."""
-    if not _can_be_seen(fit, name):
+    if not can_be_seen(fit, name):
         return None
     return standing(_judged(fit, base, list(named), name), name)
 
 
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:
     """How far each truth stands out of the model with all the others, and the error of the model with all of them."""
-    known = [name for name in names if name and _can_be_seen(fit, name)]
+    known = [name for name in names if name and can_be_seen(fit, name)]
     whole = fit_effects(fit.dataset, [*fit.names, *known], fit.training) if known else fit
     standings = []
     for name in names:
@@ -156,7 +156,7 @@ def _judged(fit: Fit, base: Candidates, others: list[str], name: str) -> Candida
     return gather(widened(rest, "moving") if show_in == "moving" else rest, show_in)
 
 
-def _can_be_seen(fit: Fit, name: str) -> bool:
+def can_be_seen(fit: Fit, name: str) -> bool:
     """Whether these trials have what the effect needs: a temperature that differs, loads that differ."""
     try:
         fit.dataset.check_applicable(effect_named(name))

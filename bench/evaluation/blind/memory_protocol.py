@@ -1,10 +1,10 @@
 """What is recorded of a joint that may remember: ordinary experiments that show rests, starts, reversals and twist."""
 
 from math import pi
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.evaluation.challenge.session import Protocol
+from bench.json_types import Value
 
 WAVEFORMS = ("slow-sine", "small-sine", "sweep", "triangles")
 BREAKAWAY_SHARE = 0.1  # of the search's ceiling, roughly: ramps reach it in 2, 0.8 and 0.3 s, which are rest, too
@@ -26,11 +26,13 @@ def memory_protocol(
 
     Friction scatters from stop to stop, so that a rise of a fifth takes some seventy starts to be sure of.
     """
-    motions: dict[str, Any] = {"loads_kg": [0.0, heaviest_kg], "repeats": 1, "waveforms": list(WAVEFORMS)}
+    motions: dict[str, Value] = {"loads_kg": [0.0, heaviest_kg], "repeats": 1, "waveforms": list(WAVEFORMS)}
     motions |= {"speed_rad_s": round(top_rad_s, 2), "duration_s": duration_s}
     breakaway_a = BREAKAWAY_SHARE * configuration.search.ceiling_a
     rates = [max(round(share * breakaway_a, 4), LEAST_RATE_A_S) for share in RATES_PER_S]
-    passes = [{"rates_a_s": rates[::order], "dwells_s": list(DWELLS_S[::order])} for order in ORDERS]
+    passes: list[dict[str, Value]] = [
+        {"rates_a_s": rates[::order], "dwells_s": list(DWELLS_S[::order])} for order in ORDERS
+    ]
     low_hz, high_hz = CHIRP_HZ
     amplitude_rad = ACCELERATION_SHARE * configuration.motion.acceleration_rad_s2 / (2.0 * pi * high_hz) ** 2
     chirp = {"load_kg": heaviest_kg, "amplitude_rad": round(amplitude_rad, 5), "low_hz": low_hz, "high_hz": high_hz}

@@ -18,7 +18,12 @@ class ResultsError(BenchError, OSError):
 
 
 def run_items(
-    items: Sequence[Item], kept: Path | None, shown: Shown, workers: int | None = None, cluster: str | None = None
+    items: Sequence[Item],
+    kept: Path | None,
+    shown: Shown,
+    workers: int | None = None,
+    cluster: str | None = None,
+    ask: Callable[[Item], Result] = judge,
 ) -> list[Result]:
     """Judge items, in the order given whatever order they end in.
 
@@ -28,6 +33,7 @@ def run_items(
         shown: told of the progress.
         workers: processes; 0 or 1 judges in this one; None takes all cores.
         cluster: address of a Dask scheduler, whose workers judge instead.
+        ask: draws and judges one item; a function of a module.
 
     Raises:
         ClusterError: the cluster cannot be used.
@@ -37,7 +43,7 @@ def run_items(
     open_items = [item for item in items if item.key not in done]
     shown(len(items) - len(open_items), len(items))
     alone = workers == 0 or len(open_items) < 2
-    for result in as_they_end(judge, open_items, 1 if alone else workers, cluster):
+    for result in as_they_end(ask, open_items, 1 if alone else workers, cluster):
         done[result.key] = result
         if kept is not None:
             _append(kept, result)

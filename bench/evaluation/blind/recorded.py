@@ -1,7 +1,6 @@
 """The joint of an item, recorded; where its family asks for an r, with so much of what it hides as makes that r."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from bench.evaluation.blind.lab_answer import base_fit
 from bench.evaluation.challenge.hidden_plant import MECHANISMS, DrawnPlant
 from bench.evaluation.challenge.owner import bench_of, rig_of
 from bench.evaluation.challenge.session import record
+from bench.json_types import Values
 from compensator.lab.errors import LabError
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import Recording
@@ -180,7 +180,7 @@ def _quiet(configuration: BenchConfiguration) -> BenchConfiguration:
     return _with_plant(configuration, {"scatter": still, "current_sensor": {**plant["current_sensor"], "noise_a": 0.0}})
 
 
-def _with_plant(configuration: BenchConfiguration, tables: dict[str, Any]) -> BenchConfiguration:
+def _with_plant(configuration: BenchConfiguration, tables: Values) -> BenchConfiguration:
     values = configuration.model_dump()
     values["drive"]["plant"] = {**values["drive"]["plant"], **tables}
     return BenchConfiguration.model_validate(values)

@@ -3,6 +3,8 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from bench.json_types import Values
+
 
 @dataclass(frozen=True, slots=True)
 class Truth:
@@ -21,7 +23,7 @@ class Truth:
     measure: str
     unit: str
     share: float
-    parameters: dict[str, Any]
+    parameters: Values
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +41,9 @@ class Answer:
     difficulty: str
     attempt: int
     truths: tuple[Truth, ...]
-    plant: dict[str, Any]
+    plant: Values
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Nested dicts."""
         return asdict(self)
 

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from bench.errors import ParameterError
 from bench.evaluation.challenge.names import RECORDED, accepted
+from bench.store import Store
+from bench.study.diagnose import diagnose
+from bench.study.ladder import ladder
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnknownEffectError
 
@@ -98,6 +101,20 @@ def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> 
     if guess.unknown and not unknown_used:
         wrong.append(UNKNOWN)
     return Score(tuple(right), tuple(missed), tuple(untold), tuple(recorded), tuple(wrong), tuple(sizes))
+
+
+def guess_of_study(store: Store, study_id: int) -> Guess:
+    """What a study says is hidden: what it added, and what its last diagnosis names.
+
+    Raises:
+        NotFoundError: there is no such study.
+        StudyError: its last model cannot be judged.
+    """
+    rungs = ladder(store, study_id).rungs
+    last = diagnose(store, study_id)
+    added = [(name,) for name in rungs[-1].effects if name not in rungs[0].effects]
+    named = [tuple(one.effects) for one in last.classes]
+    return Guess((*added, *named), last.verdict == "unknown-effect")
 
 
 def _known(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -4,7 +4,6 @@ The factory makes the drive of a configuration; this makes what a configuration 
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 from sim_backend.challenge.draw import DrawnPlant, Wanted, draw_hidden, draw_plant, hide
 from sim_backend.challenge.mechanisms import MECHANISMS
@@ -23,7 +22,7 @@ class RangeTable:
 
 def range_tables() -> list[RangeTable]:
     """Every quantity that is drawn: name, ends, unit, and why."""
-    sizes: dict[str, Any] = {f"{one.name}: {one.measure}": one.size for one in MECHANISMS.values()}
+    sizes: dict[str, Range] = {f"{one.name}: {one.measure}": one.size for one in MECHANISMS.values()}
     return [
         RangeTable("The joint", _rows(JOINT)),
         RangeTable("What the data sheet may be off by, as a share of the true value", _rows(DATA_SHEET | GEAR_SHEET)),

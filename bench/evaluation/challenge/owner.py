@@ -1,12 +1,13 @@
 """What the owner of a drawn joint knows of it, and the bench that the owner builds from that."""
 
+from collections.abc import Mapping
 from math import floor, log10
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration, parse_configuration
 from bench.config.rig import Rig
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.evaluation.challenge.hidden_plant import DrawnPlant
+from bench.json_types import Value
 
 BANDWIDTH_RAD_S = 28.0  # of the position servo: stiff enough for the motions, far below the sampling rate
 RIG_NAME = "unknown joint"
@@ -60,7 +61,7 @@ def bench_of(drawn: DrawnPlant, seed: int, without: str | None = None) -> BenchC
     most_a = 1.6 * joint.peak_a
     stiffness = BANDWIDTH_RAD_S**2 * joint.inertia_kg_m2 / torque_per_a
     drive = SimulatedDriveSettings(seed=seed, plant=drawn.tables(without))
-    values: dict[str, Any] = {
+    values: dict[str, Value] = {
         "name": RIG_NAME,
         "rig": rig.model_dump(mode="json", exclude_none=True),
         "drive": drive.model_dump(mode="json"),
@@ -86,7 +87,7 @@ def bench_of(drawn: DrawnPlant, seed: int, without: str | None = None) -> BenchC
     return parse_configuration(values, "the challenge's bench")
 
 
-def _sheet(table: dict[str, Any], name: str, off: dict[str, float], digits: int = 3) -> float:
+def _sheet(table: Mapping[str, float], name: str, off: dict[str, float], digits: int = 3) -> float:
     return _rounded(float(table[name]) * (1.0 + off[name]), digits)
 
 

@@ -8,8 +8,9 @@ import hashlib
 import json
 import zipfile
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 from bench.errors import BenchError
 from bench.evaluation.challenge.answer import Answer
@@ -17,6 +18,15 @@ from bench.evaluation.challenge.answer import Answer
 WHAT = "sealed answer of a friction-bench challenge; open it with: friction-bench reveal"
 _KEYS = ("what", "recordings_sha256", "sealed", "sha256")
 _LINE = 76
+
+
+class _Sealed(TypedDict):
+    """The file."""
+
+    what: str
+    recordings_sha256: str
+    sealed: list[str]
+    sha256: str
 
 
 class SealError(BenchError, ValueError):
@@ -36,8 +46,8 @@ def write_sealed(answer: Answer, recordings: Path, path: Path) -> None:
     """
     coded = sealed(answer)
     lines = [coded[start : start + _LINE] for start in range(0, len(coded), _LINE)]
-    values: dict[str, Any] = {"what": WHAT, "recordings_sha256": digest_of(recordings), "sealed": lines}
-    values["sha256"] = _digest(values)
+    digest = digest_of(recordings)
+    values = _Sealed(what=WHAT, recordings_sha256=digest, sealed=lines, sha256=_digest(digest, lines))
     try:
         path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
     except OSError as error:
@@ -77,7 +87,7 @@ def read_sealed(path: Path, recordings: Path | None = None) -> Answer:
         SealError: it is no answer file, or it or the recordings were changed.
     """
     values = _read(path)
-    if values["sha256"] != _digest(values):
+    if values["sha256"] != _digest(values["recordings_sha256"], values["sealed"]):
         raise SealError(f"{path}: was changed after it was sealed; take the file as the challenge wrote it")
     if recordings is not None and digest_of(recordings) != values["recordings_sha256"]:
         raise SealError(f"{recordings}: are not the recordings that {path} was sealed with, or were changed since")
@@ -106,7 +116,7 @@ def _files(recordings: Path) -> list[tuple[str, bytes]]:
         return [(name, archive.read(name)) for name in sorted(archive.namelist())]
 
 
-def _read(path: Path) -> dict[str, Any]:
+def _read(path: Path) -> _Sealed:
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -115,9 +125,14 @@ def _read(path: Path) -> dict[str, Any]:
         values = None
     if not isinstance(values, dict) or set(values) != set(_KEYS) or values["what"] != WHAT:
         raise SealError(f"{path}: is no sealed answer; wanted the file that 'friction-bench challenge' wrote")
-    return values
+    return _Sealed(
+        what=WHAT,
+        recordings_sha256=str(values["recordings_sha256"]),
+        sealed=list(map(str, values["sealed"])),
+        sha256=str(values["sha256"]),
+    )
 
 
-def _digest(values: dict[str, Any]) -> str:
-    parts = [WHAT, str(values["recordings_sha256"]), *map(str, values["sealed"])]
+def _digest(recordings_sha256: str, sealed: Sequence[str]) -> str:
+    parts = [WHAT, str(recordings_sha256), *map(str, sealed)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()

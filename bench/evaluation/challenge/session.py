@@ -1,24 +1,24 @@
 """Runs a protocol of experiments through the ordinary control loop, and keeps the trials in memory."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import make_equipment
 from bench.evaluation.challenge.difficulty import Difficulty
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.json_types import Value, Values
 from bench.runs.in_memory import InMemoryBench
 from compensator.lab.recordings.recording import Recording
 
-Protocol = list[tuple[str, dict[str, Any]]]
+Protocol = list[tuple[str, Values]]
 """Experiments in order: kind, parameters."""
 
 
 def protocol_of(difficulty: Difficulty, heaviest_kg: float, top_rad_s: float) -> Protocol:
     """What is recorded: identification motions under several loads, then steps with searches at rest."""
     loads_kg = [min(round(share * heaviest_kg, 4), heaviest_kg) for share in difficulty.loads]
-    motions = {
+    motions: dict[str, Value] = {
         "loads_kg": loads_kg,
         "speed_rad_s": round(top_rad_s, 2),
         "duration_s": difficulty.duration_s,
@@ -26,7 +26,11 @@ def protocol_of(difficulty: Difficulty, heaviest_kg: float, top_rad_s: float) ->
     }
     protocol: Protocol = [("excitation", motions)]
     if difficulty.steps:
-        steps = {"load_kg": loads_kg[-1], "repeats": difficulty.steps, "fastest_rad_s": round(top_rad_s, 2)}
+        steps: dict[str, Value] = {
+            "load_kg": loads_kg[-1],
+            "repeats": difficulty.steps,
+            "fastest_rad_s": round(top_rad_s, 2),
+        }
         protocol.append(("steps", steps))
     return protocol
 
@@ -46,7 +50,7 @@ def record(configuration: BenchConfiguration, protocol: Protocol) -> list[Record
         ]
 
 
-def _plans(name: str, values: dict[str, Any], configuration: BenchConfiguration) -> Iterator[TrialPlan]:
+def _plans(name: str, values: Values, configuration: BenchConfiguration) -> Iterator[TrialPlan]:
     kind = find_kind(name)
     parameters = parse_parameters(kind, values)
     kind.refuse(parameters, configuration)

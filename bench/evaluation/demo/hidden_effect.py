@@ -1,15 +1,21 @@
 """Third part: a plant with one more mechanism than the model knows of. The lab finds it from the recordings alone."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from bench import study
 from bench.config.configuration import BenchConfiguration
 from bench.evaluation.paper.measurements import run_experiment
 from bench.report import Bars, Figure, Line, Points, Section, Table
 from bench.store import Store
+from bench.study.changes import add_effect
+from bench.study.compare import compare
+from bench.study.create import create_study
+from bench.study.diagnose import diagnose
+from bench.study.ladder import ladder
+from bench.study.models.diagnosis import Diagnosis, Ranked
+from bench.study.models.ladder import Ladder, Rung
 
 BASE = (
     "inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction",
@@ -21,7 +27,7 @@ BASE = (
 class Hidden:
     """A mechanism of the plant, and what the catalogue calls it."""
 
-    plant: dict[str, Any]
+    plant: Mapping[str, object]
     name: str
 
 
@@ -45,93 +51,99 @@ def hidden_effect(configuration: BenchConfiguration, store: Store, seed: int) ->
     hidden = draw(seed)
     drive = configuration.drive.model_copy(update={"plant": hidden.plant, "seed": seed})
     experiment_id = run_experiment(configuration.model_copy(update={"drive": drive}), store, "excitation", {})
-    made = study.create_study(
-        store, f"hidden effect, seed {seed}", [experiment_id], hold_out=["load_kg=0.05"], base=BASE
-    )
-    study_id = made["study_id"]
-    before = study.compare(store, study_id)
-    diagnosis = study.diagnose(store, study_id)
-    first = diagnosis["ranking"][0]
-    change = study.add_effect(store, study_id, first["effect"])
-    ladder = study.ladder(store, study_id)
-    right = "It was." if first["effect"] == hidden.name else f"It was not: hidden was {hidden.name}."
+    made = create_study(store, f"hidden effect, seed {seed}", [experiment_id], hold_out=["load_kg=0.05"], base=BASE)
+    study_id = made.study_id
+    before = compare(store, study_id)
+    floor = before.error.floor
+    assert floor is not None  # an excitation repeats its trials
+    found = diagnose(store, study_id)
+    first = found.ranking[0]
+    change = add_effect(store, study_id, first.effect)
+    rungs = ladder(store, study_id)
+    right = "It was." if first.effect == hidden.name else f"It was not: hidden was {hidden.name}."
     return Section(
         title="A hidden effect: compare, learn what is missing, add it",
         sentences=[
-            f"{len(made['trials'])} recordings of a plant with one more mechanism than the model. The trials with "
-            f"50 g are held out. The model's error on them is {before['error']['held_out']['relative']:.2%} of the "
-            f"effort; repeated trials differ by {before['error']['floor']['relative']:.2%}: no model can beat that.",
-            diagnosis["sentence"],
-            change["sentence"],
-            f"Named: {first['title'].lower()}. {right}",
+            f"{len(made.trials)} recordings of a plant with one more mechanism than the model. The trials with "
+            f"50 g are held out. The model's error on them is {before.error.held_out.relative:.2%} of the "
+            f"effort; repeated trials differ by {floor.relative:.2%}: no model can beat that.",
+            found.sentence,
+            change.sentence,
+            f"Named: {first.title.lower()}. {right}",
         ],
-        tables=[_ranking(diagnosis), _ladder(ladder)],
-        figures=[*_picture(first), _errors(ladder)],
+        tables=[_ranking(found), _ladder(rungs)],
+        figures=[*_picture(first), _errors(rungs)],
     )
 
 
-def _ranking(diagnosis: dict[str, Any]) -> Table:
+def _ranking(diagnosis: Diagnosis) -> Table:
     rows = [
         (
-            one["title"],
-            one["score"],
-            100 * one["held_out_before"],
-            100 * one["held_out_after"],
-            f"{one['gain']:.1%} ({one['gain_low']:.1%} .. {one['gain_high']:.1%})",
-            ", ".join(one["confused_with"]) or "-",
+            one.title,
+            one.score,
+            100 * one.held_out_before,
+            100 * one.held_out_after,
+            f"{one.gain:.1%} ({one.gain_low:.1%} .. {one.gain_high:.1%})",
+            ", ".join(one.confused_with) or "-",
         )
-        for one in diagnosis["ranking"]
+        for one in diagnosis.ranking
     ]
     columns = ["effect", "score#", "held out before [%]#", "then [%]#", "gain, 90 % interval", "rivals"]
     return Table("Effects by evidence", columns, rows)
 
 
-def _ladder(ladder: dict[str, Any]) -> Table:
-    rows = [
+def _ladder(ladder: Ladder) -> Table:
+    rows: list[tuple[object, ...]] = [
         (
-            f"+ {rung['added']}" if rung["added"] else "base",
-            100 * rung["training"],
-            100 * rung["held_out"],
-            f"{rung['held_out_low']:.2%} .. {rung['held_out_high']:.2%}",
+            f"+ {rung.added}" if rung.added else "base",
+            100 * rung.training,
+            100 * rung.held_out,
+            f"{rung.held_out_low:.2%} .. {rung.held_out_high:.2%}",
         )
-        for rung in ladder["rungs"]
+        for rung in ladder.rungs
     ]
-    rows.append(("repeatability floor", None, 100 * ladder["floor"], ""))
+    rows.append(("repeatability floor", None, None if ladder.floor is None else 100 * ladder.floor, ""))
     return Table(
         "The ladder: error as a share of the effort", ["model", "training [%]#", "held out [%]#", "90 %"], rows
     )
 
 
-def _errors(ladder: dict[str, Any]) -> Figure:
-    names = [f"+ {rung['added']}" if rung["added"] else "base" for rung in ladder["rungs"]]
+def _errors(ladder: Ladder) -> Figure:
+    names = [f"+ {rung.added}" if rung.added else "base" for rung in ladder.rungs]
 
-    def percent(key: str) -> list[float]:
-        return [100 * rung[key] for rung in ladder["rungs"]]
+    def percent(value: Callable[[Rung], float]) -> list[float]:
+        return [100 * value(rung) for rung in ladder.rungs]
 
     return Figure(
         "Error from model to model",
         "",
         "error [% of the effort]",
         [
-            Bars("training", names, percent("training")),
-            Bars("held out", names, percent("held_out"), percent("held_out_low"), percent("held_out_high")),
+            Bars("training", names, percent(lambda rung: rung.training)),
+            Bars(
+                "held out",
+                names,
+                percent(lambda rung: rung.held_out),
+                percent(lambda rung: rung.held_out_low),
+                percent(lambda rung: rung.held_out_high),
+            ),
         ],
     )
 
 
-def _picture(first: dict[str, Any]) -> list[Figure]:
-    picture = first["picture"]
+def _picture(first: Ranked) -> list[Figure]:
+    picture = first.picture
     if picture is None:
         return []
-    against = ", against the motion" if picture["against_motion"] else ""
+    against = ", against the motion" if picture.against_motion else ""
     return [
         Figure(
-            f"Why: what the model leaves{against}, and {first['title'].lower()} laid over it",
-            f"{picture['driver']} [{picture['unit']}]",
+            f"Why: what the model leaves{against}, and {first.title.lower()} laid over it",
+            f"{picture.driver} [{picture.unit}]",
             "residual [N m]",
             [
-                Points("residual", picture["x"], picture["residual"], picture["low"], picture["high"]),
-                Line(first["title"], picture["curve_x"], picture["curve"]),
+                Points("residual", picture.x, picture.residual, picture.low, picture.high),
+                Line(first.title, picture.curve_x, picture.curve),
             ],
         )
     ]

@@ -8,9 +8,9 @@ import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
+from bench.config.rig import resolution_rad
 from bench.experiments.kinds.steady_speeds import STEADY_SHARE, SteadySpeedsParameters
 from bench.experiments.parts.load_follower import WINDOW_S
-from bench.experiments.parts.resolution import resolution_rad
 
 MEAN_ABSOLUTE = sqrt(2.0 / pi)  # of a normal error, over its standard deviation
 SLACK = sqrt(8.0)  # see `stroke_bound_g`
@@ -55,7 +55,7 @@ def stroke_bound_g(configuration: BenchConfiguration) -> float | None:
         return None
     moved = inertia + parameters.load_kg * length_m**2
     way_rad = STEADY_SHARE * (2.0 * parameters.reach_rad - parameters.run_up_rad - parameters.brake_rad)
-    slack_rad = play_rad + resolution_rad(configuration)
+    slack_rad = play_rad + resolution_rad(configuration.rig)
     # the first estimate of the stretch rests on a window before it
     seen_s = [way_rad / speed + WINDOW_S for speed in parameters.speeds_rad_s]
     errors_n_m = [moved * SLACK * slack_rad / time_s**2 for time_s in seen_s]

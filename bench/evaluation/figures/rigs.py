@@ -1,11 +1,10 @@
 """Rigs drawn at random round the one of the paper, so that nothing is tuned to one."""
 
-from typing import Any
-
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.drives.sim.settings import SimulatedDriveSettings
+from bench.json_types import Value
 
 # of the preset `paper`, at the shaft where each acts
 DRIVE_SIDE = {"coulomb_n_m": 3.0e-3, "static_n_m": 5.0e-3, "viscous_n_m_s_rad": 1.05e-4}
@@ -25,7 +24,7 @@ def drawn_rig(configuration: BenchConfiguration, seed: int) -> BenchConfiguratio
     gap_rad = GAP_RAD * float(generator.uniform(*GAP))
     asymmetry = float(generator.uniform(-ASYMMETRY, ASYMMETRY))
     counts = float(2 ** generator.integers(BITS[0], BITS[1] + 1))
-    plant: dict[str, Any] = {
+    plant: dict[str, Value] = {
         "friction": {name: drive_side * value for name, value in DRIVE_SIDE.items()},
         "arm_friction": {name: arm_side * value for name, value in ARM_SIDE.items()},
         "gear": {"backlash_rad": gap_rad},

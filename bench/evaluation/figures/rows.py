@@ -43,8 +43,7 @@ class Asked:
 
 
 def _rows(seed: SeedResults, name: str) -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = seed.results.get(name, {}).get("rows", [])
-    return rows
+    return list(seed.results.get(name, {}).get("rows", []))
 
 
 def _summary(seed: SeedResults, name: str, key: str, scale: float = 1.0) -> Numbers:

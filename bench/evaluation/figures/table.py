@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import isnan, nan
-from typing import Any
 
 import numpy as np
 
@@ -58,7 +57,7 @@ class FigureRow:
             self.rigs_sure, self.rigs_median, self.rigs_worst, rigs_reached,
         )  # fmt: skip
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """By name."""
         return asdict(self)
 

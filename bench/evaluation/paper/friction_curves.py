@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import numpy as np
 
-from bench.calibration import curve_data, friction_of
+from bench.calibration import friction_of
+from bench.calibration.curve_data import Columns, CurvePicture, curve_data
+from bench.calibration.curves import Curve, Estimate
 from bench.config.friction_curves import FrictionCurve
 from bench.config.rig import Rig
 from bench.evaluation.paper.row import FIG_2, FIG_3, Row
@@ -23,9 +24,9 @@ COUNTS = 1000.0
 
 def friction_curves(row: CalibrationRow) -> list[Row]:
     """The rows fig-2 and fig-3, of a calibration whose rig knows R, Ke and supply."""
-    pictures, curves = curve_data(row)["curves"], friction_of(row).curves
+    pictures, curves = curve_data(row).curves, friction_of(row).curves
     duties = [_duty_at(curve, SHOWN_SPEED_RPM / RPM, Rig.model_validate(row.rig)) for curve in curves]
-    fastest_rpm = max(max(one["points"]["motor_speed_rad_s"]) for one in pictures) * RPM
+    fastest_rpm = max(max(one.points.motor_speed_rad_s) for one in pictures) * RPM
     speed_rpm = _speed_at(curves[0], SHOWN_CURRENT_A) * RPM
     scatter_ma = 1e3 * float(np.median([curve["scatter_a"] for curve in row.result["curves"]]))
     source = {"experiment_ids": tuple(row.experiment_ids), "trial_ids": tuple(row.trial_ids)}
@@ -58,40 +59,41 @@ def friction_curves(row: CalibrationRow) -> list[Row]:
     ]
 
 
-def _figure(pictures: Sequence[dict[str, Any]], title: str, speed_up: bool) -> Figure:
+def _figure(pictures: Sequence[CurvePicture], title: str, speed_up: bool) -> Figure:
     """Fig. 2 has the speed upwards over the current, Fig. 3 the duty over the speed."""
     drawn: list[Line | Points] = []
     for one, colour in zip(pictures, shades(len(pictures)), strict=True):
-        x, y = (_columns(one["points"], speed_up), _columns(one["curve"], speed_up))
-        drawn.append(Points(f"{1e3 * one['load_kg']:g} g, measured", *x, colour=colour, in_legend=False))
-        drawn.append(Line(f"{1e3 * one['load_kg']:g} g", *y, colour=colour))
+        x, y = (_columns(one.points, speed_up), _columns(one.curve, speed_up))
+        drawn.append(Points(f"{1e3 * one.load_kg:g} g, measured", *x, colour=colour, in_legend=False))
+        drawn.append(Line(f"{1e3 * one.load_kg:g} g", *y, colour=colour))
     speed, current, duty = "motor speed [rpm]", "current [mA]", "duty [1/1000]"
     return Figure(title, current, speed, drawn) if speed_up else Figure(title, speed, duty, drawn)
 
 
-def _columns(columns: dict[str, Any], speed_up: bool) -> tuple[list[float], list[float]]:
-    speed_rpm = [RPM * value for value in columns["motor_speed_rad_s"]]
+def _columns(columns: Columns, speed_up: bool) -> tuple[list[float], list[float]]:
+    speed_rpm = [RPM * value for value in columns.motor_speed_rad_s]
     if speed_up:
-        return [1e3 * value for value in columns["friction_a"]], speed_rpm
-    return speed_rpm, [COUNTS * value for value in columns["friction_duty"]]
+        return [1e3 * value for value in columns.friction_a], speed_rpm
+    return speed_rpm, [COUNTS * value for value in columns.friction_duty or []]
 
 
 def _parameters(row: CalibrationRow) -> Table:
     names = ("coulomb_a", "static_a", "stribeck_speed_rad_s", "viscous_a_s_rad")
     scales = (1e3, 1e3, 1.0, 1e3)
     rows = []
-    for curve in row.result["curves"]:
-        found = [curve["parameters"][name] for name in names]
+    for curve in map(Curve.model_validate, row.result["curves"]):
+        found = [curve.parameters[name] for name in names]
         cells = [_with_interval(one, scale) for one, scale in zip(found, scales, strict=True)]
-        rows.append((1e3 * curve["load_kg"], 1e3 * curve["f_load_a"], *cells))
+        rows.append((1e3 * curve.load_kg, 1e3 * curve.f_load_a, *cells))
     columns = ["load [g]#", "F_load [mA]#", "Coulomb [mA]#", "static [mA]#", "Stribeck [rad/s]#", "viscous [mA s/rad]#"]
     return Table("General Kinetic Friction, eq. (2), with half of the 95 % interval", columns, rows)
 
 
-def _with_interval(one: dict[str, Any], scale: float) -> str:
-    if one["low"] is None:
-        return f"{scale * one['value']:.4g}"
-    return f"{scale * one['value']:.4g} ± {scale * (one['high'] - one['low']) / 2.0:.2g}"
+def _with_interval(one: Estimate, scale: float) -> str:
+    value = float("nan") if one.value is None else one.value
+    if one.low is None or one.high is None:
+        return f"{scale * value:.4g}"
+    return f"{scale * value:.4g} ± {scale * (one.high - one.low) / 2.0:.2g}"
 
 
 def _speed_at(curve: FrictionCurve, current_a: float) -> float:

@@ -13,6 +13,7 @@ from bench.errors import ConfigurationError, ExperimentError
 from bench.experiments.kinds.steady_speeds import PAPER_SPEEDS_RAD_S
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD
 from bench.experiments.registry import find_kind, parse_parameters
+from bench.json_types import Value, Values
 from bench.runs.runner import Runner
 from bench.store import CalibrationRow, Experiment, Store
 from bench.store.errors import NotFoundError
@@ -38,9 +39,9 @@ class Measurement:
     """
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Values
 
-    def whole_parameters(self) -> dict[str, Any]:
+    def whole_parameters(self) -> dict[str, Value]:
         """With the defaults, as a record has them."""
         return parse_parameters(find_kind(self.kind), self.parameters).model_dump(mode="json")
 
@@ -84,7 +85,7 @@ class Plan:
         The loads of the calibration are known to it; those of the load sweep after it are not: they are hung anew.
         """
         sweep = {"loads_kg": self.loads_kg, **dict(self.speed_sweep)}
-        loads: dict[str, Any] = {"loads_kg": self.loads_kg, "angles_rad": (0.0, pi / 2)}
+        loads: dict[str, Value] = {"loads_kg": self.loads_kg, "angles_rad": (0.0, pi / 2)}
         return {
             "speed-sweep": Measurement("speed-sweep", sweep),
             "known-loads": Measurement("load-sweep", {**loads, "searches": 1}),
@@ -160,7 +161,7 @@ def calibration_of(store: Store, experiments: list[Experiment]) -> CalibrationRo
     return store.calibrations.get(calibrate(store, ids, note="friction-bench paper"))
 
 
-def run_experiment(configuration: BenchConfiguration, store: Store, kind: str, parameters: dict[str, Any]) -> int:
+def run_experiment(configuration: BenchConfiguration, store: Store, kind: str, parameters: Values) -> int:
     """Run an experiment as fast as the simulation goes. Returns its id.
 
     Raises:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby
-from typing import Any
 
 from bench.report import Section
 
@@ -50,7 +49,7 @@ class Row:
     experiment_ids: tuple[int, ...] = ()
     trial_ids: tuple[int, ...] = ()
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """The numbers, and where they come from."""
         return {
             "name": self.name,

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from bench.evaluation.rivals import scoring
 from bench.evaluation.rivals.knowledge import calibrated, knowledge_of
 from bench.evaluation.rivals.record import Recorded, record
 from bench.evaluation.rivals.scoring import Score
+from bench.json_types import Values
 from compensator.motion.load_estimate import RestResult
 from compensator.rivals import RIVALS, Knowledge
 
@@ -114,7 +114,7 @@ def _with_method(configuration: BenchConfiguration, method: str) -> BenchConfigu
     return configuration.model_copy(update={"search": configuration.search.model_copy(update={"method": method})})
 
 
-def _with_plant(configuration: BenchConfiguration, plant: dict[str, Any]) -> BenchConfiguration:
+def _with_plant(configuration: BenchConfiguration, plant: Values) -> BenchConfiguration:
     assert isinstance(configuration.drive, SimulatedDriveSettings)  # as was checked
     merged = {**configuration.drive.plant, **plant}
     return configuration.model_copy(update={"drive": configuration.drive.model_copy(update={"plant": merged})})

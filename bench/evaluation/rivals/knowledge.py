@@ -8,12 +8,13 @@ from bench.calibration import calibrate, with_friction
 from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError, ExperimentError
 from bench.experiments.parts.load_follower import estimator_settings, joint_model
+from bench.json_types import Values
 from bench.runs.runner import Runner
 from bench.store import Store
 from compensator.rivals import Knowledge
 
 LOADS_KG = (0.0, 0.05, 0.1)
-SWEEPS = (
+SWEEPS: tuple[tuple[str, Values], ...] = (
     ("speed-sweep", {"loads_kg": LOADS_KG, "strokes": 4}),
     ("load-sweep", {"loads_kg": LOADS_KG, "angles_rad": (0.0, pi / 2), "searches": 2}),
 )
@@ -57,7 +58,7 @@ def knowledge_of(configuration: BenchConfiguration) -> Knowledge:
     )
 
 
-def _run(configuration: BenchConfiguration, store: Store, kind: str, parameters: dict[str, object]) -> int:
+def _run(configuration: BenchConfiguration, store: Store, kind: str, parameters: Values) -> int:
     runner = Runner(configuration, store)
     try:
         started = runner.start(kind, parameters, pace="fast")

@@ -7,11 +7,12 @@ import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.clock import VirtualClock
+from bench.control.cycle import Action, Procedure, Reading
 from bench.control.drive_factory import make_equipment
+from bench.control.ending import StopRequest
 from bench.control.limits import Guard
-from bench.control.loop import ControlLoop, Procedure
+from bench.control.loop import ControlLoop, joint_loop
 from bench.control.servo import current_servo
-from bench.control.stop_request import StopRequest
 from bench.drives.sim.joint import wall_torque_n_m
 from bench.errors import ExperimentError
 from bench.experiments.registry import find_kind, parse_parameters
@@ -52,7 +53,7 @@ def record(configuration: BenchConfiguration, kind_name: str, **parameters: Any)
     drive.open(period_s)
     try:
         servo = current_servo(configuration.rig)
-        loop = ControlLoop(drive, VirtualClock(), Guard(configuration.limits), period_s, servo)
+        loop = joint_loop(drive, VirtualClock(), Guard(configuration.limits), period_s, servo)
         trials = []
         for plan in kind.plan(checked, configuration):
             technician.hang_load(plan.load_kg, plan.balanced)
@@ -63,7 +64,7 @@ def record(configuration: BenchConfiguration, kind_name: str, **parameters: Any)
 
 
 def _run(
-    loop: ControlLoop, drive: Drive, procedure: Procedure, name: str, conditions: dict[str, Condition]
+    loop: ControlLoop[Action, Reading], drive: Drive, procedure: Procedure, name: str, conditions: dict[str, Condition]
 ) -> Recorded:
     memory = Memory()
     leant: list[float] = []

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 from math import degrees
-from typing import Any
 
 from bench.evaluation.rivals.comparison import LOAD_KG, Comparison
 from bench.evaluation.rivals.scoring import REGIMES, Score
+from bench.json_types import Value
 from bench.report import Section, Table
 from compensator.rivals import RIVALS
 
@@ -65,7 +65,7 @@ def _far_less(error_g: float | None, than_g: float | None) -> bool:
     return error_g is not None and than_g is not None and error_g < FAR_LESS * than_g
 
 
-def numbers_of(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
+def numbers_of(comparisons: Sequence[Comparison]) -> list[dict[str, Value]]:
     """Rig, rival, and for each regime mean and largest error [g] and rows without an estimate; what a search took."""
     return [
         {

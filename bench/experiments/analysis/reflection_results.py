@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
+from bench.config.rig import resolution_rad
 from bench.experiments.parts.pair_joints import Conveyed
-from bench.experiments.parts.resolution import resolution_rad
+from bench.json_types import Value
 from compensator.reflection.reflection_quality import FloatArray, Swing, delay_s, swing
 
 SWING_COUNTS = 8.0  # of the encoder; what turns back by less does not swing
@@ -32,7 +32,7 @@ def truth_n_m(
 
 def error_results(
     conveyed: Sequence[Conveyed], truth: FloatArray, force_scale: float, configuration: BenchConfiguration
-) -> dict[str, Any]:
+) -> dict[str, Value]:
     """How far the reflected load is from the true one.
 
     Returns:
@@ -60,7 +60,7 @@ def error_results(
     }
 
 
-def rest_results(rests: Sequence[tuple[Swing, float]]) -> dict[str, Any]:
+def rest_results(rests: Sequence[tuple[Swing, float]]) -> dict[str, Value]:
     """Of the rests of a trial.
 
     Args:
@@ -86,7 +86,7 @@ def widest_swing(conveyed: Sequence[Conveyed], configuration: BenchConfiguration
     slave = np.array([one.reading.slave.sample.position_rad for one in conveyed])
     master = np.array([one.reading.master.sample.position_rad for one in conveyed])
     found = [
-        swing(position_rad, SWING_COUNTS * resolution_rad(bench))
+        swing(position_rad, SWING_COUNTS * resolution_rad(bench.rig))
         for position_rad, bench in ((slave, configuration), (master, configuration.of_master()))
     ]
     return max(found, key=lambda one: (one.turns, one.amplitude_rad))

@@ -1,11 +1,10 @@
 """The stability margin of a pair at rest: the force scale up to which a nudge dies away."""
 
-from typing import Any
-
 from bench.config.configuration import BenchConfiguration
-from bench.control.pair.cycle import Reach
+from bench.control.pair import Reach
 from bench.experiments.analysis.reflection_results import widest_swing
 from bench.experiments.parts.pair_joints import PairJoints, PairPart
+from bench.json_types import Value
 
 NUDGE_RAD = 0.08
 NUDGE_S = 0.15
@@ -28,7 +27,7 @@ def ladder(largest: float) -> list[float]:
 
 def margin(
     pair: PairJoints, configuration: BenchConfiguration, angle_rad: float, largest: float
-) -> PairPart[dict[str, Any]]:
+) -> PairPart[dict[str, Value]]:
     """Raise the force scale, nudge the master each time, until the pair goes on swinging; then bisect.
 
     Args:

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from math import isnan
-from typing import Any
 
 from bench.experiments.analysis.saturation import Ending
 from bench.experiments.parts.stroke import Held, Window
+from bench.json_types import Value
 
 
 def steady_speed_results(
     windows: Sequence[Window], ending: Ending, remaining_rad_s: float, held: Held, ratio: float, least_window_s: float
-) -> dict[str, Any]:
+) -> dict[str, Value]:
     """Results along the direction: positive where they go with it. The last stroke's, and what every stroke measured.
 
     Args:
@@ -53,7 +53,7 @@ def steady_speed_results(
     }
 
 
-def _shown(window: Window, ratio: float) -> dict[str, Any]:
+def _shown(window: Window, ratio: float) -> dict[str, Value]:
     return {
         "motor_speed_rad_s": window.stroke.speed_rad_s * ratio,
         "motor_acceleration_rad_s2": _known(window.stroke.acceleration_rad_s2 * ratio),

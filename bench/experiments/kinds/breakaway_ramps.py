@@ -3,7 +3,7 @@
 from functools import partial
 from itertools import product
 from math import ceil, sin
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -11,15 +11,14 @@ from pydantic import Field
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import load_current_a
+from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
-from bench.experiments.parts.excursion import BRAKING_SHARE
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
-from bench.experiments.parts.resolution import resolution_rad
-from bench.experiments.parts.slip import comparing_cycles, slip_index
+from bench.json_types import Value, objects
 from drivers.contract import Command, Mode
 
 Rate = Annotated[float, Field(ge=0.005, le=100)]
@@ -79,7 +78,7 @@ def _rest(
     joint: Joint, parameters: BreakawayRampsParameters, configuration: BenchConfiguration, dwell_s: float
 ) -> Part[float]:
     """Ease to the current of the rest and dwell; how long the joint has stood by then [s]."""
-    period_s, still_rad = configuration.control.period_s, 1.5 * resolution_rad(configuration)
+    period_s, still_rad = configuration.control.period_s, 1.5 * resolution_rad(configuration.rig)
     begin_a, end_a = joint.command_a, _rest_current_a(parameters, configuration)
     ease, dwell = ceil(EASE_S / period_s), ceil(dwell_s / period_s)
     stood_rad, stood = joint.reading.sample.position_rad, configuration.motion.settled_cycles
@@ -115,7 +114,7 @@ def _ramp(
 def _result(
     readings: list[Reading], slipped: bool, direction: int, stood_s: float,
     parameters: BreakawayRampsParameters, configuration: BenchConfiguration,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Value]:  # fmt: skip
     """One breakaway.
 
     Returns:
@@ -128,8 +127,8 @@ def _result(
     """
     way_rad = direction * np.array([reading.sample.position_rad for reading in readings])
     way_rad -= way_rad[0]
-    moved = np.flatnonzero(np.abs(way_rad) > ONSET_COUNTS * resolution_rad(configuration))
-    result: dict[str, Any] = {
+    moved = np.flatnonzero(np.abs(way_rad) > ONSET_COUNTS * resolution_rad(configuration.rig))
+    result: dict[str, Value] = {
         "direction": direction,
         "stood_s": stood_s,
         "travel_rad": float(way_rad[-1]),
@@ -139,7 +138,7 @@ def _result(
     if not slipped:
         return result | dict.fromkeys(names)
     period_s = configuration.control.period_s
-    last = slip_index(way_rad, parameters.slip_speed_rad_s, period_s, resolution_rad(configuration))
+    last = slip_index(way_rad, parameters.slip_speed_rad_s, period_s, resolution_rad(configuration.rig))
     at = readings[last]
     values = (at.current_a, at.time_s - readings[0].time_s, at.time_s, float(way_rad[last]))
     return result | dict(zip(names, values, strict=True))
@@ -190,7 +189,7 @@ def _refuse(parameters: BreakawayRampsParameters, configuration: BenchConfigurat
 
 def _refuse_excursion(parameters: BreakawayRampsParameters, configuration: BenchConfiguration) -> None:
     """The way has to hold the free play, and a few comparisons of positions."""
-    count_rad, period_s = resolution_rad(configuration), configuration.control.period_s
+    count_rad, period_s = resolution_rad(configuration.rig), configuration.control.period_s
     cycles = comparing_cycles(parameters.slip_speed_rad_s, period_s, count_rad)
     compared_rad = 2.0 * parameters.slip_speed_rad_s * cycles * period_s
     least_rad = max(2.0 * (configuration.rig.gear.backlash_rad or 0.0), compared_rad)
@@ -206,11 +205,11 @@ def _duration_s(parameters: BreakawayRampsParameters, configuration: BenchConfig
     return 2.0 * parameters.repeats * sum(one_way_s)
 
 
-def _summarise(_parameters: BreakawayRampsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: BreakawayRampsParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [
-        {name: trial.conditions[name] for name in ("rate_a_s", "dwell_s", "repeat")} | breakaway
+        {**{name: trial.conditions[name] for name in ("rate_a_s", "dwell_s", "repeat")}, **breakaway}
         for trial in trials
-        for breakaway in trial.results.get("breakaways", [])
+        for breakaway in objects(trial.results.get("breakaways"))
     ]
     slipped = [row for row in rows if row["current_a"] is not None]
     return {"rows": rows, "breakaways": len(slipped), "without_slip": len(rows) - len(slipped)}

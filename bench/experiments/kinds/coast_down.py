@@ -4,23 +4,23 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 from math import ceil, isnan
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
+from bench.config.rig import resolution_rad
 from bench.control.cycle import OFF, Procedure, Reading
 from bench.experiments.analysis.coast_fit import fit_coast
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.excursion import Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
 from bench.experiments.parts.refusal import refuse_currents, refuse_load, refuse_speed
-from bench.experiments.parts.resolution import resolution_rad
 from bench.experiments.parts.stroke import StrokeSettings, refuse_travel
+from bench.json_types import Value, numbers
 from drivers.contract import Command, Mode
 
 Speed = Annotated[float, Field(gt=0)]
@@ -90,7 +90,7 @@ def _coast(
 ) -> Part[tuple[list[Reading], bool]]:
     """The readings, and whether it stands."""
     command = OFF if parameters.released == "off" else Command(Mode.CURRENT, 0.0)
-    still_rad, settled = 1.5 * resolution_rad(configuration), configuration.motion.settled_cycles
+    still_rad, settled = 1.5 * resolution_rad(configuration.rig), configuration.motion.settled_cycles
     readings: list[Reading] = []
     rest_rad, still = joint.reading.sample.position_rad, 0
     for cycle in range(ceil(parameters.coast_s / configuration.control.period_s)):
@@ -109,7 +109,7 @@ def _coast(
 
 def _results(
     before: list[Reading], readings: list[Reading], at_rest: bool, sign: float, period_s: float
-) -> dict[str, Any]:
+) -> dict[str, Value]:
     time_s = np.array([reading.time_s for reading in readings])
     way_rad = sign * np.array([reading.sample.position_rad for reading in readings])
     found = fit_coast(time_s, way_rad)
@@ -166,7 +166,7 @@ def _refuse(parameters: CoastDownParameters, configuration: BenchConfiguration) 
         refuse_travel("a speed of speeds_rad_s", speed_rad_s, travel)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
     refuse_currents(configuration)
-    resolution_rad(configuration)
+    resolution_rad(configuration.rig)
 
 
 def _duration_s(parameters: CoastDownParameters, _configuration: BenchConfiguration) -> float:
@@ -174,11 +174,11 @@ def _duration_s(parameters: CoastDownParameters, _configuration: BenchConfigurat
     return len(DIRECTIONS) * parameters.repeats * (coasts_s + RESTS_S * len(parameters.speeds_rad_s))
 
 
-def _summarise(_parameters: CoastDownParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: CoastDownParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [{**trial.conditions, **trial.results} for trial in trials if "coast_s" in trial.results]
-    summary: dict[str, Any] = {"rows": rows, "coasts": len(rows)}
+    summary: dict[str, Value] = {"rows": rows, "coasts": len(rows)}
     for name in ("dry_deceleration_rad_s2", "time_constant_s"):
-        values = [row[name] for row in rows if row[name] is not None]
+        values = numbers(rows, name)
         if values:
             summary[f"mean_{name}"] = sum(values) / len(values)
     return summary

@@ -3,18 +3,17 @@
 from collections.abc import Iterator
 from functools import partial
 from math import ceil
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
+from bench.config.rig import resolution_rad
 from bench.control.cycle import OFF, Procedure, Reading
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
-from bench.experiments.parts.resolution import resolution_rad
+from bench.json_types import Value
 from drivers.contract import Command, Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
@@ -51,7 +50,7 @@ def _plan(parameters: CommissioningParameters, configuration: BenchConfiguration
 def _refuse(parameters: CommissioningParameters, configuration: BenchConfiguration) -> None:
     refuse_angles("angle 0", [0.0], parameters.excursion_rad + MARGIN_RAD, configuration)
     refuse_currents(configuration)
-    least_rad = 20.0 * resolution_rad(configuration)
+    least_rad = 20.0 * resolution_rad(configuration.rig)
     if parameters.excursion_rad < least_rad:
         allowed = f"at least {least_rad:.3g} (20 encoder counts)"
         raise LimitError(quantity_message("excursion_rad", parameters.excursion_rad, allowed, "rad"))
@@ -145,7 +144,7 @@ def _duration_s(parameters: CommissioningParameters, _configuration: BenchConfig
     return 2.0 * (1.0 / parameters.rate_a_s + 1.0)
 
 
-def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     return dict(trials[0].results) if trials else {}
 
 

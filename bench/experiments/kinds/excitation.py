@@ -2,20 +2,20 @@
 
 from functools import partial
 from itertools import product
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, field_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.control.cycle import Procedure
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
 from bench.experiments.parts.waveforms import WAVEFORMS, sampled
+from bench.json_types import Value, numbers
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most
 REST_S = 2.0  # to go to the start and back, roughly
@@ -97,15 +97,15 @@ def _duration_s(parameters: ExcitationParameters, _configuration: BenchConfigura
     return trials * (parameters.duration_s + REST_S)
 
 
-def _summarise(_parameters: ExcitationParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: ExcitationParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     done = [trial.results for trial in trials if "rms_tracking_error_rad" in trial.results]
     if not done:
         return {"trials": 0}
     return {
         "trials": len(done),
-        "max_rms_tracking_error_rad": max(results["rms_tracking_error_rad"] for results in done),
-        "peak_speed_rad_s": max(results["peak_speed_rad_s"] for results in done),
-        "peak_current_a": max(results["peak_current_a"] for results in done),
+        "max_rms_tracking_error_rad": max(numbers(done, "rms_tracking_error_rad")),
+        "peak_speed_rad_s": max(numbers(done, "peak_speed_rad_s")),
+        "peak_current_a": max(numbers(done, "peak_current_a")),
     }
 
 

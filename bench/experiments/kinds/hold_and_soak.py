@@ -12,8 +12,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
@@ -24,6 +23,7 @@ from bench.experiments.parts.refusal import (
     refuse_slow_move,
     refuse_speed,
 )
+from bench.json_types import Value, number
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most
 MIDDLE = 0.5  # of a probe stroke, the part that is measured
@@ -153,9 +153,9 @@ def _plan(parameters: HoldAndSoakParameters, configuration: BenchConfiguration) 
         return TrialPlan(name, held, procedure, parameters.load_kg, parameters.balanced)
 
     plans = [trial(1, "probe", partial(probe, configuration, parameters))]
-    for number, seconds in enumerate(parameters.soaks_s, 1):
-        plans.append(trial(number, "soak", partial(soak, configuration, parameters, seconds)))
-        plans.append(trial(number + 1, "probe", partial(probe, configuration, parameters)))
+    for index, seconds in enumerate(parameters.soaks_s, 1):
+        plans.append(trial(index, "soak", partial(soak, configuration, parameters, seconds)))
+        plans.append(trial(index + 1, "probe", partial(probe, configuration, parameters)))
     return plans
 
 
@@ -192,18 +192,18 @@ def _duration_s(parameters: HoldAndSoakParameters, _configuration: BenchConfigur
     return parameters.soak_s + RESTS_S * len(parameters.soaks_s) + probes * probe_s
 
 
-def _summarise(_parameters: HoldAndSoakParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: HoldAndSoakParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [
         {"soaked_s": trial.conditions["soaked_s"], **trial.results}
         for trial in trials
         if "friction_current_a" in trial.results
     ]
-    summary: dict[str, Any] = {"rows": rows, "probes": len(rows)}
+    summary: dict[str, Value] = {"rows": rows, "probes": len(rows)}
     if len(rows) > 1:
-        first_a, last_a = rows[0]["friction_current_a"], rows[-1]["friction_current_a"]
-        summary["change_friction_current_a"] = last_a - first_a
-        if rows[0]["temperature_c"] is not None:
-            summary["change_temperature_c"] = rows[-1]["temperature_c"] - rows[0]["temperature_c"]
+        first, last = rows[0], rows[-1]
+        summary["change_friction_current_a"] = number(last["friction_current_a"]) - number(first["friction_current_a"])
+        if first["temperature_c"] is not None:
+            summary["change_temperature_c"] = number(last["temperature_c"]) - number(first["temperature_c"])
     return summary
 
 

@@ -2,16 +2,15 @@
 
 from functools import partial
 from math import sqrt
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
-from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.refusal import (
     refuse_angles,
     refuse_currents,
@@ -19,6 +18,7 @@ from bench.experiments.parts.refusal import (
     refuse_slow_move,
     refuse_speed,
 )
+from bench.json_types import Value, number
 
 PAPER_LOADS_KG = tuple(round(0.01 * step, 2) for step in range(11))
 Load = Annotated[float, Field(ge=0)]
@@ -66,7 +66,7 @@ def _duration_s(parameters: LoadSweepParameters, configuration: BenchConfigurati
     return trials * duration_s(configuration, parameters.searches)
 
 
-def _summarise(_parameters: LoadSweepParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: LoadSweepParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [
         {
             "load_kg": trial.conditions["load_kg"],
@@ -77,8 +77,9 @@ def _summarise(_parameters: LoadSweepParameters, trials: list[FinishedTrial]) ->
         for trial in trials
         if "steady_current_a" in trial.results
     ]
-    errors_kg = [row["reflected_load_kg"] - row["load_kg"] for row in rows if row.get("reflected_load_kg") is not None]
-    summary: dict[str, Any] = {"rows": rows, "estimates": sum(row["load_current_a"] is not None for row in rows)}
+    estimated = [row for row in rows if row.get("reflected_load_kg") is not None]
+    errors_kg = [number(row["reflected_load_kg"]) - number(row["load_kg"]) for row in estimated]
+    summary: dict[str, Value] = {"rows": rows, "estimates": sum(row["load_current_a"] is not None for row in rows)}
     if errors_kg:
         summary |= {
             "mean_absolute_error_kg": sum(map(abs, errors_kg)) / len(errors_kg),

@@ -1,7 +1,5 @@
 """Many sines of one period at once, their phases after Schroeder, followed as a position or given as a current."""
 
-from typing import Any
-
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
@@ -18,6 +16,7 @@ from bench.experiments.parts.injection import (
     summarise_injection,
 )
 from bench.experiments.parts.waveforms import FADE_S, fade
+from bench.json_types import Value
 
 
 class MultisineParameters(InjectionParameters):
@@ -75,7 +74,7 @@ def _duration_s(parameters: MultisineParameters, _configuration: BenchConfigurat
     return parameters.repeats * (parameters.duration_s + RESTS_S)
 
 
-def _summarise(parameters: MultisineParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(parameters: MultisineParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     return summarise_injection(parameters, trials) | {"tones_hz": frequencies_hz(parameters).tolist()}
 
 

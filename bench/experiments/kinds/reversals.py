@@ -4,22 +4,22 @@ from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise, product
 from math import ceil
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
+from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
-from bench.experiments.parts.resolution import resolution_rad
+from bench.json_types import Value, numbers
 
 Amplitude = Annotated[float, Field(gt=0)]
 OVERSHOOT_RAD = 0.1  # of the servo, at most
@@ -63,7 +63,7 @@ def reverse(configuration: BenchConfiguration, parameters: ReversalsParameters, 
     yield from joint.wake()
     yield from joint.move(parameters.angle_rad)
     yield from joint.settle(parameters.angle_rad)
-    joint.grip(resolution_rad(configuration))
+    joint.grip(resolution_rad(configuration.rig))
     ends = _ends(parameters, amplitude_rad)
     parts: list[tuple[list[SetPoint], list[Reading]]] = []
     for begin_rad, end_rad in pairwise(ends):
@@ -94,7 +94,7 @@ def _way(
     return [way.at(cycle * period_s) for cycle in range(1, cycles + 1)]
 
 
-def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Any]:
+def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Value]:
     means_a: dict[bool, list[float]] = {True: [], False: []}
     reached_rad, errors_rad = [], []
     for way, readings in parts:
@@ -107,7 +107,7 @@ def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Any
             means_a[bool(target_rad[-1] > target_rad[0])].append(float(np.mean(current_a[middle])))
         reached_rad.append(float(np.ptp(position_rad)) / 2.0)
         errors_rad.append(position_rad - target_rad)
-    results: dict[str, Any] = {"strokes": len(parts), "reached_rad": sum(reached_rad) / len(reached_rad)}
+    results: dict[str, Value] = {"strokes": len(parts), "reached_rad": sum(reached_rad) / len(reached_rad)}
     both = means_a[True] and means_a[False]
     forward_a, backward_a = (float(np.mean(means_a[way])) if both else None for way in (True, False))
     if forward_a is not None and backward_a is not None:
@@ -138,7 +138,7 @@ def _plan(parameters: ReversalsParameters, configuration: BenchConfiguration) ->
 
 def _refuse(parameters: ReversalsParameters, configuration: BenchConfiguration) -> None:
     refuse_load("load_kg", parameters.load_kg, configuration)
-    least_rad = LEAST_COUNTS * resolution_rad(configuration)
+    least_rad = LEAST_COUNTS * resolution_rad(configuration.rig)
     for amplitude_rad in parameters.amplitudes_rad:
         ends_rad = [parameters.angle_rad - amplitude_rad, parameters.angle_rad + amplitude_rad]
         refuse_angles("angle_rad and an amplitude of amplitudes_rad", [0.0, *ends_rad], OVERSHOOT_RAD, configuration)
@@ -159,13 +159,13 @@ def _duration_s(parameters: ReversalsParameters, _configuration: BenchConfigurat
     return parameters.repeats * (each * sum(strokes_s) + RESTS_S * len(parameters.amplitudes_rad))
 
 
-def _summarise(_parameters: ReversalsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: ReversalsParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [
-        {name: trial.conditions[name] for name in ("amplitude_rad", "repeat")} | trial.results
+        {**{name: trial.conditions[name] for name in ("amplitude_rad", "repeat")}, **trial.results}
         for trial in trials
         if "reached_rad" in trial.results
     ]
-    return {"rows": rows, "strokes": sum(row["strokes"] for row in rows)}
+    return {"rows": rows, "strokes": sum(numbers(rows, "strokes"))}
 
 
 KIND = ExperimentKind(

@@ -2,16 +2,15 @@
 
 from functools import partial
 from math import cos, pi, sin
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.control.cycle import Procedure
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.followed_motion import FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.json_types import Value, number, numbers
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most
 REST_S = 6.0  # to settle, to search, and back, roughly
@@ -88,13 +87,13 @@ def _duration_s(parameters: SinusoidParameters, _configuration: BenchConfigurati
     return parameters.repeats * (REST_S + (1 + parameters.periods) / parameters.frequency_hz)
 
 
-def _summarise(_parameters: SinusoidParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: SinusoidParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     done = [trial.results for trial in trials if trial.results.get("estimates")]
-    summary: dict[str, Any] = {"trials": len(done)}
+    summary: dict[str, Value] = {"trials": len(done)}
     if done:
         for name in ("rms_error_kg", "uncompensated_rms_error_kg", "in_band"):
-            summary[name] = sum(results[name] for results in done) / len(done)
-        summary["rms_ratio"] = summary["rms_error_kg"] / summary["uncompensated_rms_error_kg"]
+            summary[name] = sum(numbers(done, name)) / len(done)
+        summary["rms_ratio"] = number(summary["rms_error_kg"]) / number(summary["uncompensated_rms_error_kg"])
     return summary
 
 

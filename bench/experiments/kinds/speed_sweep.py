@@ -2,21 +2,21 @@
 
 from collections.abc import Iterator
 from functools import partial
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from pydantic import Field, model_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
+from bench.control.cycle import Procedure
 from bench.errors import LimitError, quantity_message
 from bench.experiments.analysis.saturation import Ending, next_run_up, remaining_rad_s
 from bench.experiments.analysis.steady_speed import steady_speed_results
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.kinds.load_sweep import PAPER_LOADS_KG, Load
-from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.refusal import refuse_currents, refuse_duty, refuse_load, refuse_speed
 from bench.experiments.parts.stroke import MARGIN_RAD, OVERSPEED, Held, Strokes, StrokeSettings, Window, refuse_travel
+from bench.json_types import Value, numbers
 from drivers.contract import Mode
 
 Level = Annotated[float, Field(gt=0)]
@@ -183,9 +183,9 @@ def _duration_s(parameters: SpeedSweepParameters, _configuration: BenchConfigura
     return len(parameters.loads_kg) * len(DIRECTIONS) * strokes * STROKE_S
 
 
-def _summarise(_parameters: SpeedSweepParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: SpeedSweepParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [{**trial.conditions, **trial.results} for trial in trials if "speed_rad_s" in trial.results]
-    return {"rows": rows, "steps": len(rows), "saturated": sum(row["saturated"] for row in rows)}
+    return {"rows": rows, "steps": len(rows), "saturated": sum(numbers(rows, "saturated"))}
 
 
 KIND = ExperimentKind(

@@ -2,15 +2,14 @@
 
 from functools import partial
 from math import ceil, pi
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.control.loop import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.control.cycle import Procedure
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.followed_motion import Followed, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import (
@@ -20,6 +19,7 @@ from bench.experiments.parts.refusal import (
     refuse_slow_move,
     refuse_speed,
 )
+from bench.json_types import Value, numbers
 
 PAPER_RPM = (100, 200, 400, 600, 800, 1000, 1200)
 PAPER_RATIO = 20.0  # of the rig whose motor turns that fast
@@ -153,12 +153,12 @@ def _duration_s(parameters: SteadySpeedsParameters, _configuration: BenchConfigu
     return sum(REST_S + 4.0 * parameters.reach_rad / speed_rad_s for speed_rad_s in parameters.speeds_rad_s)
 
 
-def _summarise(_parameters: SteadySpeedsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(_parameters: SteadySpeedsParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [{**trial.conditions, **trial.results} for trial in trials if trial.results.get("estimates")]
-    summary: dict[str, Any] = {"rows": rows, "speeds": len(rows)}
+    summary: dict[str, Value] = {"rows": rows, "speeds": len(rows)}
     for name in ("mean_absolute_error_kg", "uncompensated_mean_absolute_error_kg", "in_band"):
         if rows:
-            summary[name] = sum(row[name] for row in rows) / len(rows)
+            summary[name] = sum(numbers(rows, name)) / len(rows)
     return summary
 
 

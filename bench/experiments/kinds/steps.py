@@ -2,16 +2,14 @@
 
 from functools import partial
 from math import sqrt
-from typing import Any
 
 from pydantic import model_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
-from bench.experiments.parts.conditions import conditions
 from bench.experiments.parts.refusal import (
     refuse_angles,
     refuse_currents,
@@ -19,6 +17,7 @@ from bench.experiments.parts.refusal import (
     refuse_slow_move,
     refuse_speed,
 )
+from bench.json_types import Value, numbers
 
 GOLDEN_SECTION = (sqrt(5.0) - 1.0) / 2.0
 
@@ -89,11 +88,12 @@ def _duration_s(parameters: StepsParameters, configuration: BenchConfiguration) 
     return parameters.repeats * duration_s(configuration, parameters.searches)
 
 
-def _summarise(_parameters: StepsParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
-    steady_a = _values(trials, "steady_current_a")
-    load_a = _values(trials, "load_current_a")
-    reflected_kg = _values(trials, "reflected_load_kg")
-    summary: dict[str, Any] = {"steps": len(trials), "estimates": len(load_a)}
+def _summarise(_parameters: StepsParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
+    results = [trial.results for trial in trials]
+    steady_a = numbers(results, "steady_current_a")
+    load_a = numbers(results, "load_current_a")
+    reflected_kg = numbers(results, "reflected_load_kg")
+    summary: dict[str, Value] = {"steps": len(trials), "estimates": len(load_a)}
     for name, values in (
         ("steady_current_a", steady_a),
         ("load_current_a", load_a),
@@ -106,13 +106,9 @@ def _summarise(_parameters: StepsParameters, trials: list[FinishedTrial]) -> dic
                 f"spread_{name}": max(values) - min(values),
                 f"mean_{name}": sum(values) / len(values),
             }
-    if load_a and summary["spread_load_current_a"] > 0.0:
-        summary["spread_ratio"] = summary["spread_steady_current_a"] / summary["spread_load_current_a"]
+    if load_a and max(load_a) > min(load_a):
+        summary["spread_ratio"] = (max(steady_a) - min(steady_a)) / (max(load_a) - min(load_a))
     return summary
-
-
-def _values(trials: list[FinishedTrial], name: str) -> list[float]:
-    return [trial.results[name] for trial in trials if trial.results.get(name) is not None]
 
 
 KIND = ExperimentKind(

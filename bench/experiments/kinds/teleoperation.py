@@ -1,9 +1,10 @@
 """A master and a slave: the slave follows, and its load is reflected to the operator, with compensation and without."""
 
+from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from math import sqrt
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -12,15 +13,15 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import torque_n_m_a
 from bench.control.drive_factory import is_simulated
-from bench.control.pair.cycle import PairProcedure, Reach
+from bench.control.pair import PairProcedure, Reach
 from bench.errors import ConfigurationError, LimitError, quantity_message
 from bench.experiments.analysis.reflection_results import error_results, rest_results, truth_n_m, widest_swing
 from bench.experiments.analysis.stability_margin import STAGE_S, ladder, margin
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.load_follower import LoadFollower
 from bench.experiments.parts.pair_joints import MARGIN_RAD, Coupling, PairJoints, PairPart, Way
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.json_types import Value, number, numbers
 
 LEAD_S = 0.5  # coupled, before the first reach and after the last
 REST_S = 6.0  # to settle, to search, and back, roughly
@@ -76,7 +77,7 @@ def teleoperate(configuration: BenchConfiguration, parameters: TeleoperationPara
 
 def _reaches(
     pair: PairJoints, configuration: BenchConfiguration, parameters: TeleoperationParameters
-) -> PairPart[dict[str, Any]]:
+) -> PairPart[dict[str, Value]]:
     """Reach, rest, reach, rest: what that told."""
     conveyed, truths, rests = [], [], []
     for angle_rad in parameters.angles_rad:
@@ -155,18 +156,18 @@ def _duration_s(parameters: TeleoperationParameters, _configuration: BenchConfig
     return parameters.repeats * len(parameters.reflect) * trial_s
 
 
-def _summarise(parameters: TeleoperationParameters, trials: list[FinishedTrial]) -> dict[str, Any]:
+def _summarise(parameters: TeleoperationParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
     rows = [{**trial.conditions, **trial.results} for trial in trials if trial.results.get("cycles_conveyed")]
-    summary: dict[str, Any] = {"rows": rows, "trials": len(rows)}
+    summary: dict[str, Value] = {"rows": rows, "trials": len(rows)}
     for way in parameters.reflect:
         of_way = [row for row in rows if row["reflect"] == way]
         for name, whole in _WHOLE.items():
-            found = [row[name] for row in of_way if row.get(name) is not None]
+            found = numbers(of_way, name)
             if found:
                 summary[f"{way}_{name}"] = whole(found)
     ours, raw = (summary.get(f"{way}_reflected_error_rms_n_m") for way in ("compensated", "raw"))
     if ours is not None and raw is not None:
-        summary["error_ratio"] = ours / raw
+        summary["error_ratio"] = number(ours) / number(raw)
     return summary
 
 
@@ -174,7 +175,7 @@ def _mean(values: list[float]) -> float:
     return sum(values) / len(values)
 
 
-_WHOLE: dict[str, Any] = {
+_WHOLE: dict[str, Callable[[list[float]], Value]] = {
     "reflected_error_rms_n_m": _mean,
     "reflected_error_max_n_m": max,
     "reflected_error_rms_g": _mean,

@@ -8,12 +8,12 @@ from pydantic import Field, model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, ParameterError
-from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, conditions
 from bench.experiments.parts.injection import RESTS_S, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
 from bench.experiments.parts.waveform_csv import Waveform, read_waveform
+from bench.json_types import Value
 from drivers.contract import Mode
 
 LARGEST_CSV = 2_000_000  # characters
@@ -92,7 +92,7 @@ def _modes(parameters: WaveformParameters) -> frozenset[Mode]:
     return frozenset({Mode.DUTY}) if parameters.waveform.quantity == "duty" else frozenset()
 
 
-def _summarise(parameters: WaveformParameters, trials: Any) -> dict[str, Any]:
+def _summarise(parameters: WaveformParameters, trials: Any) -> dict[str, Value]:
     return {"quantity": parameters.waveform.quantity, **summarise_injection(parameters, trials)}
 
 

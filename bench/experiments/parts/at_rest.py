@@ -1,14 +1,14 @@
 """One trial at rest: go to an angle, settle, note the uncompensated current, search, note the compensated one."""
 
 from math import isnan, pi
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import arm_angle_rad, reflected_load_kg
-from bench.control.loop import Procedure
+from bench.control.cycle import Procedure
 from bench.experiments.analysis.rest_estimate import RestFinding, finding
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.search import Found
+from bench.json_types import Value
 
 SEARCH_S = {"paper": 6.0, "improved": 2.5}  # of one search, roughly
 MOVES_S = 3.0  # to the angle and back, roughly
@@ -55,7 +55,7 @@ def measure_at_rest(
     yield from joint.settle(0.0)
     yield from joint.move(angle_rad, approach_rad_s)
     steady = yield from joint.settle(angle_rad)
-    results: dict[str, Any] = {"steady_current_a": steady.current_a, "steady_position_rad": steady.position_rad}
+    results: dict[str, Value] = {"steady_current_a": steady.current_a, "steady_position_rad": steady.position_rad}
     found: list[Found] = []
     for _ in range(searches):
         one = yield from joint.search(angle_rad)
@@ -69,11 +69,11 @@ def measure_at_rest(
     return results | _estimate(found, steady.position_rad, configuration)
 
 
-def _no_estimate(failure: str) -> dict[str, Any]:
+def _no_estimate(failure: str) -> dict[str, Value]:
     return {**dict.fromkeys(_NAMES), "search_failure": failure}
 
 
-def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfiguration) -> dict[str, Any]:
+def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfiguration) -> dict[str, Value]:
     whole = finding(found, configuration)
     stood_rad = steady_rad if isnan(whole.position_rad) else whole.position_rad
     angle_rad = arm_angle_rad(stood_rad, whole.load_current_a, configuration.rig)

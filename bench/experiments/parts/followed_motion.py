@@ -3,17 +3,17 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import isnan
-from typing import Any
 
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
-from bench.control.loop import Reading
+from bench.control.cycle import Reading
 from bench.experiments.analysis.rest_estimate import finding
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower
 from bench.experiments.parts.profile import SetPoint
+from bench.json_types import Value
 from compensator.motion.load_estimator import LoadEstimate
 
 
@@ -66,7 +66,7 @@ class FollowedJoint:
         yield from self._joint.settle(0.0)
 
 
-def errors(followed: Sequence[Followed], load_kg: float, configuration: BenchConfiguration) -> dict[str, Any]:
+def errors(followed: Sequence[Followed], load_kg: float, configuration: BenchConfiguration) -> dict[str, Value]:
     """How far the current, and the estimate, are from the load that hangs there; in load at 90 degrees.
 
     Returns:
@@ -91,7 +91,7 @@ def errors(followed: Sequence[Followed], load_kg: float, configuration: BenchCon
     given, plain, truth, half = np.array(rows).T
     # of eq. (9) at 90 degrees: what a kilogram more would take
     per_kg = load_current_a(1.0, np.pi / 2, rig) - load_current_a(0.0, np.pi / 2, rig)
-    found: dict[str, Any] = {"estimates": len(rows), "in_band": float(np.mean(np.abs(given - truth) <= half))}
+    found: dict[str, Value] = {"estimates": len(rows), "in_band": float(np.mean(np.abs(given - truth) <= half))}
     for prefix, error_kg in (("", (given - truth) / per_kg), ("uncompensated_", (plain - truth) / per_kg)):
         found |= {
             f"{prefix}mean_error_kg": float(np.mean(error_kg)),

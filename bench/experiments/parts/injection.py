@@ -10,10 +10,11 @@ from pydantic import model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan
-from bench.experiments.parts.conditions import conditions
+from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
+from bench.json_types import Value, numbers
+from compensator.lab.recordings.recording import Condition
 
 FloatArray = NDArray[np.float64]
 LEAST_SAMPLES = 8.0  # of a period of the highest frequency
@@ -49,7 +50,7 @@ class InjectionParameters(Parameters):
             return Signal("position_rad", self.amplitude_rad * wave)
         return Signal("current_a", self.amplitude_a * wave, self.excursion_rad)
 
-    def held(self) -> dict[str, Any]:
+    def held(self) -> dict[str, Condition]:
         """Conditions of its trials."""
         amplitude = {"amplitude_rad": self.amplitude_rad} if self.closed == "position" else {}
         amplitude |= {"amplitude_a": self.amplitude_a} if self.closed == "current" else {}
@@ -95,12 +96,12 @@ def refuse_injection(
     refuse_signal(f"the {name}", parameters.signal(wave), configuration)
 
 
-def summarise_injection(_parameters: Any, trials: list[FinishedTrial]) -> dict[str, Any]:
+def summarise_injection(_parameters: Any, trials: list[FinishedTrial]) -> dict[str, Value]:
     """Of all repeats."""
     done = [trial.results for trial in trials if "played_s" in trial.results]
-    summary: dict[str, Any] = {"trials": len(done), "ended_early": sum(bool(one["ended_early"]) for one in done)}
+    summary: dict[str, Value] = {"trials": len(done), "ended_early": sum(bool(one["ended_early"]) for one in done)}
     for name in ("played_s", "peak_speed_rad_s", "peak_current_a", "travel_rad", "rms_tracking_error_rad"):
-        values = [one[name] for one in done if name in one]
+        values = numbers(done, name)
         if values:
             summary[name] = min(values) if name == "played_s" else max(values)
     return summary

@@ -6,11 +6,11 @@ from math import ceil, inf, nan
 from typing import TypeVar
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.loop import OFF, Action, Reading
+from bench.config.rig import resolution_rad
+from bench.control.cycle import OFF, Action, Reading
 from bench.control.servo import PositionServo
 from bench.errors import ExperimentError
 from bench.experiments.parts.profile import Halt, SetPoint, Trapezoid
-from bench.experiments.parts.resolution import resolution_rad
 from bench.experiments.parts.search import STILL_COUNTS, Found, begin_search
 from compensator.rest.zero_speed_search import SearchReading
 from drivers.contract import Command, Mode
@@ -50,7 +50,7 @@ class Joint:
         self._dead_band_rad = configuration.servo.dead_band_rad
         self._servo = PositionServo(configuration.servo, self._period_s)
         self._drive_closes = configuration.servo.closed_by == "drive"
-        self._still_rad = STILL_COUNTS * resolution_rad(configuration)
+        self._still_rad = STILL_COUNTS * resolution_rad(configuration.rig)
         self._reading: Reading | None = None
         self._command_a = 0.0
 

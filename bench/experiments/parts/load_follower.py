@@ -5,12 +5,11 @@ from math import nan, pi
 from bench.config.configuration import BenchConfiguration
 from bench.config.friction_curves import FrictionCurve, StudiedModel
 from bench.config.reflected_load import load_current_a, torque_n_m_a
-from bench.config.rest_knowledge import RestSettings
-from bench.config.rig import Rig
-from bench.control.loop import Reading
+from bench.config.rig import Rig, resolution_rad
+from bench.config.sections import RestSettings
+from bench.control.cycle import Reading
 from bench.errors import ConfigurationError
 from bench.experiments.analysis.rest_estimate import RestFinding
-from bench.experiments.parts.resolution import resolution_rad
 from compensator.errors import CompensatorError
 from compensator.motion import load_estimator
 from compensator.motion.load_estimator import EstimatorSettings, JointModel, LoadEstimate, Observation, RestResult
@@ -135,7 +134,7 @@ def estimator_settings(configuration: BenchConfiguration) -> EstimatorSettings:
         )
     return EstimatorSettings(
         period_s=period_s,
-        count_rad=resolution_rad(configuration),
+        count_rad=resolution_rad(configuration.rig),
         free_play_rad=free_play_rad,
         dead_band_rad=configuration.servo.dead_band_rad,
         window=max(LEAST_READINGS, round(WINDOW_S / period_s)),

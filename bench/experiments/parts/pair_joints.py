@@ -7,8 +7,8 @@ from typing import Literal, NamedTuple, TypeVar
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import torque_n_m_a
-from bench.control.loop import OFF, Action
-from bench.control.pair.cycle import PairAction, PairReading, Reach
+from bench.control.cycle import OFF, Action
+from bench.control.pair import PairAction, PairReading, Reach
 from bench.experiments.analysis.rest_estimate import finding
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower

@@ -5,8 +5,8 @@ from math import ceil
 from typing import Protocol
 
 from bench.config.configuration import BenchConfiguration
+from bench.config.rig import resolution_rad
 from bench.errors import ConfigurationError
-from bench.experiments.parts.resolution import resolution_rad
 from compensator.rest import rest_search, zero_speed_search
 from compensator.rest.breakaway_fit import Breakaway
 from compensator.rest.motion_detection import threshold_counts
@@ -135,8 +135,8 @@ def paper_settings(configuration: BenchConfiguration) -> SearchSettings:
         )
     return SearchSettings(
         dead_band_rad=configuration.servo.dead_band_rad,
-        still_rad=STILL_COUNTS * resolution_rad(configuration),
-        onset_rad=search.onset_counts * resolution_rad(configuration),
+        still_rad=STILL_COUNTS * resolution_rad(configuration.rig),
+        onset_rad=search.onset_counts * resolution_rad(configuration.rig),
         free_play_rad=free_play_rad,
         excursion_rad=search.excursion_rad,
         current_step_a=search.current_step_a,
@@ -155,7 +155,7 @@ def improved_settings(configuration: BenchConfiguration) -> RestSearchSettings:
         ConfigurationError: the rig leaves out counts or ratio.
     """
     search, period_s = configuration.search, configuration.control.period_s
-    count_rad = resolution_rad(configuration)
+    count_rad = resolution_rad(configuration.rig)
     counts = threshold_counts(search.noise_counts, search.false_alarms_per_hour, period_s)
     return RestSearchSettings(
         period_s=period_s,

@@ -1,7 +1,7 @@
 """A signal played cycle by cycle: a position that the servo follows, or a current or duty that the motor is given."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from bench.experiments.parts.excursion import BRAKING_SHARE, Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_duty, refuse_speed
+from bench.json_types import Value
 from drivers.contract import Command, Mode
 
 FloatArray = NDArray[np.float64]
@@ -84,10 +85,10 @@ def _push(joint: Joint, signal: Signal, configuration: BenchConfiguration) -> Pa
     return readings, ""
 
 
-def _results(signal: Signal, readings: list[Reading], configuration: BenchConfiguration) -> dict[str, Any]:
+def _results(signal: Signal, readings: list[Reading], configuration: BenchConfiguration) -> dict[str, Value]:
     measured = np.array([(r.sample.position_rad, r.velocity_rad_s, r.current_a) for r in readings])
     position_rad, velocity_rad_s, current_a = measured.T
-    results: dict[str, Any] = {
+    results: dict[str, Value] = {
         "played_s": len(readings) * configuration.control.period_s,
         "travel_rad": float(np.ptp(position_rad)),
         "peak_speed_rad_s": float(np.max(np.abs(velocity_rad_s))),

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.loop import Reading
+from bench.config.rig import resolution_rad
+from bench.control.cycle import Reading
 from bench.errors import LimitError, quantity_message
 from bench.experiments.analysis.saturation import LEAST_READINGS, Stroke, motion_of
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
-from bench.experiments.parts.resolution import resolution_rad
 from drivers.contract import Command, Mode
 
 MARGIN_RAD = 0.15  # at either end, for what the servo overshoots
@@ -104,7 +104,7 @@ class Strokes:
         self._held, self._level, self._sign = held, sign * level, sign
         self._joint = Joint(configuration)
         self._period_s = configuration.control.period_s
-        self._still_rad = 1.5 * resolution_rad(configuration)
+        self._still_rad = 1.5 * resolution_rad(configuration.rig)
         self._move_rad_s = configuration.motion.speed_rad_s
         self._settled_cycles = configuration.motion.settled_cycles
         self._near_rad, self._far_rad = settings.low_rad, settings.high_rad

@@ -1,4 +1,7 @@
-"""A study's model as the load estimator uses it."""
+"""A study's model as the load estimator uses it.
+
+A module of its own: it imports the model lab, which is loaded only where a study is used.
+"""
 
 import numpy as np
 

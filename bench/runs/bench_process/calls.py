@@ -5,8 +5,7 @@ from concurrent.futures import Future
 from typing import Any
 
 from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
-from bench.runs.bench_process.failures import error_of
-from bench.runs.bench_process.messages import Failure, Reply
+from bench.runs.bench_process.messages import Failure, Reply, error_of
 
 
 class Calls:

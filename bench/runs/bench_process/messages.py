@@ -4,18 +4,21 @@ They are the same software, on one machine, parent and child: messages are pickl
 else can reach. STOP is no message: it goes by the stop line, past everything here.
 """
 
+import pickle
+import traceback
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from bench.config.configuration import BenchConfiguration
+from bench.runs.bench_control import RunnerStatus
 from bench.runs.live import LiveRows
-from bench.runs.runner import RunnerStatus
 
-VERSION = b"friction-bench bench process, 1"
+VERSION = b"friction-bench bench process, 2"
 """First on the line from both ends, as bytes. A service outlives an update of its files: then these differ."""
 
-Method = Literal["start", "answer", "pause", "resume"]
-"""Of the runner, called in the bench process; the others a service answers from what it has seen."""
+Method = Literal["begin", "answer", "pause", "resume"]
+"""Of `BenchControl`, called in the bench process; the others a service answers from what it has seen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +35,13 @@ class Call:
     Attributes:
         number: comes back with the reply.
         method: of the runner.
-        arguments: by name.
+        arguments: in their order.
         stops: how often STOP had been asked for before the call.
     """
 
     number: int
     method: Method
-    arguments: dict[str, Any]
+    arguments: tuple[Any, ...]
     stops: int
 
 
@@ -77,7 +80,7 @@ class Failure:
     number: int
     kind: type[BaseException]
     text: str
-    attributes: dict[str, Any]
+    attributes: Mapping[str, object]
     trace: str
 
 
@@ -96,5 +99,35 @@ class Seen:
     rows: LiveRows
 
 
-SLOW: tuple[Method, ...] = ("start",)
+SLOW: tuple[Method, ...] = ("begin",)
 """Methods that wait for a drive or a disk; they take turns, and the others do not wait for them."""
+
+
+def failure_of(number: int, error: BaseException) -> Failure:
+    """An error as it is sent.
+
+    Args:
+        number: of the call that raised it.
+        error: what it raised.
+    """
+    attributes = {name: value for name, value in vars(error).items() if _can_be_sent(value)}
+    kind = type(error) if _can_be_sent(type(error)) else RuntimeError
+    trace = "".join(traceback.format_exception(error))
+    return Failure(number, kind, str(error), attributes, trace)
+
+
+def error_of(failure: Failure) -> BaseException:
+    """The error again. Its class is not called: those of the drives take more than the text."""
+    error: BaseException = failure.kind.__new__(failure.kind, failure.text)
+    error.args = (failure.text,)
+    vars(error).update(failure.attributes)
+    error.add_note(f"raised in the other process:\n{failure.trace}")
+    return error
+
+
+def _can_be_sent(value: object) -> bool:
+    try:
+        pickle.dumps(value)
+    except Exception:  # whatever a class of somebody else's raises: it is left out
+        return False
+    return True

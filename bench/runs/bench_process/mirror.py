@@ -3,11 +3,11 @@
 import threading
 from dataclasses import replace
 
-from bench.control.cycle import RECORDED
-from bench.control.limits import Limits
+from bench.config.channels import RECORDED
+from bench.config.sections import Limits
+from bench.runs.bench_control import RunnerStatus
 from bench.runs.bench_process.messages import Seen
 from bench.runs.live import LiveBuffer
-from bench.runs.runner import RunnerStatus
 
 
 class Mirror:

@@ -12,19 +12,16 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.control import scheduling
 from bench.control.drive_factory import make_equipment
 from bench.errors import BenchError
 from bench.runs import event_log
-from bench.runs.bench_process.failures import failure_of
-from bench.runs.bench_process.messages import SLOW, VERSION, Call, Hello, Reply
+from bench.runs.bench_process.messages import SLOW, VERSION, Call, Hello, Method, Reply, failure_of
 from bench.runs.bench_process.publisher import GONE, Publisher
 from bench.runs.bench_process.stop_line import LineStop, StopLine
-from bench.runs.runner import Runner
-from bench.runs.surroundings import Surroundings
+from bench.runs.runner import HostProcess, Runner
 from bench.store import Store
 
 ORPHAN = "the service that ran the bench is gone (killed, or it crashed)"
@@ -50,8 +47,14 @@ class BenchProcess:
         self._store = store
         self._before = line.asked()
         facts = {"control_loop": {"process": "its own", "scheduling": scheduling.describe()}}
-        surroundings = Surroundings(lambda: LineStop(line, self._before), scheduling.undisturbed, facts)
-        self._runner = Runner(configuration, store, surroundings)
+        host = HostProcess(lambda: LineStop(line, self._before), scheduling.undisturbed, facts)
+        runner = self._runner = Runner(configuration, store, host)
+        self._methods: dict[Method, Callable[..., object]] = {
+            "begin": runner.begin,
+            "answer": runner.answer,
+            "pause": runner.pause,
+            "resume": runner.resume,
+        }
         self._publisher = Publisher(self._runner, connection)
         self._slow_calls: queue.Queue[Call] = queue.Queue()
         self._parent = os.getppid()
@@ -104,8 +107,7 @@ class BenchProcess:
 
     def _make(self, call: Call) -> None:
         try:
-            method: Callable[..., Any] = getattr(self._runner, call.method)
-            reply: object = Reply(call.number, method(**call.arguments))
+            reply: object = Reply(call.number, self._methods[call.method](*call.arguments))
         except BaseException as error:
             reply = failure_of(call.number, error)
         self._publisher.end_call(reply)

@@ -5,6 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration
+from bench.runs.bench_control import BenchControl, Request, RunnerStatus
 from bench.runs.bench_process.calls import Calls
 from bench.runs.bench_process.child import MODULE, Child
 from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
@@ -13,15 +14,16 @@ from bench.runs.bench_process.mirror import Mirror
 from bench.runs.bench_process.stop_line import StopLine
 from bench.runs.bench_process.supervisor import Supervisor
 from bench.runs.live import LiveRows
-from bench.runs.runner import Pace, RunnerStatus
 from bench.store import Store
 from bench.store.errors import StoreError
 
 TRIES = 3  # processes that are asked, where one after the other ends before it has begun
 
 
-class RemoteRunner:
-    """See `BenchControl`. The process is started at once, and again by the next start of an experiment after its end.
+class RemoteRunner(BenchControl):
+    """The bench in operation, its control loop in a process of its own.
+
+    The process is started at once, and again by the next start of an experiment after its end.
 
     Args:
         configuration: of the bench.
@@ -41,62 +43,41 @@ class RemoteRunner:
             lambda: Child(file, hello, module), self._mirror, self._calls, self._mark_interrupted
         )
 
-    def start(
-        self,
-        kind: str,
-        parameters: dict[str, Any],
-        operator: str = "",
-        note: str = "",
-        pace: Pace | None = None,
-        hung: tuple[float, bool] | None = None,
-    ) -> int:
-        """Start an experiment; it moves the joint. See `Runner.start`.
-
-        Raises:
-            BenchProcessError: besides what `Runner.start` raises: the process cannot be started, or has ended.
-        """
-        who = {"operator": operator, "note": note}
-        arguments = {"kind": kind, "parameters": parameters, **who, "pace": pace, "hung": hung}
-        experiment_id: int = self._call("start", arguments)
+    def begin(self, request: Request) -> int:
+        """See `BenchControl.start`."""
+        experiment_id: int = self._call("begin", request)
         return experiment_id
 
     def status(self) -> RunnerStatus:
-        """What the bench is doing, or did last. Never waits."""
+        """See `BenchControl`."""
         return self._mirror.status
 
     def answer(self, prompt_number: int) -> None:
-        """Go on: the person has done what prompt `prompt_number` asked for.
-
-        Raises:
-            PromptError: nothing is asked, or something else.
-        """
-        self._call("answer", {"prompt_number": prompt_number})
+        """See `BenchControl`."""
+        self._call("answer", prompt_number)
 
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
-        """Rows of the running trial after the one of a number, as they are recorded; at most the newest `limit`."""
+        """See `BenchControl`."""
         return self._mirror.live.since(after_row, limit)
 
     def stop(self, reason: str = "") -> None:
-        """Stop what runs: within one control cycle the joint is braked, then powered off.
-
-        Never waits, and goes past everything that may be on its way to the process: safe in a signal handler.
-        """
+        """See `BenchControl`; goes past everything that may be on its way to the process."""
         self._line.ask(reason)
 
     def pause(self) -> None:
-        """Let what runs stand still after its present trial, with the power off; nothing where nothing runs."""
+        """See `BenchControl`."""
         self._tell_running("pause")
 
     def resume(self) -> None:
-        """Let what was paused go on: the joint moves."""
+        """See `BenchControl`."""
         self._tell_running("resume")
 
     def wait(self, timeout_s: float | None = None) -> bool:
-        """Wait until nothing runs; False where that takes longer than `timeout_s`."""
+        """See `BenchControl`."""
         return self._mirror.wait(timeout_s)
 
     def close(self) -> None:
-        """Stop what runs, wait until the joint is off, and end the process. Nothing can be started afterwards."""
+        """See `BenchControl`; the process ends."""
         self.stop("the bench was closed")
         self._supervisor.close()
         if self._stop_file is not None:
@@ -106,16 +87,16 @@ class RemoteRunner:
     def _tell_running(self, method: Method) -> None:
         if self.status().outcome == "running":
             with suppress(BenchProcessError):  # what it was meant for has ended with the process
-                self._call(method, {})
+                self._call(method)
 
-    def _call(self, method: Method, arguments: dict[str, Any]) -> Any:
+    def _call(self, method: Method, *arguments: Any) -> Any:
         stops = self._line.settled()  # what is asked for from here on counts
         for _ in range(TRIES - 1):
             with suppress(NotBegunError):  # it was just ending: another process is there next time
                 return self._call_once(method, arguments, stops)
         return self._call_once(method, arguments, stops)
 
-    def _call_once(self, method: Method, arguments: dict[str, Any], stops: int) -> Any:
+    def _call_once(self, method: Method, arguments: tuple[Any, ...], stops: int) -> Any:
         child = self._supervisor.child()
         number, answer = self._calls.open()
         try:

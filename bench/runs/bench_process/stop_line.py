@@ -10,7 +10,7 @@ import tempfile
 import threading
 from typing import Self
 
-from bench.control.stop_request import StopRequest
+from bench.control.ending import StopRequest
 
 _COUNT_BYTES = 8
 _SLOTS = 16  # reasons kept; the oldest go

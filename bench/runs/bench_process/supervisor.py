@@ -9,8 +9,7 @@ from bench.runs import event_log
 from bench.runs.bench_process.calls import Calls
 from bench.runs.bench_process.child import Child
 from bench.runs.bench_process.errors import BenchProcessError
-from bench.runs.bench_process.failures import error_of
-from bench.runs.bench_process.messages import Accepted, Failure, Reply, Seen
+from bench.runs.bench_process.messages import Accepted, Failure, Reply, Seen, error_of
 from bench.runs.bench_process.mirror import Mirror
 
 CLOSING_S = 100.0  # a process that has not ended by then is killed

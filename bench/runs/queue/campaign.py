@@ -1,18 +1,21 @@
 """A campaign: one kind of experiment over a grid of parameters, as items in an order that spares the person."""
 
 import random
+import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from bench.config.configuration import BenchConfiguration
+from bench.config.validation import problems
 from bench.control.drive_factory import has_hardware
-from bench.errors import ParameterError
-from bench.runs.queue.items import Order, checked_item
-from bench.runs.queue.load_order import HANG_S, fewest_changes, load_changes
-from bench.runs.runner import Pace
+from bench.errors import ConfigurationError, ParameterError
+from bench.json_types import Json
+from bench.runs.bench_control import Pace
+from bench.runs.queue.items import HANG_S, Order, checked_item, fewest_changes, load_changes
 from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
 
@@ -44,7 +47,7 @@ class Campaign(BaseModel):
     )
     name: str = Field(min_length=1, max_length=200)
     kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
-    parameters: dict[str, Any] = Field(default={}, description="parameters that all share")
+    parameters: Json = Field(default={}, description="parameters that all share")
     grid: dict[str, list[Any]] = Field(
         default={}, description="parameters that differ: name -> values; every combination is run"
     )
@@ -110,9 +113,9 @@ def plan_campaign(campaign: Campaign, configuration: BenchConfiguration) -> Camp
     return CampaignPlan(ordered, sum(item.duration_s for item in ordered) + hanging_s, changes)
 
 
-def _item(campaign: Campaign, chosen: dict[str, Any], configuration: BenchConfiguration) -> NewItem:
+def _item(campaign: Campaign, chosen: Json, configuration: BenchConfiguration) -> NewItem:
     order = Order(
-        campaign.kind, campaign.parameters | chosen, campaign.operator, campaign.note, campaign.tags, campaign.pace
+        campaign.kind, {**campaign.parameters, **chosen}, campaign.operator, campaign.note, campaign.tags, campaign.pace
     )
     try:
         return checked_item(order, configuration)
@@ -121,12 +124,14 @@ def _item(campaign: Campaign, chosen: dict[str, Any], configuration: BenchConfig
         raise ParameterError(f"campaign '{campaign.name}'{f', at {where}' if where else ''}: {error}") from error
 
 
-def _combinations(campaign: Campaign) -> list[dict[str, Any]]:
+def _combinations(campaign: Campaign) -> list[Json]:
     """Every combination, each as often as it is repeated, in the wanted order; loads change slowest."""
     names = sorted(campaign.grid, key=lambda name: name not in LOADS)
     axes = [campaign.grid[name] for name in names]
     snake = campaign.order == "boustrophedon"
-    found = [dict(zip(names, values, strict=True)) for values in _product(axes, snake) for _ in range(campaign.repeats)]
+    found: list[Json] = [
+        dict(zip(names, values, strict=True)) for values in _product(axes, snake) for _ in range(campaign.repeats)
+    ]
     if campaign.order == "random":
         random.Random(campaign.seed).shuffle(found)  # noqa: S311  an order, no secret
     return found
@@ -141,3 +146,23 @@ def _product(axes: Sequence[Sequence[Any]], snake: bool) -> Iterator[tuple[Any, 
         rest = list(_product(axes[1:], snake))
         for chosen in reversed(rest) if snake and index % 2 else rest:
             yield (value, *chosen)
+
+
+def read_campaign(path: Path) -> Campaign:
+    """Read a campaign; without a name it has that of its file.
+
+    Raises:
+        ConfigurationError: naming the file, each key, what was found and what is wanted.
+    """
+    try:
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigurationError(f"{path}: is no TOML: {error}") from error
+    try:
+        return Campaign.model_validate({"name": path.stem} | values)
+    except ValidationError as error:
+        raise ConfigurationError(
+            "\n".join(f"{path}: {problem}" for problem in problems(error, model=Campaign))
+        ) from error

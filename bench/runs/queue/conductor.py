@@ -6,10 +6,9 @@ from contextlib import AbstractContextManager, nullcontext
 from typing import cast
 
 from bench.errors import BenchError, BusyError
-from bench.runs.bench_control import BenchControl
+from bench.runs.bench_control import BenchControl, Pace
 from bench.runs.lease import LeaseHeldError
 from bench.runs.queue.items import Order, checked_item
-from bench.runs.runner import Pace
 from bench.store import Store
 from bench.store.errors import StoreError
 from bench.store.tables.queue import WAITING, NewItem, QueueItem, QueueTable

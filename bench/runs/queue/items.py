@@ -1,14 +1,17 @@
-"""An item of the queue: checked before it is taken in, as a start would be."""
+"""Items of the queue: checked before they are taken in, as a start would be; and the order with the fewest loads."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.runs.runner import Pace
-from bench.store.tables.queue import NewItem
+from bench.json_types import Json
+from bench.runs.bench_control import Pace
+from bench.store.tables.queue import NewItem, QueueItem
 from bench.store.tables.tags import checked
+
+HANG_S = 60.0  # what a person takes to hang a load, and to say so
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +25,7 @@ class Order:
     """
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     operator: str = ""
     note: str = ""
     tags: list[str] = field(default_factory=list)
@@ -50,3 +53,23 @@ def checked_item(order: Order, configuration: BenchConfiguration) -> NewItem:
         duration_s=kind.duration_s(parameters, configuration),
         loads=[list(load) for load, _ in groupby(loads)],
     )
+
+
+def load_changes(items: Sequence[NewItem | QueueItem]) -> int:
+    """How often something else has to be hung, the first load included."""
+    loads = [load for item in items for load in item.loads]
+    return sum(one != before for before, one in zip([None, *loads], loads, strict=False))
+
+
+def fewest_changes(items: Sequence[NewItem]) -> list[NewItem]:
+    """The items, those of one load one after the other; else in the order in which they are.
+
+    After an item comes the first that begins with the load that hangs then, else the first of all. Where each item has
+    one load, no order takes fewer changes. Where an item changes loads by itself, another order might.
+    """
+    left, ordered = list(items), list[NewItem]()
+    while left:
+        hangs = ordered[-1].loads[-1:] if ordered else []
+        index = next((index for index, item in enumerate(left) if item.loads[:1] == hangs), 0)
+        ordered.append(left.pop(index))
+    return ordered

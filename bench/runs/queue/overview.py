@@ -6,7 +6,7 @@ from typing import Literal
 from bench.control.drive_factory import has_hardware
 from bench.runs.bench_control import BenchControl
 from bench.runs.queue.conductor import Conductor
-from bench.runs.queue.load_order import HANG_S, load_changes
+from bench.runs.queue.items import HANG_S, load_changes
 from bench.store.tables.queue import WAITING, QueueItem
 
 State = Literal["idle", "running", "pausing", "paused", "held"]

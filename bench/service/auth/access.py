@@ -12,8 +12,8 @@ from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 
 from bench.errors import ConfigurationError
 from bench.service.auth.attempts import Attempts
-from bench.service.auth.roles import Caller, Role
 from bench.service.auth.token_register import TokenRegister
+from bench.service.auth.tokens import Caller, Role
 from bench.store.errors import StoreError
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})

@@ -12,7 +12,7 @@ from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from bench.runs import event_log
-from bench.service.auth.roles import Caller
+from bench.service.auth.tokens import Caller
 from bench.service.http.guard import SAFE_METHODS
 from bench.store.errors import StoreError
 from bench.store.tables.audit import AuditEntry
@@ -140,7 +140,7 @@ def _entry(scope: Scope, status: int) -> AuditEntry:
     )
 
 
-def _facts(entry: AuditEntry) -> dict[str, Any]:
+def _facts(entry: AuditEntry) -> dict[str, object]:
     """As the log has it, which stamps its lines itself."""
     return {name: value for name, value in asdict(entry).items() if name != "at_utc"}
 

@@ -12,9 +12,44 @@ import secrets
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import total_ordering
 from pathlib import Path
 
 from bench.errors import ConfigurationError
+
+
+@total_ordering
+class Role(StrEnum):
+    """What a token is good for.
+
+    - viewer: reads, and stops the joint
+    - operator: starts and answers experiments, changes studies, calibrations and what is imported
+    - admin: takes over the bench, reads the audit log
+    """
+
+    VIEWER = "viewer"
+    OPERATOR = "operator"
+    ADMIN = "admin"
+
+    def __lt__(self, other: str) -> bool:
+        order = list(Role)
+        return order.index(self) < order.index(Role(other))
+
+
+@dataclass(frozen=True, slots=True)
+class Caller:
+    """Whose token came with a request.
+
+    Attributes:
+        name: of the token.
+        role: of the token.
+    """
+
+    name: str
+    role: Role
+
 
 TOKEN_VARIABLE = "FRICTION_BENCH_TOKEN"  # noqa: S105  the name of a variable, not a token
 ENVIRONMENT, TOKEN_FILE, SAME_USER = "environment", "token-file", "this-user"

@@ -1,14 +1,34 @@
 """The interface's own description, completed with what holds for every route."""
 
+import json
+import re
 from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
 
-from bench.service.http.examples import examples, key
 from bench.service.http.problems import MEANINGS, MEDIA_TYPE, Problem
 
+FILE = Path(__file__).with_name("examples.json")
+
+
+@cache
+def examples() -> dict[str, Any]:
+    """By `key`."""
+    found: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
+    return found
+
+
+def key(method: str, path: str) -> str:
+    """A route, whatever the numbers in its path are called: `GET /api/v1/trials/{}`."""
+    return f"{method.upper()} {re.sub(r'{[a-z_]+}', '{}', path)}"
+
+
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
+Document = dict[str, Any]
+"""A part of an OpenAPI document, as FastAPI makes it."""
 READING = (401, 429)  # where reading takes a token; a wrong Host is 421 everywhere
 DETAILS = {
     401: "this needs a token, and no token was sent",
@@ -29,13 +49,13 @@ def install(app: FastAPI) -> None:
     """Complete the description when it is asked for the first time."""
     plain = app.openapi
 
-    def complete() -> dict[str, Any]:
+    def complete() -> Document:
         if app.openapi_schema is None:
             document = plain()
             schemas = document["components"]["schemas"]
             schemas |= _problem_schemas()
             for path, method, route in _routes(document):
-                _complete(path, method, route)
+                _complete(path, method, route, schemas)
             for unused in ("HTTPValidationError", "ValidationError"):
                 schemas.pop(unused, None)
         return dict(app.openapi_schema or {})
@@ -43,24 +63,27 @@ def install(app: FastAPI) -> None:
     app.openapi = complete  # type: ignore[method-assign]
 
 
-def _routes(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+def _routes(document: Document) -> Iterator[tuple[str, str, Document]]:
     for path, item in document["paths"].items():
         for method, route in item.items():
             yield path, method, route
 
 
-def _problem_schemas() -> dict[str, Any]:
+def _problem_schemas() -> Document:
     found = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
     return {**found.pop("$defs", {}), "Problem": found}
 
 
-def _complete(path: str, method: str, route: dict[str, Any]) -> None:
+def _complete(path: str, method: str, route: Document, schemas: Document) -> None:
     """An example of what is answered; every problem as problem+json with one; those that may come from every route."""
     responses = route["responses"]
-    if (example := examples().get(key(method, path))) is not None:
-        for status, answer in responses.items():
-            if status.startswith("2"):
-                answer["content"]["application/json"]["example"] = example
+    recorded = examples().get(key(method, path))
+    for status, answer in responses.items():
+        said = answer.get("content", {}).get("application/json")
+        if status.startswith("2") and said is not None and "example" not in said:
+            example = recorded or _own_example(said.get("schema", {}), schemas)
+            if example is not None:
+                said["example"] = example
     statuses = {int(status) for status in responses if int(status) >= 400}
     statuses |= {421, 503}
     if route.get("security"):
@@ -69,11 +92,19 @@ def _complete(path: str, method: str, route: dict[str, Any]) -> None:
         responses[str(status)] = _problem(status)
 
 
-def _problem(status: int) -> dict[str, Any]:
+def _own_example(schema: Document, schemas: Document) -> Document | None:
+    """An answer made of the examples that a model gives for each of its fields; None where one has none."""
+    fields = schemas.get(schema.get("$ref", "").rpartition("/")[2], {}).get("properties", {})
+    if not fields or not all("examples" in field for field in fields.values()):
+        return None
+    return {name: field["examples"][0] for name, field in fields.items()}
+
+
+def _problem(status: int) -> Document:
     from http import HTTPStatus
 
     example = Problem(title=HTTPStatus(status).phrase, status=status, detail=DETAILS[status]).model_dump()
-    found: dict[str, Any] = {
+    found: Document = {
         "description": MEANINGS[status],
         "content": {MEDIA_TYPE: {"schema": PROBLEM, "example": example}},
     }

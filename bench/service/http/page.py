@@ -1,15 +1,27 @@
-"""The page and what it needs: files of `web/`, and plotly's JavaScript out of its pip package."""
+"""The page and what it needs: files of `web/`, and plotly's JavaScript out of its pip package.
 
+The page asks for its files under a fingerprint of all of them: a browser keeps them for good, compressed, and asks for
+new ones when any has changed. Without a fingerprint they are served as they are, checked each time.
+"""
+
+import gzip
+import hashlib
 import importlib.util
+import mimetypes
+from functools import lru_cache
 from pathlib import Path
 
-from fastapi import APIRouter, FastAPI
-from fastapi.responses import FileResponse
+from fastapi import APIRouter, FastAPI, HTTPException, Request, Response
+from fastapi.responses import FileResponse, HTMLResponse
 from starlette.staticfiles import StaticFiles
 
 from bench.errors import ConfigurationError
 
 WEB = Path(__file__).resolve().parents[3] / "web"
+PLOTLY = "plotly.min.js"
+FINGERPRINT_LENGTH = 12
+FOR_GOOD = "public, max-age=31536000, immutable"
+FRESH = "no-cache"
 _DAY_S = 86_400
 router = APIRouter(include_in_schema=False)
 
@@ -21,24 +33,66 @@ def plotly_file() -> Path:
         ConfigurationError: the package is not installed, or carries no such file.
     """
     found = importlib.util.find_spec("plotly")
-    path = Path(found.origin).parent / "package_data" / "plotly.min.js" if found and found.origin else None
+    path = Path(found.origin).parent / "package_data" / PLOTLY if found and found.origin else None
     if path is None or not path.is_file():
         raise ConfigurationError(
-            "package 'plotly' is missing or has no package_data/plotly.min.js; run: pip install plotly"
+            f"package 'plotly' is missing or has no package_data/{PLOTLY}; run: pip install plotly"
         )
     return path
 
 
+def page_files() -> dict[str, Path]:
+    """Every file that the page may ask for, by its path below /static; nothing else is served."""
+    found = {path.relative_to(WEB).as_posix(): path for path in sorted(WEB.rglob("*")) if path.is_file()}
+    return {**found, PLOTLY: plotly_file()}
+
+
+def fingerprint() -> str:
+    """What changes when any of the files does: from their names, sizes and times."""
+    told = [f"{name} {path.stat().st_size} {path.stat().st_mtime_ns}" for name, path in page_files().items()]
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:FINGERPRINT_LENGTH]
+
+
+@lru_cache(maxsize=256)
+def compressed(path: Path, fingerprinted: str) -> bytes:  # noqa: ARG001 - a changed file is compressed anew
+    """A file, compressed once."""
+    return gzip.compress(path.read_bytes(), mtime=0)
+
+
 @router.get("/")
-async def index() -> FileResponse:
-    """The page."""
-    return FileResponse(WEB / "index.html", headers={"Cache-Control": "no-cache"})
+def index() -> HTMLResponse:
+    """The page; its modules are asked for at once, not one after the other as they name each other."""
+    text = (WEB / "index.html").read_text(encoding="utf-8")
+    known = fingerprint()
+    modules = [name for name in page_files() if name.startswith("modules/")]
+    preload = "\n".join(f'  <link rel="modulepreload" href="/static/{known}/{name}">' for name in modules)
+    text = text.replace('"/static/', f'"/static/{known}/').replace("</head>", f"{preload}\n</head>")
+    return HTMLResponse(text, headers={"Cache-Control": FRESH})
 
 
 @router.get("/static/plotly.min.js")
-async def plotly() -> FileResponse:
-    """plotly's JavaScript; kept by the browser for a day, because it is large."""
+def plotly() -> FileResponse:
+    """plotly's JavaScript by its own name; kept by the browser for a day, because it is large."""
     return FileResponse(plotly_file(), media_type="text/javascript", headers={"Cache-Control": f"max-age={_DAY_S}"})
+
+
+@router.get("/static/{known:str}/{name:path}")
+def fingerprinted(request: Request, known: str, name: str) -> Response:
+    """A file under a fingerprint. One of another fingerprint, of a page from before an update, is not kept."""
+    files = page_files()
+    if len(known) != FINGERPRINT_LENGTH or name not in files:
+        plain = files.get(f"{known}/{name}")
+        if plain is None:
+            raise HTTPException(404, f"the page has no file {known}/{name}")
+        return FileResponse(plain, headers={"Cache-Control": FRESH})
+    kept = FOR_GOOD if known == fingerprint() else FRESH
+    headers = {"Cache-Control": kept, "Vary": "Accept-Encoding"}
+    media_type = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0]
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return FileResponse(files[name], media_type=media_type, headers=headers)
+    return Response(
+        compressed(files[name], known), media_type=media_type, headers={**headers, "Content-Encoding": "gzip"}
+    )
 
 
 class _Fresh(StaticFiles):
@@ -46,7 +100,7 @@ class _Fresh(StaticFiles):
 
     def file_response(self, *args: object, **kwargs: object) -> object:  # type: ignore[override]
         response = super().file_response(*args, **kwargs)  # type: ignore[arg-type]
-        response.headers["Cache-Control"] = "no-cache"
+        response.headers["Cache-Control"] = FRESH
         return response
 
 

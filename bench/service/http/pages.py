@@ -1,7 +1,7 @@
 """Lists come in pages, all of them in the same way."""
 
 from collections.abc import Sequence
-from typing import Annotated, TypeVar
+from typing import Annotated, TypedDict, TypeVar
 
 from fastapi import Query
 from pydantic import BaseModel, Field
@@ -19,7 +19,15 @@ class Page(BaseModel):
     next_offset: int | None = Field(description="offset of the next page; null on the last", examples=[None])
 
 
-def cut(found: Sequence[T], limit: int, offset: int) -> tuple[Sequence[T], dict[str, int | None]]:
+class PageFields(TypedDict):
+    """The fields of `Page`."""
+
+    limit: int
+    offset: int
+    next_offset: int | None
+
+
+def cut(found: Sequence[T], limit: int, offset: int) -> tuple[Sequence[T], PageFields]:
     """The items of a page, and the fields of `Page`.
 
     Args:

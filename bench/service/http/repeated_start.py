@@ -3,16 +3,18 @@
 import hashlib
 import json
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import Annotated, Any
+from typing import Annotated, TypeVar
 
 from fastapi import Header
+from pydantic import BaseModel
 
 from bench.errors import BenchError
 from bench.store.errors import StoreError
 from bench.store.tables.start_keys import StartKeys
 
+M = TypeVar("M", bound=BaseModel)
 _log = logging.getLogger(__name__)
 Key = Annotated[
     str | None,
@@ -37,8 +39,8 @@ class KeyInUseError(BenchError, RuntimeError):
 
 
 def once(
-    keys: StartKeys, token: str, key: str | None, body: dict[str, Any], start: Callable[[], dict[str, Any]]
-) -> dict[str, Any]:
+    keys: StartKeys, token: str, key: str | None, asked: Mapping[str, object], start: Callable[[], M], kind: type[M]
+) -> M:
     """Start, unless this was asked for before. Returns what is answered.
 
     A start that was refused is not remembered: it may be sent again with the same key.
@@ -47,8 +49,9 @@ def once(
         keys: those of the store.
         token: name of the token that sends it; each token has keys of its own.
         key: None: just start.
-        body: what is asked for, JSON-able. Bodies of different routes differ.
-        start: starts, or raises; returns what is answered, JSON-able.
+        asked: the request's body, JSON-able. Those of different routes differ.
+        start: starts, or raises; returns what is answered.
+        kind: of the answer.
 
     Raises:
         KeyReusedError: the key was used with another body.
@@ -56,7 +59,7 @@ def once(
     """
     if key is None:
         return start()
-    digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest()
+    digest = hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()
     found = keys.claim(token, key, digest)
     if found is None:
         return _first(keys, token, key, start)
@@ -69,10 +72,10 @@ def once(
             f"a start with Idempotency-Key '{key}' is under way, or its service ended before the answer; "
             "look at GET /experiments and GET /queue"
         )
-    return found.answer
+    return kind.model_validate(found.answer)
 
 
-def _first(keys: StartKeys, token: str, key: str, start: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+def _first(keys: StartKeys, token: str, key: str, start: Callable[[], M]) -> M:
     try:
         answer = start()
     except BaseException:
@@ -80,7 +83,7 @@ def _first(keys: StartKeys, token: str, key: str, start: Callable[[], dict[str, 
             keys.forget(token, key)
         raise
     try:
-        keys.answer(token, key, 201, answer)
+        keys.answer(token, key, 201, answer.model_dump(mode="json"))
     except StoreError as error:  # it has begun: that is the answer, whatever became of the key
         _log.warning("Idempotency-Key '%s' could not be kept: %s", key, error)
     return answer

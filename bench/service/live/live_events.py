@@ -15,10 +15,9 @@ from bench.control.drive_factory import is_simulated
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.runs.live import LiveRows
-from bench.service.http.json_numbers import column
-from bench.service.live.live_rows import Rows, rows_of
+from bench.service.http.downloads import column
 from bench.service.live.replay import CHUNK_ROWS, GapError, Mark, Piece, missed, skipped_experiments
-from bench.service.live.status import status_of
+from bench.service.live.status import Rows, Status, rows_of, status_of
 from bench.service.routes.leases import lease_now
 from bench.store import Store
 from bench.store.errors import StoreError
@@ -143,7 +142,7 @@ class LiveEvents:
         if now_s - self._status.at_s >= PERIOD_S:
             simulated = is_simulated(self.runner.configuration)
             status = status_of(self.runner.status(), simulated, lease_now(self.lease.current()))
-            self._status = _Told(now_s, _without_progress(status), _event("status", json.dumps(status)))
+            self._status = _Told(now_s, _without_progress(status), _event("status", status.model_dump_json()))
         return self._status
 
 
@@ -157,11 +156,10 @@ def _parts(kept: LiveRows, last_row: int) -> Iterator[LiveRows]:
         yield replace(kept, rows=rows, last_row=end, trial_rows=kept.trial_rows - (kept.last_row - end))
 
 
-def _without_progress(status: dict[str, Any]) -> str:
+def _without_progress(status: Status) -> str:
     """What makes a status new."""
-    run, holder = status["run"], status["lease"]
-    still = run and run | {"progress": 0, "left_s": 0}
-    return json.dumps([status["state"], status["prompt"], still, holder and holder["token"]])
+    still = status.run and status.run.model_copy(update={"progress": 0.0, "left_s": 0.0})
+    return repr((status.state, status.prompt, still, status.lease and status.lease.token))
 
 
 def _gap(detail: str) -> str:

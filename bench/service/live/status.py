@@ -1,13 +1,39 @@
 """What the bench is doing, as /bench and /live answer it."""
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from bench.control.loop import Reading
-from bench.runs.runner import RunnerStatus
-from bench.service.http.json_numbers import plain
+from bench.control.cycle import Reading
+from bench.json_types import Number
+from bench.runs.bench_control import RunnerStatus
+from bench.runs.live import LiveRows
+from bench.service.http.downloads import column
 from bench.service.routes.leases import LeaseNow
+
+
+class Rows(BaseModel):
+    """Rows since `after_row`. A quantity that was not measured is null."""
+
+    channels: list[str]
+    rows: list[list[float | None]]
+    last_row: int = Field(description="send it as `after_row` next time")
+    restarted: bool = Field(description="True where rows before these belong to something else or are gone")
+    trial_id: int | None = Field(description="of these rows; null where that is not known")
+
+
+def rows_of(found: LiveRows) -> Rows:
+    """Rows for JSON."""
+    return Rows(
+        channels=list(found.channels),
+        rows=[column(row) for row in found.rows],
+        last_row=found.last_row,
+        restarted=found.restarted,
+        trial_id=found.trial_id,
+    )
+
+
+FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run
 
 
 class Run(BaseModel):
@@ -23,19 +49,24 @@ class Run(BaseModel):
     duration_s: float = Field(description="estimate of the whole, in the joint's time; a simulated one may be faster")
     left_s: float = Field(description="what is left of it")
     pausing: str = Field(description="asked: it stands still after the trial that runs; paused: it does; else empty")
+    power_off: Literal["confirmed", "failed"] | None = Field(
+        description="whether the drive took its power off at the end; null while it runs"
+    )
 
 
 class ReadingNow(BaseModel):
     """The last sample, SI; null where the drive does not measure it."""
 
-    time_s: float | None
-    position_rad: float | None
-    velocity_rad_s: float | None
-    current_a: float | None
-    duty: float | None
-    supply_v: float | None
-    temperature_c: float | None
-    power: str = Field(description="state of the power stage: disabled, enabled, quick_stop or fault")
+    time_s: Number
+    position_rad: Number
+    velocity_rad_s: Number
+    current_a: Number
+    duty: Number
+    supply_v: Number
+    temperature_c: Number
+    power: str = Field(
+        description="of the power stage: disabled, enabled, quick_stop or fault; unknown after a failed power-off"
+    )
 
 
 class PromptNow(BaseModel):
@@ -56,34 +87,55 @@ class Status(BaseModel):
     lease: LeaseNow | None = Field(description="who has the bench; null where nobody has")
 
 
-def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> dict[str, Any]:
-    """The fields of `Status`."""
-    running = found.outcome == "running"
-    run = None
-    if found.kind:
-        names = (
-            "experiment_id", "kind", "outcome", "reason", "trial_index", "trial_count", "progress",
-            "duration_s", "left_s", "pausing",
-        )  # fmt: skip
-        run = {name: getattr(found, name) for name in names}
-    reading = None if found.reading is None else _reading(found.reading)
-    prompt = None if found.prompt is None else {"number": found.prompt.number, "sentence": found.prompt.sentence}
-    state = "running" if running else "idle"
-    holder = None if lease is None else lease.model_dump()
-    return {"state": state, "simulated": simulated, "run": run, "reading": reading, "prompt": prompt, "lease": holder}
+def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> Status:
+    """State of the bench, from that of its runner."""
+    return Status(
+        state="running" if found.outcome == "running" else "idle",
+        simulated=simulated,
+        run=_run(found) if found.kind else None,
+        reading=None if found.reading is None else _reading(found.reading, _power(found, found.reading)),
+        prompt=None if found.prompt is None else PromptNow(number=found.prompt.number, sentence=found.prompt.sentence),
+        lease=lease,
+    )
 
 
-def _reading(reading: Reading) -> dict[str, Any]:
+def _run(found: RunnerStatus) -> Run:
+    return Run(
+        experiment_id=found.experiment_id,
+        kind=found.kind,
+        outcome=found.outcome,
+        reason=found.reason,
+        trial_index=found.trial_index,
+        trial_count=found.trial_count,
+        progress=found.progress,
+        duration_s=found.duration_s,
+        left_s=found.left_s,
+        pausing=found.pausing,
+        power_off=None if found.outcome == "running" else _power_off(found),
+    )
+
+
+def _power(found: RunnerStatus, reading: Reading) -> str:
+    """State of the power stage: of a run that has ended, the last sample was taken before the power went."""
+    if found.outcome == "running":
+        return reading.sample.status.name.lower()
+    return "disabled" if _power_off(found) == "confirmed" else "unknown"
+
+
+def _power_off(found: RunnerStatus) -> Literal["confirmed", "failed"]:
+    """What the control loop noted of the power-off that ends every run."""
+    return "failed" if any(note in found.reason for note in FAILED_POWER_OFF) else "confirmed"
+
+
+def _reading(reading: Reading, power: str) -> ReadingNow:
     sample = reading.sample
-    values = {
-        "time_s": reading.time_s,
-        "position_rad": sample.position_rad,
-        "velocity_rad_s": reading.velocity_rad_s,
-        "current_a": reading.current_a,
-        "duty": sample.duty,
-        "supply_v": sample.supply_v,
-        "temperature_c": sample.temperature_c,
-        "power": sample.status.name.lower(),
-    }
-    answer: dict[str, Any] = plain(values)
-    return answer
+    return ReadingNow(
+        time_s=reading.time_s,
+        position_rad=sample.position_rad,
+        velocity_rad_s=reading.velocity_rad_s,
+        current_a=reading.current_a,
+        duty=sample.duty,
+        supply_v=sample.supply_v,
+        temperature_c=sample.temperature_c,
+        power=power,
+    )

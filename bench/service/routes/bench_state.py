@@ -5,19 +5,20 @@
 
 import asyncio
 from contextlib import suppress
-from typing import Any
 
 from fastapi import APIRouter, Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.fields import FieldInfo
 from starlette.requests import ClientDisconnect
 
 from bench import __version__
+from bench.config.channels import CHANNELS
+from bench.config.sections import Limits
 from bench.control.drive_factory import is_simulated
-from bench.control.limits import Limits
+from bench.json_types import Json
 from bench.service.auth.access import Viewer, allow_read, require_viewer
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench
-from bench.service.http.json_numbers import plain
 from bench.service.http.problems import problems
 from bench.service.live.status import Status, status_of
 from bench.service.routes.leases import LeaseOf, lease_now, require_lease
@@ -61,7 +62,25 @@ class Bench(Status):
     software_version: str
     drive: DriveDescription | None = Field(description="null until the drive has been opened for the first time")
     limits: list[Limit]
-    rig: dict[str, Any]
+    rig: Json
+
+
+class RecordedChannel(BaseModel):
+    """One channel of the recorded rows."""
+
+    model_config = ConfigDict(from_attributes=True)
+    name: str
+    unit: str = Field(description="SI, angles in rad, temperatures in degC; 1 where there is none")
+    label: str = Field(description="short, for plots")
+    description: str
+    plotted: bool = Field(description="whether a plot shows it unless asked otherwise")
+    exported: bool = Field(description="whether recording sets, CSV and Parquet files hold it")
+
+
+class RecordedChannels(BaseModel):
+    """All of them."""
+
+    channels: list[RecordedChannel]
 
 
 class Stop(BaseModel):
@@ -105,13 +124,19 @@ def bench(runner: RunnerOf, lease: LeaseOf) -> Bench:
     found = runner.status()
     configuration = runner.configuration
     return Bench(
-        **status_of(found, is_simulated(configuration), lease_now(lease.current())),
+        **dict(status_of(found, is_simulated(configuration), lease_now(lease.current()))),
         name=configuration.name,
         software_version=__version__,
         drive=None if found.description is None else _drive(found.description),
         limits=_limits(configuration.limits),
         rig=configuration.rig.model_dump(exclude_none=True),
     )
+
+
+@router.get("/channels", summary="What trials record", dependencies=[Depends(allow_read)])
+def channels() -> RecordedChannels:
+    """Name, unit and meaning of every channel, in the order of the columns. A trial names those that it has."""
+    return RecordedChannels(channels=[RecordedChannel.model_validate(channel) for channel in CHANNELS.values()])
 
 
 # async on purpose: it runs on the event loop itself and never waits for a free worker thread
@@ -174,19 +199,28 @@ async def token(caller: Viewer) -> Token:
 
 
 def _drive(found: Description) -> DriveDescription:
-    names = ("device", "vendor", "product", "firmware", "serial", "max_rate_hz", "watchdog_s")
-    fields: dict[str, Any] = {name: plain(getattr(found, name)) for name in names}
-    modes = sorted(mode.value for mode in found.modes)
-    return DriveDescription(**fields, modes=modes, measured=sorted(found.measured), resolution=plain(found.resolution))
+    return DriveDescription(
+        device=found.device,
+        vendor=found.vendor,
+        product=found.product,
+        firmware=found.firmware,
+        serial=found.serial,
+        modes=sorted(mode.value for mode in found.modes),
+        measured=sorted(found.measured),
+        resolution=dict(found.resolution),
+        max_rate_hz=found.max_rate_hz,
+        watchdog_s=found.watchdog_s,
+    )
 
 
 def _limits(limits: Limits) -> list[Limit]:
+    fields = Limits.model_fields
     return [
-        Limit(name=name, description=field.description or "", value=getattr(limits, name), unit=_unit(field))
-        for name, field in Limits.model_fields.items()
+        Limit(name=name, description=fields[name].description or "", value=value, unit=_unit(fields[name]))
+        for name, value in limits
     ]
 
 
-def _unit(field: Any) -> str:
+def _unit(field: FieldInfo) -> str:
     extra = field.json_schema_extra
     return str(extra.get("unit", "")) if isinstance(extra, dict) else ""

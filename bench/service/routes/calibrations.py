@@ -1,16 +1,18 @@
 """/calibrations: friction curves from recorded sweeps, their points, and which of them the bench uses."""
 
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench import calibration
+from bench.calibration.curve_data import Picture, curve_data
+from bench.calibration.curves import Curve
+from bench.json_types import Json
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_worker
-from bench.service.http.json_numbers import plain
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
@@ -34,39 +36,20 @@ class NewCalibration(BaseModel):
     note: str = Field(default="", max_length=2000)
 
 
-class Curve(BaseModel):
-    """General Kinetic Friction of the balanced joint under one load, over the speed of the motor shaft."""
-
-    load_kg: float
-    f_load_a: float = Field(description="F_load under this load; it selects the curve")
-    f_load_from: str
-    coulomb_a: float
-    static_a: float
-    stribeck_speed_rad_s: float
-    shape: float
-    viscous_a_s_rad: float
-    offset_a: float = Field(description="half of what friction is more forwards than backwards")
-    rise_offset_a: float = Field(default=0.0, description="what that rises by towards rest")
-    inertia_a_s2_rad: float = Field(description="current per acceleration of the motor shaft: motor, arm and load")
-    parameters: dict[str, Any] = Field(description="value, low, high (95 %) and note of each, by name")
-    scatter_a: float
-    points: int
-
-
 class Calibration(BaseModel):
     """Friction curves of one rig, and where they come from."""
 
     calibration_id: int
     note: str
     source: str
-    rig: dict[str, Any]
-    drive: dict[str, Any] = Field(description="that it was measured on; {} where it is not known")
-    provenance: dict[str, Any]
+    rig: Json
+    drive: Json = Field(description="that it was measured on; {} where it is not known")
+    provenance: Json
     experiment_ids: list[int]
     trial_ids: list[int]
     stribeck: bool
     curves: list[Curve]
-    motor: dict[str, Any] = Field(description="R and Ke with intervals as far as the sweep tells; why, where not")
+    motor: Json = Field(description="R and Ke with intervals as far as the sweep tells; why, where not")
     in_use: bool = Field(description="whether this bench compensates with it")
     created_utc: datetime
     chosen_utc: datetime | None
@@ -78,42 +61,24 @@ class Calibrations(Page):
     items: list[Calibration]
 
 
-class Columns(BaseModel):
-    """Points or a curve; speeds of the motor shaft, all folded onto positive ones."""
-
-    motor_speed_rad_s: list[float]
-    friction_a: list[float] = Field(description="current against friction alone (Fig. 2)")
-    friction_duty: list[float] | None = Field(description="the same as duty, back-EMF included (Fig. 3)")
-
-
-class Points(Columns):
-    """Measured points."""
-
-    backward: list[bool]
-    trial_id: list[int | None]
-
-
-class CurvePicture(BaseModel):
-    """One load."""
-
-    load_kg: float
-    points: Points
-    curve: Columns
-
-
-class Picture(BaseModel):
-    """Figs 2 and 3 of the paper as data."""
-
-    calibration_id: int
-    curves: list[CurvePicture]
-
-
 def represent(row: CalibrationRow, used_id: int | None) -> Calibration:
     """A stored calibration as it is answered."""
-    same = ("note", "source", "rig", "drive", "provenance", "experiment_ids", "trial_ids", "created_utc", "chosen_utc")
-    fields = {name: plain(getattr(row, name)) for name in same}
-    found = {name: plain(row.result[name]) for name in ("stribeck", "curves", "motor")}
-    return Calibration(calibration_id=row.id, in_use=row.id == used_id, **fields, **found)
+    return Calibration(
+        calibration_id=row.id,
+        note=row.note,
+        source=row.source,
+        rig=row.rig,
+        drive=row.drive,
+        provenance=row.provenance,
+        experiment_ids=list(row.experiment_ids),
+        trial_ids=list(row.trial_ids),
+        stribeck=row.result["stribeck"],
+        curves=row.result["curves"],
+        motor=row.result["motor"],
+        in_use=row.id == used_id,
+        created_utc=row.created_utc,
+        chosen_utc=row.chosen_utc,
+    )
 
 
 @router.post(
@@ -174,7 +139,7 @@ def one(store: StoreOf, runner: RunnerOf, calibration_id: CalibrationId) -> Cali
 @router.get("/{calibration_id}/picture", summary="Its points and curves, to be drawn", responses=problems(404))
 def picture(store: StoreOf, calibration_id: CalibrationId) -> Picture:
     """Speed against current (Fig. 2), friction part of the duty against speed (Fig. 3)."""
-    return Picture.model_validate(calibration.curve_data(store.calibrations.get(calibration_id)))
+    return curve_data(store.calibrations.get(calibration_id))
 
 
 @router.post(

@@ -3,7 +3,7 @@
 import secrets
 from datetime import datetime
 from itertools import islice
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -16,6 +16,10 @@ from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
 from bench.store import Store
+
+if TYPE_CHECKING:  # imported when first needed
+    from bench.evaluation.challenge.guess import Score
+    from bench.evaluation.challenge.kept import KeptChallenge
 
 router = APIRouter(prefix="/challenges", tags=["challenges"], dependencies=[Depends(allow_read)])
 ChallengeId = Annotated[int, Path(ge=1, description="number of the challenge, which is that of its experiment")]
@@ -135,26 +139,32 @@ async def reveal(request: Request, store: StoreOf, challenge_id: ChallengeId, bo
 
 
 def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
-    from bench.evaluation.challenge.guess import UNKNOWN, Guess, score
+    from bench.evaluation.challenge.guess import UNKNOWN, Guess, guess_of_study, score
     from bench.evaluation.challenge.kept import answer_of
     from bench.evaluation.challenge.names import ABSORBED, accepted, title_of
-    from bench.service.models.study_guess import guess_of_study
 
     answer = answer_of(store, challenge_id)
     guess = Guess.parse(body.guess) if body.guess is not None else guess_of_study(store, body.study_id or 0)
     found = score([truth.name for truth in answer.truths], guess, ABSORBED)
-    fields = ("title", "size", "measure", "unit", "share")
     hidden = [
-        Hidden(effects=list(accepted(truth.name)), **{name: getattr(truth, name) for name in fields})
+        Hidden(
+            title=truth.title,
+            effects=list(accepted(truth.name)),
+            size=truth.size,
+            measure=truth.measure,
+            unit=truth.unit,
+            share=truth.share,
+        )
         for truth in answer.truths
     ]
-    told = {name: [title_of(one) for one in getattr(found, name)] for name in ("right", "missed", "untold")}
     guessed = ["/".join(names) for names in guess.classes] + [UNKNOWN] * guess.unknown
     return Revealed(
         challenge_id=challenge_id,
         hidden=hidden,
         guessed=guessed,
-        **told,
+        right=[title_of(one) for one in found.right],
+        missed=[title_of(one) for one in found.missed],
+        untold=[title_of(one) for one in found.untold],
         recorded=list(found.recorded),
         wrong=list(found.wrong),
         perfect=found.perfect,
@@ -162,7 +172,7 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
     )
 
 
-def _sentence(hidden: int, found: Any) -> str:
+def _sentence(hidden: int, found: "Score") -> str:
     what = {0: "Nothing was hidden", 1: "One mechanism was hidden"}.get(hidden, f"{hidden} mechanisms were hidden")
     if found.perfect:
         return f"{what}, and the guess says just that."
@@ -170,7 +180,7 @@ def _sentence(hidden: int, found: Any) -> str:
     return f"{what}; of the guess {len(found.right)} right, {', '.join(parts)}."
 
 
-def _represent(found: Any) -> Challenge:
+def _represent(found: "KeptChallenge") -> Challenge:
     number = found.experiment_id
     return Challenge(
         challenge_id=number,

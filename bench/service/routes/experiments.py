@@ -4,30 +4,29 @@ import tempfile
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path as FilePath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.background import BackgroundTask
 
-from bench.errors import ParameterError
 from bench.experiments.registry import KINDS, find_kind
+from bench.json_types import Json
 from bench.recording_set import export_experiment, export_parquet
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
-from bench.service.auth.roles import Caller
+from bench.service.auth.tokens import Caller
 from bench.service.compute import at_bench
 from bench.service.http import conditional
-from bench.service.http.attachment import attachment
-from bench.service.http.json_numbers import plain
+from bench.service.http.downloads import attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
-from bench.service.http.problems import FieldProblem, InvalidFieldsError, field_problems, problems
+from bench.service.http.problems import InvalidFieldsError, field_problems, problems
 from bench.service.http.repeated_start import Key, once
-from bench.service.models.queue_models import Note, Tags
 from bench.service.routes.leases import LeaseOf
+from bench.service.routes.queue_models import Note, Tags
 from bench.service.routes.trials import PARQUET, PARQUET_ANSWER
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
@@ -45,7 +44,7 @@ class Kind(BaseModel):
     name: str = Field(examples=["steps"])
     title: str
     summary: str
-    parameters: dict[str, Any] = Field(description="JSON schema; each property has its `unit`, bounds and default")
+    parameters: Json = Field(description="JSON schema; each property has its `unit`, bounds and default")
 
 
 class Kinds(Page):
@@ -64,7 +63,7 @@ class NewExperiment(BaseModel):
         },
     )
     kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
-    parameters: dict[str, Any] = Field(default={}, description="what differs from the defaults, SI")
+    parameters: Json = Field(default={}, description="what differs from the defaults, SI")
     operator: str = Field(default="", max_length=200)
     note: str = Field(default="", max_length=2000)
     tags: Tags = []
@@ -93,18 +92,18 @@ class Experiment(BaseModel):
 
     experiment_id: int
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     source: str = Field(description="simulated, real or imported")
     operator: str
     note: str
     tags: list[str]
-    provenance: dict[str, Any] = Field(description="software version and commit, configuration, drive, seed")
-    rig: dict[str, Any]
+    provenance: Json = Field(description="software version and commit, configuration, drive, seed")
+    rig: Json
     started_utc: datetime
     finished_utc: datetime | None
     outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
     reason: str = Field(description="why it ended")
-    results: dict[str, Any] = Field(description="what came out, units in the names")
+    results: Json = Field(description="what came out, units in the names")
 
 
 class Experiments(Page):
@@ -115,8 +114,22 @@ class Experiments(Page):
 
 def represent(found: StoredExperiment) -> Experiment:
     """A stored experiment as it is answered."""
-    fields = {name: plain(getattr(found, name)) for name in Experiment.model_fields if name != "experiment_id"}
-    return Experiment(experiment_id=found.id, **fields)
+    return Experiment(
+        experiment_id=found.id,
+        kind=found.kind,
+        parameters=found.parameters,
+        source=found.source,
+        operator=found.operator,
+        note=found.note,
+        tags=list(found.tags),
+        provenance=found.provenance,
+        rig=found.rig,
+        started_utc=found.started_utc,
+        finished_utc=found.finished_utc,
+        outcome=found.outcome,
+        reason=found.reason,
+        results=found.results,
+    )
 
 
 @router.get("/experiment-kinds", summary="What can be started", responses=problems(422))
@@ -151,9 +164,9 @@ async def start(
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
 
-    experiment_id = await at_bench(request, _begun, runner, store, lease, caller, request, body, key)
-    response.headers["Location"] = f"{request.url.path}/{experiment_id}"
-    return Started(experiment_id=experiment_id, kind=body.kind)
+    started = await at_bench(request, _begun, runner, store, lease, caller, request, body, key)
+    response.headers["Location"] = f"{request.url.path}/{started.experiment_id}"
+    return started
 
 
 def _begun(
@@ -164,33 +177,38 @@ def _begun(
     request: Request,
     body: NewExperiment,
     key: str | None,
-) -> int:
+) -> Started:
     """The experiment that has begun, now or with the same key before."""
 
-    def begin() -> dict[str, Any]:
+    refuse_mistyped(body)  # a typing error is no failed start: nothing is recorded
+
+    def begin() -> Started:
         with lease.starting(caller.name):
             begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
-        return {"experiment_id": begun}
+        return Started(experiment_id=begun, kind=body.kind)
 
-    try:
-        answer = once(store.access.start_keys, caller.name, key, body.model_dump(), begin)
-    except ParameterError as error:
-        raise InvalidFieldsError(str(error), "ParameterError", _fields_of(body)) from error
-    experiment_id = int(answer["experiment_id"])
+    started = once(store.access.start_keys, caller.name, key, body.model_dump(), begin, Started)
     if body.tags:
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
-            store.annotate(experiment_id, tags=body.tags)
-    return experiment_id
+            store.annotate(started.experiment_id, tags=body.tags)
+    return started
 
 
-def _fields_of(body: NewExperiment) -> list[FieldProblem]:
-    """The fields that the parameters' model refuses."""
+def refuse_mistyped(body: NewExperiment) -> None:
+    """Refuse parameters that the kind's model does not take, before anything is recorded.
+
+    Raises:
+        UnknownKindError: no such kind.
+        InvalidFieldsError: with each field, its value and what is allowed.
+    """
+    kind = find_kind(body.kind)
     try:
-        find_kind(body.kind).parameters.model_validate(body.parameters)
+        kind.parameters.model_validate(body.parameters)
     except ValidationError as error:
-        return field_problems(error, prefix="parameters")
-    return []
+        fields = field_problems(error, prefix="parameters")
+        words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
+        raise InvalidFieldsError(f"{body.kind}: {words}", "ParameterError", fields) from error
 
 
 @router.get("/experiments", summary="What has been run", responses=problems(422))

@@ -9,8 +9,7 @@ from pydantic import BaseModel
 from bench.control.drive_factory import is_simulated
 from bench.service.auth.access import allow_read
 from bench.service.live.live_events import LiveEvents
-from bench.service.live.live_rows import Rows, rows_of
-from bench.service.live.status import Status, status_of
+from bench.service.live.status import Rows, Status, rows_of, status_of
 from bench.service.routes.leases import LeaseOf, lease_now
 from bench.service.services import RunnerOf
 
@@ -64,5 +63,5 @@ async def live(
 def now(runner: RunnerOf, lease: LeaseOf, after_row: AfterRow = -1, limit: MostRows = MOST_ROWS) -> LiveNow:
     """For programs that poll. Send `last_row` back as `after_row`."""
     simulated = is_simulated(runner.configuration)
-    status = Status.model_validate(status_of(runner.status(), simulated, lease_now(lease.current())))
+    status = status_of(runner.status(), simulated, lease_now(lease.current()))
     return LiveNow(status=status, rows=rows_of(runner.live(after_row, limit)))

@@ -1,6 +1,6 @@
 """/queue: experiments one after the other. /campaigns: many of them at once."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 
@@ -9,7 +9,8 @@ from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
-from bench.service.models.queue_models import (
+from bench.service.routes.leases import require_lease
+from bench.service.routes.queue_models import (
     Added,
     ChangedItem,
     Cleared,
@@ -22,7 +23,6 @@ from bench.service.models.queue_models import (
     planned,
     queue_of,
 )
-from bench.service.routes.leases import require_lease
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 
 router = APIRouter(tags=["queue"], dependencies=[Depends(allow_read)])
@@ -52,14 +52,14 @@ def add(
 ) -> Added:
     """All or none: one that would be refused refuses the request. While the queue is held they wait."""
 
-    def take_in() -> dict[str, Any]:
+    def take_in() -> Added:
         orders = [Order(**one.model_dump()) for one in body.items]
         found = conductor.add(orders, by=caller.name)
         note(request, f"added {len(found)} to the queue")
-        return {"item_ids": found}
+        return Added(item_ids=found)
 
     asked = {"queue": body.model_dump(mode="json")}
-    return Added.model_validate(once(store.access.start_keys, caller.name, key, asked, take_in))
+    return once(store.access.start_keys, caller.name, key, asked, take_in, Added)
 
 
 @router.get("/queue/{item_id}", summary="One item", responses=problems(404))
@@ -167,14 +167,14 @@ def start(
     """All of its experiments, or none where one would be refused."""
     kept = body.model_dump(mode="json")
 
-    def take_in() -> dict[str, Any]:
+    def take_in() -> StartedCampaign:
         found = plan_campaign(body, runner.configuration)
         common = {name: kept[name] for name in ("name", "operator", "note", "tags")}
         item_ids = conductor.add_items(found.items, {**common, "definition": kept}, by=caller.name)
         note(request, f"started campaign '{body.name}': {len(item_ids)} experiments")
-        return {"item_ids": item_ids, **_answer(body.name, found).model_dump(mode="json")}
+        return StartedCampaign(item_ids=item_ids, **dict(_answer(body.name, found)))
 
-    return StartedCampaign.model_validate(once(store.access.start_keys, caller.name, key, {"campaign": kept}, take_in))
+    return once(store.access.start_keys, caller.name, key, {"campaign": kept}, take_in, StartedCampaign)
 
 
 def _answer(name: str, found: CampaignPlan) -> Plan:

@@ -1,4 +1,4 @@
-"""/studies: compare measured with predicted, name the missing effect, add it, watch the error fall."""
+"""/studies: make one, change its models, give it trials, hand a model to the bench. GET is in `study_answers`."""
 
 from typing import Annotated, Literal
 
@@ -8,29 +8,27 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
-from bench.service.http import conditional
-from bench.service.http.attachment import attachment
-from bench.service.http.pages import Limit, Offset, cut
+from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
-from bench.service.models.study_models import (
-    Changed,
-    Comparison,
-    Diagnosis,
-    Ladder,
-    Searched,
-    Studies,
-    Study,
-    StudyName,
-)
-from bench.service.models.suggestion_models import Extended, Suggested, Used
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import NotFoundError
+from bench.study import changes, extend, search, use
+from bench.study.create import create_study
+from bench.study.models.change import Changed, Searched
+from bench.study.models.study import Study, StudyName
+from bench.study.suggestion.suggest import suggest
+from bench.study.suggestion.suggested import Suggested
 
-REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
+
+
+class Studies(Page):
+    """One page of studies, newest first."""
+
+    items: list[StudyName]
 
 
 class NewStudy(BaseModel):
@@ -107,17 +105,6 @@ class UseModel(BaseModel):
     model_id: int | None = Field(default=None, ge=1, description="null: the newest of the study")
 
 
-def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId) -> None:
-    """Dependency of what is computed from a study: it stays the same as long as no model is added or removed.
-
-    The catalogue of effects is part of it too, which is read at the start of the service.
-    """
-    found = store.study(study_id)
-    # what was kept with a model later, its error on the bench or in closed loop, is part of the ladder, too
-    models = [(model.id, model.created_utc, sorted(model.result)) for model in store.models(study_id)]
-    response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
-
-
 @router.post(
     "",
     status_code=201,
@@ -127,10 +114,20 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
 )
 async def create(request: Request, response: Response, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
-    found = await in_lab(request, "create_study", **body.model_dump())
-    response.headers["Location"] = f"{request.url.path}/{found['study_id']}"
-    note(request, f"made study {found['study_id']} ({body.name})")
-    return Study.model_validate(found)
+    found = await in_lab(
+        request,
+        create_study,
+        body.name,
+        body.experiment_ids,
+        hold_out=body.hold_out,
+        base=body.base,
+        where=body.where,
+        cutoff_hz=body.cutoff_hz,
+        rows=body.rows,
+    )
+    response.headers["Location"] = f"{request.url.path}/{found.study_id}"
+    note(request, f"made study {found.study_id} ({body.name})")
+    return found
 
 
 @router.get("", summary="The studies", responses=problems(422))
@@ -142,70 +139,6 @@ def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
     return Studies(items=items, **page)
 
 
-@router.get(
-    "/{study_id}",
-    summary="One study",
-    dependencies=[Depends(kept)],
-    responses=problems(404) | conditional.ANSWER,
-)
-async def study(request: Request, study_id: StudyId) -> Study:
-    """Its trials, their roles, and the newest model."""
-    return Study.model_validate(await in_lab(request, "describe", study_id))
-
-
-@router.get(
-    "/{study_id}/compare",
-    summary="Measured against predicted",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
-async def compare(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
-    """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
-    return Comparison.model_validate(await in_lab(request, "compare", study_id, model_id=model_id))
-
-
-@router.get(
-    "/{study_id}/diagnose",
-    summary="Which effect is missing",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
-async def diagnose(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
-    """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return Diagnosis.model_validate(await in_lab(request, "diagnose", study_id, model_id=model_id))
-
-
-@router.get(
-    "/{study_id}/ladder",
-    summary="The error from model to model",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
-async def ladder(request: Request, study_id: StudyId) -> Ladder:
-    """Training and held-out error of every model of the study."""
-    return Ladder.model_validate(await in_lab(request, "ladder", study_id))
-
-
-@router.get(
-    "/{study_id}/report",
-    summary="One HTML file to be filed",
-    response_class=Response,
-    responses={
-        200: {
-            "description": "Needs no network.",
-            "content": {"text/html": REPORT},
-            "headers": attachment("study-1.html"),
-        },
-        **problems(404, 422),
-    },
-)
-async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
-    """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
-    page: str = await in_lab(request, "report_html", study_id, runner.configuration)
-    headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
-    return Response(page, media_type="text/html", headers=headers)
-
-
 @router.post(
     "/{study_id}/models",
     status_code=201,
@@ -215,10 +148,10 @@ async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Respo
 )
 async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
-    name = "add_effect" if body.action == "add" else "drop_effect"
-    found = await in_lab(request, name, study_id, body.effect, model_id=body.model_id)
-    note(request, f"made model {found['model_id']}: {body.action} {body.effect}")
-    return Changed.model_validate(found)
+    function = changes.add_effect if body.action == "add" else changes.drop_effect
+    found = await in_lab(request, function, study_id, body.effect, body.model_id)
+    note(request, f"made model {found.model_id}: {body.action} {body.effect}")
+    return found
 
 
 @router.post(
@@ -228,11 +161,11 @@ async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def search(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
+async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    found = await in_lab(request, "search", study_id, **body.model_dump())
-    note(request, f"made {len(found['steps'])} models, the last of them {found['model_id']}")
-    return Searched.model_validate(found)
+    found = await in_lab(request, search.search, study_id, body.model_id, body.most)
+    note(request, f"made {len(found.steps)} models, the last of them {found.model_id}")
+    return found
 
 
 @router.post(
@@ -241,10 +174,9 @@ async def search(request: Request, study_id: StudyId, body: SearchFrom) -> Searc
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def suggest(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
+async def suggest_trials(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
     """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
-    found = await in_lab(request, "suggest", study_id, runner.configuration, **body.model_dump())
-    return Suggested.model_validate(found)
+    return await in_lab(request, suggest, study_id, runner.configuration, body.model_id, body.trials)
 
 
 @router.post(
@@ -254,9 +186,9 @@ async def suggest(request: Request, runner: RunnerOf, study_id: StudyId, body: S
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def extend(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
+async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> extend.Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
-    return Extended.model_validate(await in_lab(request, "extend_study", study_id, body.experiment_ids))
+    return await in_lab(request, extend.extend_study, study_id, body.experiment_ids)
 
 
 @router.post(
@@ -266,9 +198,9 @@ async def extend(request: Request, study_id: StudyId, body: MoreTrials) -> Exten
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def use(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
+async def use_model(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> use.Used:
     """Kept as a calibration, which the bench uses from the next experiment on."""
-    return Used.model_validate(await in_lab(request, "use", study_id, runner.configuration, body.model_id))
+    return await in_lab(request, use.use, study_id, runner.configuration, body.model_id)
 
 
 @router.delete(

@@ -1,6 +1,6 @@
 """/studies/N/rounds: what was recorded for a study is picked up, and what it asks for next is queued, in one call."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
@@ -12,28 +12,26 @@ from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench, in_lab
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
-from bench.service.models.suggestion_models import Extended, Suggested
 from bench.service.routes.leases import require_lease
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import RUNNING, WAITING
 from bench.study.extend import note_for
+from bench.study.suggestion.next_round import NextRound, next_round
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 
 
-class NextRound(BaseModel):
+class RoundSize(BaseModel):
     """How much is recorded before the study is asked again."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"trials": 2}]})
     trials: int = Field(default=2, ge=1, le=50, description="trials at most")
 
 
-class Round(BaseModel):
+class Round(NextRound):
     """What was picked up, what it says, and what is recorded next."""
 
-    extended: Extended | None = Field(description="null: nothing was recorded for the study since the last round")
-    suggested: Suggested
     item_ids: list[int] = Field(description="in the queue; none where no trial is needed, or helps")
 
 
@@ -44,32 +42,30 @@ class Round(BaseModel):
     dependencies=[Depends(require_lease)],
     responses=problems(401, 403, 404, 409, 422),
 )
-async def next_round(
+async def begin_round(
     request: Request,
     runner: RunnerOf,
     conductor: ConductorOf,
     store: StoreOf,
     caller: Operator,
     study_id: StudyId,
-    body: NextRound,
+    body: RoundSize,
     key: Key = None,
 ) -> Round:
     """Trials that tripped are kept out. 409 while those of the round before wait or run. Takes seconds."""
     _refuse_while_recording(conductor, study_id)
-    found = await in_lab(request, "next_round", study_id, runner.configuration, trials=body.trials)
+    found = await in_lab(request, next_round, study_id, runner.configuration, body.trials)
 
-    def take_in() -> dict[str, Any]:
+    def take_in() -> Round:
         _refuse_while_recording(conductor, study_id)
-        suggested = found["suggested"]
-        orders = [Order(one["kind"], one["parameters"], note=suggested["note"]) for one in suggested["trials"]]
+        suggested = found.suggested
+        orders = [Order(one.kind, one.parameters, note=suggested.note) for one in suggested.trials]
         item_ids = conductor.add(orders, by=caller.name) if orders else []
         note(request, f"queued {len(item_ids)} trials that study {study_id} asks for")
-        return {**found, "item_ids": item_ids}
+        return Round(extended=found.extended, suggested=suggested, item_ids=item_ids)
 
     asked = {"study": study_id, **body.model_dump(mode="json")}
-    return Round.model_validate(
-        await at_bench(request, once, store.access.start_keys, caller.name, key, asked, take_in)
-    )
+    return await at_bench(request, once, store.access.start_keys, caller.name, key, asked, take_in, Round)
 
 
 def _refuse_while_recording(conductor: Conductor, study_id: int) -> None:

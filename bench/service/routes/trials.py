@@ -2,22 +2,22 @@
 
 import math
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field
 
+from bench.json_types import Json
 from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
-from bench.service.http.attachment import attachment
-from bench.service.http.json_numbers import plain
+from bench.service.http.downloads import attachment, samples_json
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
-from bench.service.http.written_samples import samples_json
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
+from bench.store.tables.trial_search import TrialQuery
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
@@ -27,6 +27,7 @@ PARQUET_ANSWER = {
     "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
     "headers": attachment("trial-1.parquet"),
 }
+Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
 
 
@@ -40,7 +41,7 @@ class Trial(BaseModel):
     conditions: dict[str, float | str | bool] = Field(examples=[{"load_kg": 0.1, "balanced": False, "repeat": 3}])
     outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
     reason: str = Field(description="why it ended")
-    results: dict[str, Any] = Field(description="what the procedure found, units in the names")
+    results: Json = Field(description="what the procedure found, units in the names")
     channels: list[str] = Field(description="names of the recorded channels, SI with the unit in the name")
     rows: int
     started_utc: datetime
@@ -76,12 +77,22 @@ class Samples(BaseModel):
     channels: dict[str, list[float | None]]
 
 
-def represent(trial: StoredTrial) -> dict[str, Any]:
-    """A stored trial as the fields of `Trial`."""
-    names = ("experiment_id", "name", "kind", "outcome", "reason", "rows", "started_utc", "finished_utc")
-    fields = {name: getattr(trial, name) for name in names}
-    changed = {"conditions": plain(trial.conditions), "results": plain(trial.results), "channels": list(trial.channels)}
-    return {"trial_id": trial.id, **fields, **changed}
+def represent(trial: StoredTrial) -> Trial:
+    """A stored trial as it is answered."""
+    return Trial(
+        trial_id=trial.id,
+        experiment_id=trial.experiment_id,
+        name=trial.name,
+        kind=trial.kind,
+        conditions=dict(trial.conditions),
+        outcome=trial.outcome,
+        reason=trial.reason,
+        results=trial.results,
+        channels=list(trial.channels),
+        rows=trial.rows,
+        started_utc=trial.started_utc,
+        finished_utc=trial.finished_utc,
+    )
 
 
 @router.get("", summary="Trials, filtered", responses=problems(422))
@@ -96,16 +107,45 @@ def trials(
     """In the order in which they were made. Without filters: all trials."""
     found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
     items, page = cut(found, limit, offset)
-    return Trials(items=[Trial.model_validate(represent(trial)) for trial in items], **page)
+    return Trials(items=[represent(trial) for trial in items], **page)
+
+
+class FoundTrials(Page):
+    """One page of the trials that were looked for."""
+
+    total: int = Field(description="how many there are in all", examples=[1])
+    items: list[Trial]
+
+
+@router.get("/search", summary="Trials by words, sorted, page by page", responses=problems(422))
+def search(
+    store: StoreOf,
+    words: Annotated[str, Query(max_length=200, description="each is in the name, kind, outcome or a condition")] = "",
+    experiment_id: Annotated[int | None, Query(ge=1)] = None,
+    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
+    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    sort: Annotated[Sorting, Query(description="what they are sorted by")] = "trial",
+    descending: Annotated[bool, Query(description="the highest, or newest, first")] = True,
+    limit: Limit = 50,
+    offset: Offset = 0,
+) -> FoundTrials:
+    """For a list that a person looks through; a page of 100 000 trials comes as quickly as one of ten."""
+    wanted = TrialQuery(
+        experiment_id, kind or None, outcome or None, tuple(words.split()), sort=sort, descending=descending
+    )
+    found, total = store.search_trials(wanted, limit, offset)
+    more = offset + limit if offset + limit < total else None
+    items = [represent(trial) for trial in found]
+    return FoundTrials(items=items, total=total, limit=limit, offset=offset, next_offset=more)
 
 
 @router.get("/{trial_id}", summary="One trial with its events", responses=problems(404) | conditional.ANSWER)
 def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialId) -> TrialWithEvents:
     """Conditions, outcome and why, results, channels, events. With an `ETag`, which changes when it does."""
-    events = [{"time_s": event.time_s, "name": event.name, "detail": event.detail} for event in store.events(trial_id)]
-    found = {**represent(store.trial(trial_id)), "events": events}
-    response.headers.update(conditional.unless_known(request, found))
-    return TrialWithEvents.model_validate(found)
+    events = [Event(time_s=one.time_s, name=one.name, detail=one.detail) for one in store.events(trial_id)]
+    found = TrialWithEvents(**dict(represent(store.trial(trial_id))), events=events)
+    response.headers.update(conditional.unless_known(request, found.model_dump()))
+    return found
 
 
 @router.get(

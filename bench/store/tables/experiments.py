@@ -7,8 +7,9 @@ from typing import Any
 
 from sqlalchemy import Connection, Table, insert, select, update
 
+from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
-from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment
+from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment, NewExperiment
 from bench.store.schema import EXPERIMENT, TRIAL
 from bench.store.tables import tags
 
@@ -20,25 +21,34 @@ def now() -> datetime:
     return datetime.now(UTC)
 
 
-def insert_row(connection: Connection, table: Table, row: dict[str, Any]) -> int:
+def insert_row(connection: Connection, table: Table, row: Mapping[str, object]) -> int:
     """Insert one row. Returns the id that the database gave it."""
     row_id: int = connection.execute(insert(table).values(**row).returning(table.c.id)).scalar_one()
     return row_id
 
 
-def add(connection: Connection, owner: str | None, values: dict[str, Any], outcome: str = "running") -> int:
+def add(connection: Connection, owner: str | None, new: NewExperiment, outcome: str = "running") -> int:
     """Insert an experiment that starts now. Returns its id.
 
     Raises:
         StoreValueError: a source that does not exist.
     """
-    if values["source"] not in SOURCES:
-        raise StoreValueError(f"source of an experiment is '{values['source']}'; wanted {', '.join(SOURCES)}")
-    row = values | {"owner": owner, "started_utc": now(), "outcome": outcome, "reason": "", "results": {}}
-    return insert_row(connection, EXPERIMENT, row | facts_of(values["provenance"]))
+    if new.source not in SOURCES:
+        raise StoreValueError(f"source of an experiment is '{new.source}'; wanted {', '.join(SOURCES)}")
+    row = {
+        "kind": new.kind,
+        "parameters": new.parameters,
+        "source": new.source,
+        "provenance": new.provenance,
+        "rig": new.rig,
+        "operator": new.operator,
+        "note": new.note,
+    }
+    begun: dict[str, object] = {"owner": owner, "started_utc": now(), "outcome": outcome, "reason": "", "results": {}}
+    return insert_row(connection, EXPERIMENT, {**row, **begun, **facts_of(new.provenance)})
 
 
-def finish(connection: Connection, experiment_id: int, outcome: str, reason: str, results: dict[str, Any]) -> None:
+def finish(connection: Connection, experiment_id: int, outcome: str, reason: str, results: Values) -> None:
     """Close an experiment; a trial of it that still runs is given the same outcome.
 
     Raises:

@@ -1,12 +1,13 @@
 """The queue of a bench in the store: what is to be run, in which order, and what became of it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
+from bench.json_types import Json, Values
 from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.schema import CAMPAIGN, EXPERIMENT, QUEUE_ITEM, QUEUE_STATE
@@ -30,7 +31,7 @@ class NewItem:
     """
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     operator: str = ""
     note: str = ""
     tags: list[str] = field(default_factory=list)
@@ -55,7 +56,7 @@ class QueueItem:
     id: int
     campaign_id: int | None
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     operator: str
     note: str
     tags: list[str]
@@ -75,7 +76,7 @@ class CampaignRow:
 
     id: int
     name: str
-    definition: dict[str, Any]
+    definition: Values
     operator: str
     note: str
     tags: list[str]
@@ -97,7 +98,7 @@ class QueueTable:
         self._database = database
         self._bench = bench
 
-    def add(self, items: Sequence[NewItem], campaign: dict[str, Any] | None = None) -> list[int]:
+    def add(self, items: Sequence[NewItem], campaign: Mapping[str, object] | None = None) -> list[int]:
         """Add items at the end, all or none; a campaign by the fields of `CampaignRow`. Returns their ids."""
         with self._database.writing() as connection:
             last = connection.execute(select(func.max(ITEM.place)).where(ITEM.bench == self._bench)).scalar()
@@ -156,7 +157,7 @@ class QueueTable:
             for row_id, place in zip(order, sorted(row.place for row in rows), strict=True):
                 connection.execute(update(QUEUE_ITEM).where(ITEM.id == row_id).values(place=place))
 
-    def change(self, item_id: int, values: dict[str, Any]) -> None:
+    def change(self, item_id: int, values: Mapping[str, object]) -> None:
         """Change one that waits, as `move`."""
         with self._database.writing() as connection:
             self._get_waiting(connection, item_id)

@@ -1,7 +1,6 @@
 """Samples of a trial: blocks in, arrays out. Each function works inside the caller's transaction."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +76,7 @@ def add(
 
 def _overview(
     trial_id: int, first_row: int, columns: FloatArray, pending: FloatArray | None
-) -> tuple[list[dict[str, Any]], FloatArray]:
+) -> tuple[list[dict[str, object]], FloatArray]:
     """The row of the overview's table, if whole groups have come together, and what is pending then."""
     if pending is not None and pending.shape[1]:
         first_row -= pending.shape[1]

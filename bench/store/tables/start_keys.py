@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from datetime import timedelta
-from typing import Any
 
 from sqlalchemy import ColumnElement, delete, select, update
 
+from bench.json_types import Json, Values
 from bench.store.database import Database
 from bench.store.schema import START_KEY
 from bench.store.tables.experiments import insert_row, now
@@ -25,7 +25,7 @@ class StartKey:
 
     body_digest: str
     status: int | None
-    answer: dict[str, Any] | None
+    answer: Json | None
 
 
 class StartKeys:
@@ -46,7 +46,7 @@ class StartKeys:
             insert_row(connection, START_KEY, row)
             return None
 
-    def answer(self, token: str, key: str, status: int, answer: dict[str, Any]) -> None:
+    def answer(self, token: str, key: str, status: int, answer: Values) -> None:
         """Keep what was answered."""
         with self._database.writing() as connection:
             connection.execute(update(START_KEY).where(_is(token, key)).values(status=status, answer=answer))

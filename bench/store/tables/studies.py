@@ -1,17 +1,17 @@
 """Rows of the tables of studies and models. Each function works inside the caller's transaction."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from sqlalchemy import Connection, delete, select, update
 
+from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.records import ModelRow, StudyRow
 from bench.store.schema import MODEL, STUDY
 from bench.store.tables.experiments import insert_row, now
 
 
-def add(connection: Connection, name: str, definition: dict[str, Any]) -> int:
+def add(connection: Connection, name: str, definition: Values) -> int:
     """Insert a study. Returns its id."""
     values = {"name": name, "definition": definition, "created_utc": now()}
     return insert_row(connection, STUDY, values)
@@ -29,7 +29,7 @@ def get(connection: Connection, study_id: int) -> StudyRow:
     return StudyRow(**row._asdict())
 
 
-def change(connection: Connection, study_id: int, definition: dict[str, Any]) -> None:
+def change(connection: Connection, study_id: int, definition: Values) -> None:
     """Replace the definition of a study.
 
     Raises:
@@ -46,7 +46,7 @@ def find(connection: Connection, limit: int | None, offset: int) -> list[StudyRo
 
 
 def add_model(
-    connection: Connection, study_id: int, parent_id: int | None, effects: Sequence[str], result: dict[str, Any]
+    connection: Connection, study_id: int, parent_id: int | None, effects: Sequence[str], result: Values
 ) -> int:
     """Insert a model. Returns its id.
 
@@ -78,7 +78,7 @@ def get_model(connection: Connection, model_id: int) -> ModelRow:
     return ModelRow(**row._asdict())
 
 
-def change_model(connection: Connection, model_id: int, result: dict[str, Any]) -> None:
+def change_model(connection: Connection, model_id: int, result: Values) -> None:
     """Replace what came out of a model.
 
     Raises:

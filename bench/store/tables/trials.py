@@ -6,13 +6,14 @@ from typing import Any
 from sqlalchemy import Connection, Row, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
+from bench.config.channels import KEPT
+from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
 from bench.store.tables import conditions as condition_rows
 from bench.store.tables.conditions import Wanted
 from bench.store.tables.experiments import check_outcome, insert_row, now
-from compensator.lab.recordings.channels import CHANNELS
 
 
 def add(
@@ -53,7 +54,7 @@ def add(
     return trial_id
 
 
-def finish(connection: Connection, trial_id: int, outcome: str, reason: str, results: dict[str, Any]) -> None:
+def finish(connection: Connection, trial_id: int, outcome: str, reason: str, results: Values) -> None:
     """Close a trial.
 
     Raises:
@@ -123,6 +124,13 @@ def find(
     return [_record(row, found) for row in rows]
 
 
+def of_ids(connection: Connection, ids: Sequence[int]) -> list[Trial]:
+    """Trials in the order of their ids in a list; those that were removed meanwhile are left out."""
+    rows = {row.id: row for row in connection.execute(select(TRIAL).where(TRIAL.c.id.in_(ids)))}
+    found = condition_rows.of_trials(connection, rows)
+    return [_record(rows[trial_id], found) for trial_id in ids if trial_id in rows]
+
+
 def _check_experiment(connection: Connection, experiment_id: int, wanted: str) -> None:
     query = select(EXPERIMENT.c.outcome).where(EXPERIMENT.c.id == experiment_id)
     outcome = connection.execute(query).scalar_one_or_none()
@@ -133,11 +141,11 @@ def _check_experiment(connection: Connection, experiment_id: int, wanted: str) -
 
 
 def _check_channels(name: str, channels: Sequence[str]) -> None:
-    unknown = [channel for channel in channels if channel not in CHANNELS]
+    unknown = [channel for channel in channels if channel not in KEPT]
     if unknown or len(set(channels)) != len(channels) or "time_s" not in channels:
         raise StoreValueError(
             f"trial '{name}' has the channels {', '.join(channels) or 'none'}; wanted time_s and any of "
-            f"{', '.join(CHANNELS)}, each once"
+            f"{', '.join(KEPT)}, each once"
         )
 
 

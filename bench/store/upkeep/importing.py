@@ -3,12 +3,10 @@
 Nobody sees it before it is complete. What a dead process left is removed by whoever opens the store next.
 """
 
-from typing import Any
-
 from sqlalchemy import bindparam, update
 
 from bench.store.database import Database
-from bench.store.records import IMPORTING
+from bench.store.records import IMPORTING, NewExperiment
 from bench.store.schema import TRIAL
 from bench.store.tables import experiments, samples, trials
 from bench.store.tables.experiments import check_outcome, now
@@ -24,18 +22,17 @@ class Import:
     Args:
         database: where to.
         owner: the claim of this process.
-        values: columns of the experiment.
+        new: the experiment.
 
     Attributes:
         experiment_id: its number.
     """
 
-    def __init__(self, database: Database, owner: str, values: dict[str, Any]) -> None:
+    def __init__(self, database: Database, owner: str, new: NewExperiment) -> None:
         self._database = database
-        self._ends: list[dict[str, Any]] = []
+        self._ends: list[dict[str, object]] = []
         with database.writing() as connection:
-            origin = {"source": "imported", "operator": "", "note": ""}
-            self.experiment_id = experiments.add(connection, owner, values | origin, IMPORTING)
+            self.experiment_id = experiments.add(connection, owner, new, IMPORTING)
 
     def add(self, recording: Recording, outcome: str, reason: str) -> None:
         """Add a trial.

@@ -7,7 +7,6 @@ from typing import Self
 from bench.store.errors import StoreFullError
 from bench.store.tables.samples import SAMPLE_BYTES
 
-CHANNELS = 14  # of a recorded row, see bench.control.cycle.RECORDED
 OVERHEAD = 1.3  # overview, pages, indexes and the write-ahead log, beside the samples
 
 
@@ -26,7 +25,7 @@ class SpaceNeed:
     told: str
 
     @classmethod
-    def of(cls, trial_s: float, period_s: float, reserve_mb: float, channels: int = CHANNELS) -> Self:
+    def of(cls, trial_s: float, period_s: float, reserve_mb: float, channels: int) -> Self:
         """The need of a trial of an estimated length [s], sampled every `period_s` [s]."""
         size = ceil(trial_s / period_s * channels * SAMPLE_BYTES * OVERHEAD)
         told = f"{trial_s:.0f} s at {1 / period_s:.0f} rows/s of {channels} channels"

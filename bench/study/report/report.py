@@ -1,7 +1,5 @@
 """A study as one HTML file that a lab can file: what was measured, the models, what is missing, what to record next."""
 
-from typing import Any
-
 from bench.config.configuration import BenchConfiguration
 from bench.errors import BenchError
 from bench.report import Section, html_page
@@ -11,15 +9,13 @@ from bench.study.compare import compare
 from bench.study.create import describe
 from bench.study.diagnose import diagnose
 from bench.study.ladder import ladder
-from bench.study.report.report_sections import (
+from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section, suggestion_section
+from bench.study.report.model_sections import (
     closed_loop_section,
-    diagnosis_section,
     ladder_section,
     measured_section,
     model_section,
-    provenance_section,
     residual_section,
-    suggestion_section,
 )
 from bench.study.suggestion.suggest import suggest
 
@@ -42,7 +38,7 @@ def report_html(store: Store, study_id: int, configuration: BenchConfiguration |
 def report(store: Store, study_id: int, configuration: BenchConfiguration | None = None) -> tuple[str, list[Section]]:
     """Title and sections. Arguments and errors as `report_html`."""
     study, rungs = describe(store, study_id), ladder(store, study_id)
-    first, newest = study["models"][0]["model_id"], study["model_id"]
+    first, newest = study.models[0].model_id, study.model_id
     now = compare(store, study_id, newest)
     before = now if first == newest else compare(store, study_id, first)
     sections = [
@@ -60,13 +56,13 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
     )
     if configuration is not None:
         sections.append(_next(store, study_id, configuration))
-    return f"Study {study_id}: {study['name']}", [*sections, provenance_section(study, store)]
+    return f"Study {study_id}: {study.name}", [*sections, provenance_section(study, store)]
 
 
 def _next(store: Store, study_id: int, configuration: BenchConfiguration) -> Section:
     """Trials to record next; why there are none where this bench cannot tell."""
     try:
-        found: dict[str, Any] = suggest(store, study_id, configuration)
+        found = suggest(store, study_id, configuration)
     except BenchError as error:
         return Section("Trials to record next", [f"Not known: {error}."])
     return suggestion_section(found)

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+
+from pydantic import JsonValue
 
 from bench.config.configuration import BenchConfiguration
 from bench.control import commissioned
@@ -11,6 +12,7 @@ from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan
 from bench.experiments.kinds.excitation import OVERSHOOT_RAD
 from bench.experiments.parts.waveforms import WAVEFORMS
 from bench.experiments.registry import KINDS, parse_parameters
+from bench.json_types import Json
 
 LOAD_SHARES = (0.0, 0.5, 1.0)  # of the heaviest load
 SPEED_SHARES = (0.15, 0.6)  # of the speed limit
@@ -31,7 +33,7 @@ class Choice:
     """
 
     kind: str
-    parameters: dict[str, Any]
+    parameters: Json
     plans: tuple[TrialPlan, ...]
     duration_s: float
 
@@ -61,9 +63,7 @@ def choices(configuration: BenchConfiguration, hung_by_hand: bool, from_rest: bo
     return found
 
 
-def _choice(
-    kind: ExperimentKind, values: dict[str, Any], configuration: BenchConfiguration, hang_s: float
-) -> Choice | None:
+def _choice(kind: ExperimentKind, values: Json, configuration: BenchConfiguration, hang_s: float) -> Choice | None:
     """The choice; None where the bench refuses it, or it takes long."""
     try:
         parameters: Parameters = parse_parameters(kind, values)
@@ -77,7 +77,7 @@ def _choice(
     return Choice(kind.name, values, plans, duration_s + hang_s)
 
 
-Values = Iterator[dict[str, Any]]
+Values = Iterator[Json]
 
 
 def _excitation(_: ExperimentKind, configuration: BenchConfiguration) -> Values:
@@ -118,11 +118,13 @@ def _breakaway_ramps(_: ExperimentKind, configuration: BenchConfiguration) -> Va
 def _plainly(kind: ExperimentKind, configuration: BenchConfiguration) -> Values:
     """Any other kind at its defaults, with each load, once."""
     fields = kind.parameters.model_fields
-    once = {"repeats": 1} if "repeats" in fields else {}
+    once: dict[str, JsonValue] = {"repeats": 1} if "repeats" in fields else {}
     if "load_kg" in fields:
         yield from ({"load_kg": load_kg, **once} for load_kg in _loads(configuration))
     elif "loads_kg" in fields:
-        yield from ({"loads_kg": [load_kg], **once} for load_kg in _loads(configuration))
+        for load_kg in _loads(configuration):
+            loads: list[JsonValue] = [load_kg]
+            yield {"loads_kg": loads, **once}
     else:
         yield once
 

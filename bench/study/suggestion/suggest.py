@@ -1,7 +1,6 @@
-"""What to record next, as JSON: trials that would separate the rivals of a diagnosis."""
+"""What to record next: trials that would separate the rivals of a diagnosis."""
 
 from collections.abc import Collection, Sequence
-from typing import Any
 
 from bench.calibration import with_friction
 from bench.config.configuration import BenchConfiguration
@@ -12,9 +11,10 @@ from bench.study.extend import note_for
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
 from bench.study.selection import Criterion
-from bench.study.suggestion.kept_out import kept_out, without
+from bench.study.suggestion.earlier_trials import kept_out, without
 from bench.study.suggestion.options import Choice, choices
 from bench.study.suggestion.predict import choose
+from bench.study.suggestion.suggested import KeptOut, PairOfRivals, Suggested, SuggestedTrial
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.next_trial.confounded import shows_from_rest
@@ -30,7 +30,7 @@ def suggest(
     model_id: int | None = None,
     trials: int = MOST_TRIALS,
     refused: Collection[str] = (),
-) -> dict[str, Any]:
+) -> Suggested:
     """The trials that would raise the smallest d' of the leading rivals most, per minute of bench time.
 
     Every trial that the bench can run inside its limits is run on the joint of the fitted model first. What was
@@ -67,19 +67,19 @@ def suggest(
         told = [*impossible, *(_recorded(store, material) if repeats else ())]
         possible = [one for one in without(_fitted_ones(material, possible), told) if one.name not in refused]
         found, chosen = choose(fit, diagnosis, configuration, possible, trials, once=repeats)
-    return {
-        "study_id": study_id,
-        "model_id": model.id,
-        "verdict": diagnosis.verdict,
-        "diagnosis": diagnosis.sentence,
-        "sentence": _sentence(found, diagnosis),
-        "minutes": sum(pick.minutes for pick in found.picks),
-        "note": note_for(study_id),
-        "pairs": [_pair(pair) for pair in found.pairs],
-        "hopeless": [_pair(pair) for pair in found.hopeless],
-        "kept_out": [_kept_out(one) for one in impossible],
-        "trials": [_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
-    }
+    return Suggested(
+        study_id=study_id,
+        model_id=model.id,
+        verdict=diagnosis.verdict,
+        diagnosis=diagnosis.sentence,
+        sentence=_sentence(found, diagnosis),
+        minutes=sum(pick.minutes for pick in found.picks),
+        note=note_for(study_id),
+        pairs=[_pair(pair) for pair in found.pairs],
+        hopeless=[_pair(pair) for pair in found.hopeless],
+        kept_out=[_kept_out(one) for one in impossible],
+        trials=[_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
+    )
 
 
 def _recorded(store: Store, material: Material) -> list[Experiment]:
@@ -101,34 +101,28 @@ def _fitted_ones(material: Material, possible: Sequence[Choice]) -> list[Choice]
     ]
 
 
-def _pair(pair: Pair) -> dict[str, Any]:
-    return {
-        "true": pair.true,
-        "rival": pair.rival,
-        "before": pair.before,
-        "after": pair.after,
-        "promised": pair.promised,
-    }
+def _pair(pair: Pair) -> PairOfRivals:
+    return PairOfRivals(true=pair.true, rival=pair.rival, before=pair.before, after=pair.after, promised=pair.promised)
 
 
-def _kept_out(one: Experiment) -> dict[str, Any]:
-    return {"experiment_id": one.id, "kind": one.kind, "outcome": one.outcome, "reason": one.reason}
+def _kept_out(one: Experiment) -> KeptOut:
+    return KeptOut(experiment_id=one.id, kind=one.kind, outcome=one.outcome, reason=one.reason)
 
 
-def _pick(pick: Pick, choice: Choice, found: Suggestion, material: Material) -> dict[str, Any]:
+def _pick(pick: Pick, choice: Choice, found: Suggestion, material: Material) -> SuggestedTrial:
     unit = material.dataset.effort_definition.unit
-    return {
-        "name": choice.name,
-        "kind": choice.kind,
-        "parameters": choice.parameters,
-        "minutes": pick.minutes,
-        "before": pick.before,
-        "after": pick.after,
-        "sentence": (
+    return SuggestedTrial(
+        name=choice.name,
+        kind=choice.kind,
+        parameters=choice.parameters,
+        minutes=pick.minutes,
+        before=pick.before,
+        after=pick.after,
+        sentence=(
             f"{_names(*pick.pair)} predict efforts that differ by {pick.difference:.3g} {unit} there; the noise is "
             f"{found.noise:.3g} {unit}."
         ),
-    }
+    )
 
 
 def _names(true: str, rival: str | None) -> str:
@@ -138,7 +132,7 @@ def _names(true: str, rival: str | None) -> str:
 def _sentence(found: Suggestion, diagnosis: Diagnosis) -> str:
     if not found.pairs:
         return "No trial that this bench can run tells the rivals apart. " + _hopeless(found)
-    before, after = (min(getattr(pair, end) for pair in found.pairs) for end in ("before", "after"))
+    before, after = min(pair.before for pair in found.pairs), min(pair.after for pair in found.pairs)
     if not found.picks:
         return f"No further trial is needed, or helps: the smallest predicted d' is {before:.1f}. " + _hopeless(found)
     minutes = sum(pick.minutes for pick in found.picks)

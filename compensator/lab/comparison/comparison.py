@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from compensator.lab.recordings.regimes import BoolArray, Regime
 from compensator.lab.rows.dataset import Dataset, IntArray
 from compensator.lab.rows.drivers import available
 from compensator.lab.rows.picture import BinnedMean, binned_mean
+
+Direction = Literal["forward", "backward"]
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class ResidualAgainst:
     """Residual in bins of a driver, for one direction of motion ("forward", "backward")."""
 
     driver: str
-    direction: str
+    direction: Direction
     bins: BinnedMean
 
 
@@ -160,7 +163,8 @@ def _residual_against(fit: Fit) -> list[ResidualAgainst]:
     for name, values in available(dataset).items():
         if name == "direction":
             continue
-        for direction, side in (("forward", rows & (motion > 0)), ("backward", rows & (motion < 0))):
+        sides: dict[Direction, BoolArray] = {"forward": rows & (motion > 0), "backward": rows & (motion < 0)}
+        for direction, side in sides.items():
             if side.any():
                 bins = binned_mean(values[side], fit.residual[side], dataset.block_index[side])
                 found.append(ResidualAgainst(name, direction, bins))

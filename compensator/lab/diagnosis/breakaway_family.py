@@ -15,10 +15,11 @@ from compensator.lab.at_rest.breakaway_regression import (
 )
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.chance import chance_in_words
-from compensator.lab.diagnosis.breakaway_picture import picture_of_breakaway
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE, SIGNIFICANT, is_confirmed
 from compensator.lab.diagnosis.families import EXAMINED, Answer
+from compensator.lab.diagnosis.note import Note
+from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.errors import NotApplicableError
@@ -215,11 +216,12 @@ def _sentence(best: Candidate, p_value: float, starts: int, units: int) -> str:
     )
 
 
-def _too_few(units: int) -> list[str]:
+def _too_few(units: int) -> list[Note]:
     least = least_p_value(units)
     if least <= SIGNIFICANT:
         return []
-    return [
+    text = (
         f"Breakaway: only {units} independent starts: at best p = {least:.2g}, and {SIGNIFICANT:g} is needed; record "
         "breakaway ramps, at three rates and after three rests."
-    ]
+    )
+    return [Note("too-few-starts", text, {"starts": units, "least_p_value": least})]

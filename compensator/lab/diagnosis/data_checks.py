@@ -4,6 +4,7 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from compensator.lab.diagnosis.wording import some_of
+from compensator.lab.left_over.orders import LEAST_OF_EFFORT
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.model.validation import relative_error, rms
@@ -203,8 +204,10 @@ def _odd_trials(fit: Fit) -> list[str]:
     if len(errors) < FEWEST_TRIALS_TO_COMPARE:
         return []
     median = float(np.median(list(errors.values())))
+    # where nothing is noisy, the errors are those of filters and rounding, and differ by any factor
+    resolved = LEAST_OF_EFFORT * rms(dataset.effort[fit.training])
     for index, error in errors.items():
-        if error > ODD_TRIAL_FACTOR * median:
+        if error > max(ODD_TRIAL_FACTOR * median, resolved):
             name = dataset.trials[index].signals.recording.name
             found.append(
                 f"trial '{name}' is unlike the others: its error is {error:.3g} {dataset.effort_definition.unit}, the "
@@ -248,9 +251,11 @@ def _unused(fit: Fit) -> list[str]:
 
 def _same_samples(fit: Fit) -> list[str]:
     """Copies are not independent: a trial that judges its own copy proves nothing."""
-    names: dict[bytes, list[str]] = {}
+    names: dict[tuple[bytes, bytes], list[str]] = {}
     for trial in fit.dataset.trials:
-        names.setdefault(trial.signals.effort.tobytes(), []).append(f"'{trial.signals.recording.name}'")
+        # a commanded effort is the same in every repeat: the motion tells whether a trial is one
+        samples = trial.signals.effort.tobytes(), trial.signals.position.tobytes()
+        names.setdefault(samples, []).append(f"'{trial.signals.recording.name}'")
     return [
         f"trials {', '.join(same)} hold the same samples: held-out errors and intervals look better than they are; "
         "keep one of them"

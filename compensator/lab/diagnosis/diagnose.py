@@ -1,21 +1,23 @@
 """Which effect is missing: screen the catalogue, name the best, find its rivals, and measure the gain on held-out rows.
 
-Three questions, three statistics (docs/diagnosis.md): is anything missing (maximum over all candidates of a robust
-score, its null by sign flips of whole stretches), what is it called (likelihood less the price of parameters and
-shapes), does it help (held-out error, resampled by whole trials).
+Three questions, three statistics (docs/explanation/diagnosis.md): is anything missing (maximum over all candidates of
+a robust score, its null by sign flips of whole stretches), what is it called (likelihood less the price of parameters
+and shapes), does it help (held-out error, resampled by whole trials).
 """
 
 from math import nan
 
-from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at_rest
+from compensator.lab.at_rest.rest_comparison import compare_at_rest
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import Answer
 from compensator.lab.diagnosis.four_families import judged
+from compensator.lab.diagnosis.note import Note
+from compensator.lab.diagnosis.notes import at_rest, differs_by_run, part_of_it
 from compensator.lab.diagnosis.remaining import what_remains
-from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
-from compensator.lab.diagnosis.wording import problem_in_words, still_left_in_words
+from compensator.lab.diagnosis.run_to_run import differences_by_run
+from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.left_over.left_over import growing_beside
@@ -50,7 +52,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     left = _left_in_sliding(fit, families.gathered, first) if first is families.memory else []
     first = families.beside_the_other(first, fit)
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
-    notes = [*first.notes, *left, *(answer.sentence for answer in others if answer.verdict == "missing")]
+    notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
     nothing = first.verdict == "nothing"
     return Diagnosis(
@@ -90,21 +92,26 @@ def _data_problem(fit: Fit, problem: str) -> Diagnosis:
     return Diagnosis("data-problem", problem_in_words(problem), nan, [], [], data_problems=data_problems(fit))
 
 
-def _at_rest(fit: Fit) -> list[str]:
+def _also_missing(answer: Answer) -> Note:
+    """Of another family than the one that has the answer."""
+    return Note("also-missing", answer.sentence, {"effect": answer.candidates[0].effect.name})
+
+
+def _at_rest(fit: Fit) -> list[Note]:
     """What rests say against the model, which sliding cannot say."""
     found = compare_at_rest(fit)
     if found is None or not found.is_evidence:
         return []
-    return [at_rest_in_words(found, fit.dataset.effort_definition.unit)]
+    return [at_rest(found, fit.dataset.effort_definition.unit)]
 
 
-def _by_run(fit: Fit) -> list[str]:
+def _by_run(fit: Fit) -> list[Note]:
     """What differs from run to run with what is named in the model: a floor, or the work of what is still missing."""
     unit = fit.dataset.effort_definition.unit
-    return [by_run_in_words(one, unit) for one in differences_by_run(fit, held_out(fit))]
+    return [differs_by_run(one, unit) for one in differences_by_run(fit, held_out(fit))]
 
 
-def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[str]:
+def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[Note]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
     if memory.verdict != "missing" or memory.remains or memory.named is None:
         return []
@@ -113,7 +120,7 @@ def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[str
     if notes := what_remains(explained, gathered, name):
         return notes
     growing = growing_beside(explained, memory.named)
-    return [] if growing is None else [still_left_in_words(name, growing, fit.dataset.facts)]
+    return [] if growing is None else [part_of_it(name, growing, fit.dataset.facts)]
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

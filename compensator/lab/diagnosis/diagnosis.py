@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.picture import BinnedMean
@@ -91,7 +92,7 @@ class Diagnosis:
         candidates: ranked.
         driver: for "unknown-effect", what the residual varies with.
         data_problems: sentences.
-        notes: sentences.
+        notes: findings beside the answer.
         left_out: effect -> why it could not be judged.
         too_short: there are too few independent stretches for anything to be sure, so that ranks mean nothing.
         remains: something is left that nothing named explains: a curve that no effect follows, or more than noise.
@@ -105,7 +106,7 @@ class Diagnosis:
     candidates: list[Candidate]
     driver: str | None = None
     data_problems: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
     left_out: dict[str, str] = field(default_factory=dict)
     too_short: bool = False
     remains: bool = False

@@ -5,12 +5,11 @@ from functools import partial
 
 import numpy as np
 
-from compensator.lab.diagnosis.beside_chain import gain_beside_chain
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
-from compensator.lab.diagnosis.second_look import beside_open
-from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.diagnosis.second_look import beside_open, gain_beside_chain
+from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import EffectRows, MotionRows, Shape
 from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.model.fitted import Fit
@@ -18,7 +17,37 @@ from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import VERY_STRONG, Evidence, kept_evidence, new_directions
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
+
+TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
+ALIKE = 0.95  # correlation of what two effects explain
+
+
+def best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
+    """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
+    of_each: dict[str, list[Evidence]] = {}
+    for evidence in screening.evidence:
+        of_each.setdefault(evidence.block.name, []).append(evidence)
+    found = [_best_shape(gathered, shapes) for shapes in of_each.values()]
+    ranked = sorted(found, key=lambda item: -item.score)
+    order = list(catalogue())
+    tied = [item for item in ranked if _ties(item, ranked[0])]
+    plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
+    return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
+
+
+def _best_shape(gathered: Candidates, shapes: list[Evidence]) -> Evidence:
+    """The best one; near reversals, of those whose size can be: what swings too little, or too much, makes up by it."""
+    if gathered.show_in != "moving":
+        return shapes[0]
+    return next((item for item in shapes if item.score > 0.0 and is_possible(gathered, item)), shapes[0])
+
+
+def _ties(item: Evidence, best: Evidence) -> bool:
+    """Whether two effects explain the same, and about as well: then the rows cannot choose between them."""
+    alike = abs(float(item.direction @ best.direction)) >= ALIKE
+    return alike and item.score >= best.score - TIE
+
 
 SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
@@ -28,7 +57,7 @@ LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: les
 NOT_WORSE = 0.10  # one-sided
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
-NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/diagnosis.md)
+NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:

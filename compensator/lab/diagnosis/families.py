@@ -4,16 +4,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.best_shapes import best_shapes
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import (
     SIGNIFICANT,
     as_in_the_ladder,
+    best_shapes,
     examine,
     is_confirmed,
     is_sure,
     share_of,
 )
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.physical import is_past_scan, is_too_small, is_within_bounds
 from compensator.lab.diagnosis.remaining import beside_a_name, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
@@ -46,7 +47,7 @@ class Answer:
     p_value: float
     candidates: list[Candidate]
     driver: str | None
-    notes: list[str]
+    notes: list[Note]
     strength: float = 0.0
     remains: bool = False
     explained: Fit | None = None

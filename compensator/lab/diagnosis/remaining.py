@@ -2,20 +2,12 @@
 
 import numpy as np
 
+from compensator.lab.diagnosis import notes
 from compensator.lab.diagnosis.bending import still_bending
 from compensator.lab.diagnosis.examination import SIGNIFICANT
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.session_constancy import change_in_session
-from compensator.lab.diagnosis.wording import (
-    bursts_in_words,
-    changed_in_session_in_words,
-    changing_in_words,
-    instead_in_words,
-    still_bending_in_words,
-    still_left_in_words,
-    swinging_in_words,
-    unexplained_in_words,
-    wandering_in_words,
-)
+from compensator.lab.diagnosis.wording import bursts_in_words, unexplained_in_words, wandering_in_words
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.left_over.clear_rows import left_for_sure
 from compensator.lab.left_over.left_over import LeftOver, in_its_place, left_beside, left_over
@@ -46,12 +38,12 @@ def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: 
     return unexplained_in_words(left, _nearest_driver(generic), p_value, stretches, fit.dataset.facts, wanders)
 
 
-def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[str]:
+def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[Note]:
     """What is left of an effect that is named: beside its formula, or of another that it only imitates."""
     return what_remains(explained, gathered, called) or _imitated(explained, gathered, best)
 
 
-def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
+def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
     """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it."""
     grown = gather_curves(fit, gathered.show_in)
     left = left_over(grown)
@@ -60,33 +52,30 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[str]:
     rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
-        how = " against the motion" if rest.evidence[0].block.name.endswith("against motion") else ""
-        return [f"After {name}, structure over {driver.title}{how} remains; add it and diagnose again."]
+        against_motion = rest.evidence[0].block.name.endswith("against motion")
+        return [notes.structure_remains(name, driver.title, against_motion)]
     if left.change is not None:
-        return [f"After {name}, {changing_in_words(left.change)}; repeat a trial to see whether it comes again."]
+        return [notes.varies_by_stretch(name, left.change)]
     if left.swing is not None:
-        return [f"After {name}, what is left {swinging_in_words(left.swing)}."]
-    if wanders := _wanders(fit, left):
-        return [f"After {name}, {wanders}; repeat a trial to see whether it comes again."]
-    return [
-        f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "
-        "has structure over no variable that is measured; add it and diagnose again."
-    ]
+        return [notes.swings(name, left.swing)]
+    if left.wandering is not None:
+        return [notes.wanders(name, left.wandering, _wanders(fit, left))]
+    return [notes.unexplained_remains(name, left.remainder.share)]
 
 
-def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[str]:
+def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[Note]:
     """What an effect that is named only imitates, as far as it is more than what its formula leaves open."""
     name = best.block.name
     if still_bending(explained, gathered, best):
-        return [still_bending_in_words(name)]
+        return [notes.bends_along(name)]
     change = change_in_session(explained, gathered, best.block)
     if change is not None:
-        return [changed_in_session_in_words(name, change)]
+        return [notes.changed_in_session(name, change)]
     facts = explained.dataset.facts
     if (instead := in_its_place(gathered, best)) is not None:
-        return [instead_in_words(name, instead, facts)]
+        return [notes.other_form(name, instead, facts)]
     left = left_beside(explained, gathered, best)
-    return [] if left is None else [still_left_in_words(name, left, facts)]
+    return [] if left is None else [notes.part_of_it(name, left, facts)]
 
 
 def _bursts(gathered: Candidates) -> Bursts | None:

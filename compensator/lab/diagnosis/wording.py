@@ -5,11 +5,9 @@ from collections.abc import Sequence
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.session_constancy import InSession
 from compensator.lab.left_over.bursts import Bursts
 from compensator.lab.left_over.constancy import Change
 from compensator.lab.left_over.constants import DRY_FRICTION
-from compensator.lab.left_over.following import Following
 from compensator.lab.left_over.left_over import LeftOver
 from compensator.lab.left_over.orders import Line
 from compensator.lab.left_over.swinging import Swing
@@ -18,7 +16,7 @@ from compensator.lab.left_over.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.evidence import least_p_value
-from compensator.lab.screening.hysteresis import DRIVER as HYSTERESIS
+from compensator.lab.screening.generic import HYSTERESIS_DRIVER as HYSTERESIS
 
 MOST_NAMES = 3
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
@@ -176,44 +174,6 @@ def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: flo
         f"over some {bends.shape[0]:.2g} {facts.position_unit}{least}, and {why} for "
         f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
         f"fall from {bends.before:.2%} to {bends.after:.2%}). {LOOK_AT_HOSES}"
-    )
-
-
-def still_bending_in_words(name: str) -> str:
-    """What an effect that is named imitates in part."""
-    return (
-        f"{name} describes it in part: beside it, what is left varies with where the joint has turned back, as what "
-        f"bends along and slides does. {LOOK_AT_HOSES}"
-    )
-
-
-def still_left_in_words(name: str, left: Line | Following | Varying, facts: Facts) -> str:
-    """What an effect that is named explains some of, and another cause all of."""
-    if isinstance(left, Line):
-        how = recurring_in_words(left, facts)
-    else:
-        how = varying_in_words(left) if isinstance(left, Varying) else f"varies with {left.driver}"
-    return (
-        f"{name} describes it in part: beside it, what is left {how}; another cause, which the catalogue does not "
-        "have, may explain both."
-    )
-
-
-def instead_in_words(name: str, line: Line, facts: Facts) -> str:
-    """What an effect that is named explains some of, and that goes round with the position in another way."""
-    how = "turns with the motion, as friction does" if line.against_motion else "stays the same in either direction"
-    how = "grows with the speed, as what is misread does" if line.growing else how
-    return (
-        f"{name} describes it in part: what is left without it {recurring_in_words(line, facts)}. That {how}, as "
-        f"{name} does not; another cause, which the catalogue does not have, may explain more."
-    )
-
-
-def changed_in_session_in_words(name: str, change: InSession) -> str:
-    """What an effect that is named imitates, where it is another one from some trial on."""
-    return (
-        f"{name} describes it in part: before {change.trial} it is {change.before:.1f} times as large as in all trials "
-        f"together, and {change.since:.1f} times since. Something slips, shifts or loosens: repeat the first trial."
     )
 
 

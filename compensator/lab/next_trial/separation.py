@@ -10,8 +10,7 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import RowWeights
-from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry
-from compensator.lab.next_trial.scatter import rows_per_independent_row
+from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry, rows_per_independent_row
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset, IntArray

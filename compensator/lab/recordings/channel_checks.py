@@ -7,10 +7,11 @@ import numpy as np
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS
+from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS, typical_step_s
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 MOST_DUTY = 1.05  # rounding included
+SAME_PERIOD = 0.02  # relative: how near the period of a wrap is to a turn
 JUMP = 0.5  # of the span of position, from one sample to the next
 QUICK = 10.0  # times the step that 19 in 20 samples stay below
 ENDS = 0.1  # of its largest value: where the values of a channel lie that wraps
@@ -79,7 +80,7 @@ def _wrapped_position(recording: Recording, unit: str) -> str:
     time_s, position = recording.channels["time_s"], recording.channels.get(f"position_{unit}")
     if position is None or len(position) < 4:
         return ""
-    step, period_s = np.diff(position), float(np.median(np.diff(time_s)))
+    step, period_s = np.diff(position), typical_step_s(time_s)
     step[~(np.diff(time_s) <= LONGEST_GAP_PERIODS * period_s)] = np.nan
     if not np.isfinite(step).any():
         return ""
@@ -90,10 +91,21 @@ def _wrapped_position(recording: Recording, unit: str) -> str:
     jumps = np.flatnonzero((size[1:-1] >= large) & against)
     if not len(jumps):
         return ""
+    # what the joint moves during a wrap is added to the jump: the neighbouring steps tell it
+    wraps = np.abs(jump[jumps] - 0.5 * (before[jumps] + after[jumps]))
+    period = float(np.median(wraps))
+    turn = unit == "rad" and abs(period - 2.0 * np.pi) < SAME_PERIOD * 2.0 * np.pi
+    how = (
+        "once a turn; unwrap it (numpy.unwrap)" if turn else f"every {period:.4g} {unit}; unwrap it ({_unwrap(period)})"
+    )
     return (
         f"position_{unit} jumps by {jump[jumps[0]]:.4g} {unit} against the motion at {time_s[jumps[0] + 2]:.4g} s, and "
-        f"{len(jumps)} times in all: it wraps, once a turn; unwrap it (numpy.unwrap) and import again"
+        f"{len(jumps)} times in all: it wraps, {how} and import again"
     )
+
+
+def _unwrap(period: float) -> str:
+    return f"numpy.unwrap(position, period={period:.4g})"
 
 
 def _scale(recording: Recording, unit: str) -> str:

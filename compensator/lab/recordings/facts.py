@@ -41,6 +41,6 @@ class Facts:
     effort: EffortQuantity | None = None
 
     @property
-    def position_unit(self) -> str:
+    def position_unit(self) -> Literal["rad", "m"]:
         """Unit of position: rad or m."""
         return "rad" if self.joint == "rotary" else "m"

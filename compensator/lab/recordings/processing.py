@@ -53,7 +53,7 @@ class Signals:
 
 
 def sample_rate_hz(recording: Recording) -> float:
-    """Median rate of a recording.
+    """Rate of a recording, by its typical step.
 
     Raises:
         UnusableDataError: it has fewer than two samples.
@@ -63,7 +63,22 @@ def sample_rate_hz(recording: Recording) -> float:
         raise UnusableDataError(
             f"recording '{recording.name}' has {len(time)} sample(s); record longer, or leave it out"
         )
-    return 1.0 / float(np.median(np.diff(time)))
+    return 1.0 / typical_step_s(time)
+
+
+def typical_step_s(time_s: FloatArray) -> float:
+    """The step between samples that half of the recorded time is not longer than.
+
+    A drive that is polled may answer twice at once and then not for a while, so that steps of 1 and 14 ms alternate:
+    their median is the one or the other by a hair, and every step of 14 ms would be a gap. Most of the time passes in
+    the long ones.
+
+    Args:
+        time_s: rising, at least two samples.
+    """
+    steps = np.sort(np.diff(time_s))
+    passed = np.cumsum(steps)
+    return float(steps[np.searchsorted(passed, 0.5 * passed[-1])])
 
 
 def shortest_samples(rate_hz: float, cutoff_hz: float) -> int:
@@ -152,7 +167,7 @@ def _usable(
     if "duty" in recording.channels:
         good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
     steps = np.diff(raw_time)
-    before_gap = np.append(steps > LONGEST_GAP_PERIODS * float(np.median(steps)), False)
+    before_gap = np.append(steps > LONGEST_GAP_PERIODS * typical_step_s(raw_time), False)
     after_gap = np.roll(before_gap, 1)
     in_gap = before_gap[np.searchsorted(raw_time, time, side="right") - 1]
     edge_s = EDGE_PERIODS / cutoff_hz

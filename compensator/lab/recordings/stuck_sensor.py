@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS
+from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS, typical_step_s
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 SHORTEST_S = 0.1  # less is a sample or two that were lost and filled up with the last one
@@ -51,7 +51,8 @@ def _stuck(recording: Recording, unit: str) -> Iterator[tuple[float, float, str]
         return
     speed = channels.get(f"velocity_{unit}_s")
     step, period_s = np.diff(position), np.diff(time_s)
-    gap = ~(period_s <= LONGEST_GAP_PERIODS * float(np.median(period_s))) if len(period_s) else np.zeros(0, dtype=bool)
+    longest_s = LONGEST_GAP_PERIODS * typical_step_s(time_s) if len(period_s) else 0.0
+    gap = ~(period_s <= longest_s)
     moving = np.abs(step[(step != 0.0) & np.isfinite(step) & ~gap])
     if not len(moving):
         return

@@ -15,11 +15,9 @@ from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening import hysteresis
 from compensator.lab.screening.discrepancy import model_columns
 from compensator.lab.screening.evidence import Base, Block
-from compensator.lab.screening.generic import DriverBlock, driver_blocks
-from compensator.lab.screening.hysteresis import hysteresis_columns
+from compensator.lab.screening.generic import HYSTERESIS_DRIVER, DriverBlock, driver_blocks, hysteresis_columns
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns
 
@@ -60,7 +58,7 @@ class Curves:
     @cached_property
     def hysteresis(self) -> Block:
         """The same as a block to be screened."""
-        return Block(hysteresis.DRIVER, self._weighted(self.hysteresis_columns), 0, 1)
+        return Block(HYSTERESIS_DRIVER, self._weighted(self.hysteresis_columns), 0, 1)
 
 
 @dataclass(frozen=True)

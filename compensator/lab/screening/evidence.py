@@ -1,7 +1,7 @@
 """Evidence for each candidate effect, from one fit of the base model.
 
 Three numbers per candidate, never mixed up: a likelihood score for naming, a p-value that stays honest under
-autocorrelation for detection, and (elsewhere) the held-out gain. See docs/diagnosis.md.
+autocorrelation for detection, and (elsewhere) the held-out gain. See docs/explanation/diagnosis.md.
 """
 
 from collections.abc import Callable, Sequence

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.reversals import slider
 from compensator.lab.rows.dataset import Dataset, Trial
 from compensator.lab.rows.drivers import DRIVERS, available
 
@@ -57,3 +58,15 @@ def _all_hats(trial: Trial, knots: Mapping[str, FloatArray]) -> FloatArray:
 def _hats(values: FloatArray, knots: FloatArray) -> FloatArray:
     """Linear hat functions of shape (len(knots), n); they sum to one, and are held beyond the outer knots."""
     return np.array([np.interp(values, knots, unit) for unit in np.eye(len(knots))])
+
+
+HYSTERESIS_DRIVER = "since_reversal"
+SHARES = (0.06, 0.2, 0.6)  # of the travel: from beyond what surfaces give to what hardly slides
+
+
+def hysteresis_columns(dataset: Dataset) -> FloatArray:
+    """Sliders of every distance over all rows, filtered like the effort, shape (N, len(SHARES))."""
+    motions = [trial.motion for trial in dataset.trials]
+    return dataset.stack(
+        np.array([slider(motion.strokes, share * motion.position_span) for share in SHARES]) for motion in motions
+    )

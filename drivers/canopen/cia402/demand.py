@@ -11,8 +11,8 @@ from drivers.canopen.cia402.set_point import SetPointHandshake
 from drivers.canopen.cia402.state_machine import ENABLE_OPERATION
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode
-from drivers.demand import check_demand
 from drivers.errors import DriveConfigurationError
+from drivers.refusal import check_demand
 
 _APPROACH_1_S: Final = 10.0  # speed for a position error, where this host closes the position [1/s]
 _SLOWEST_RAD_S: Final = 2.0  # highest joint speed of that, where the settings name none

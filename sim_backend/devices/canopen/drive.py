@@ -1,7 +1,6 @@
 """The CiA 402 drive: node, state machine and modes around an axis."""
 
 from threading import RLock
-from typing import Any
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
@@ -111,7 +110,7 @@ class ServoDrive:
         """Take a frame from the bus at a time [s]; answers go out through `node.send`."""
         self.node.receive(frame, time_s)
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> dict[str, object]:
         """Say what the drive is about."""
         return {
             "kind": "canopen",

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from enum import IntEnum
 from math import isnan
 from threading import RLock
-from typing import Any
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand
@@ -81,7 +80,7 @@ class OwnDrive:
         """Let time pass."""
         self.axis.advance_to(time_s)
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> dict[str, object]:
         """Say what the drive is about."""
         return {
             "kind": "modbus",

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from math import isnan
 from threading import RLock
-from typing import Any
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import OFF, VOLTAGE, Axis, Demand
@@ -47,7 +46,7 @@ class Roboteq:
         """Let time pass."""
         self.axis.advance_to(time_s)
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> dict[str, object]:
         """Say what the drive is about."""
         return {
             "kind": "modbus, as a Roboteq",

@@ -4,7 +4,6 @@ from collections import deque
 from math import exp, isnan
 from struct import pack
 from threading import RLock
-from typing import Any
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import OFF, TICK_S, VOLTAGE, Axis, Demand
@@ -68,7 +67,7 @@ class RoboClaw:
         self._counters[0].follow(self.axis.counts())
         return b"".join(self._answer(request) for request in self._packets.feed(data, time_s))
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> dict[str, object]:
         """Say what the drive is about."""
         return {
             "kind": "roboclaw",

@@ -12,11 +12,12 @@ from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.registry import drive_kinds
 from bench.control.clock import Clock, VirtualClock, WallClock
 from bench.control.drive_factory import make_equipment
+from bench.control.ending import Outcome
 from bench.control.limits import Guard
-from bench.control.loop import ControlLoop, Outcome
+from bench.control.loop import joint_loop
 from bench.control.servo import current_servo
 from drivers.contract import Drive
-from tests.bench.fake_drive import ListSink
+from tests.control.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
 
 PERIOD_S = 0.01
@@ -123,5 +124,5 @@ def run(bench: Bench, drive: Drive, procedure: Any, stop: Any) -> tuple[Outcome,
     sink = ListSink()
     configuration = bench.configuration
     guard, servo = Guard(configuration.limits), current_servo(configuration.rig)
-    loop = ControlLoop(drive, bench.clock(), guard, PERIOD_S, servo)
+    loop = joint_loop(drive, bench.clock(), guard, PERIOD_S, servo)
     return loop.run(procedure, sink, stop), sink

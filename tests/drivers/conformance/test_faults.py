@@ -17,8 +17,7 @@ import tomli_w
 
 from bench.control.cycle import OFF, Action
 from bench.control.drive_factory import make_equipment
-from bench.control.loop import Outcome
-from bench.control.stop_request import StopRequest
+from bench.control.ending import Outcome, StopRequest
 from bench.runs.runner import Runner
 from bench.store import Store
 from drivers.contract import Command, Mode, Status

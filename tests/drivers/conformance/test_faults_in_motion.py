@@ -10,7 +10,7 @@ import pytest
 
 from bench.control.cycle import OFF, Action
 from bench.control.drive_factory import make_equipment
-from bench.control.stop_request import StopRequest
+from bench.control.ending import StopRequest
 from bench.experiments.kinds.commissioning import CommissioningParameters, commission
 from drivers.contract import Command, Mode
 from drivers.errors import DriveConfigurationError, DriveError

@@ -64,7 +64,7 @@ def test_what_static_friction_depends_on_is_named(static, name):
     assert best.picture.driver == best.effect.breakaway.driver
     assert len(best.picture.curve.x) >= 3
     whole = diagnose(fit)
-    assert any("starts from rest" in words for words in [whole.sentence, *whole.notes])
+    assert any("starts from rest" in words for words in [whole.sentence, *map(str, whole.notes)])
 
 
 def test_effects_are_ranked_over_one_model_though_only_one_has_a_late_onset():

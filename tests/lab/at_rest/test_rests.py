@@ -64,7 +64,7 @@ def test_a_bias_at_rest_that_sliding_does_not_have_is_found_on_its_side(bias):
     words = at_rest_in_words(found, "N m")
     assert f"{'above' if bias > 0.0 else 'below'} only" in words
     assert "that is no friction" in words
-    assert words in diagnose(fit).notes
+    assert words in map(str, diagnose(fit).notes)
 
 
 def test_an_encoder_off_its_centre_makes_nothing_of_rest():

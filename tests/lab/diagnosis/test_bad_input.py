@@ -190,6 +190,13 @@ def test_copies_of_a_trial_are_told():
     assert any(f"'{made[2].name}', 'copy' hold the same samples" in problem for problem in found.data_problems)
 
 
+def test_repeats_of_one_commanded_effort_are_no_copies():
+    made = recordings(seed=3)
+    moved = made[2].channels["position_rad"] + 0.002 * np.sin(made[2].channels["time_s"])
+    repeat = replace(made[2], name="repeat", channels={**made[2].channels, "position_rad": moved})
+    assert not any("same samples" in problem for problem in diagnosed([*made, repeat]).data_problems)
+
+
 def test_rows_that_go_one_way_only():
     time_s = np.arange(0, 20, 0.005)
     torque = 0.1 + 0.005 * np.random.default_rng(1).standard_normal(len(time_s))

@@ -8,7 +8,7 @@ import pytest
 from compensator.lab.diagnosis import bending as own
 from compensator.lab.diagnosis.bending import Bending, bending, still_bending
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.provisional import provisional
+from compensator.lab.diagnosis.unfollowed import provisional
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_effects, fit_model, with_columns
 from compensator.lab.model.fitted import Fit

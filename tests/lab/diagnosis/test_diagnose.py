@@ -13,6 +13,7 @@ from compensator.lab.diagnosis import unfollowed as unfollowed_module
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.catalogue import catalogue, default_effects
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_model
@@ -106,7 +107,7 @@ def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
     assert found.candidates[0].gain.low > 0.0
 
 
-@pytest.mark.parametrize("left", [[], ["After frictional_lag, something is left."]])
+@pytest.mark.parametrize("left", [[], [Note("swings", "After frictional_lag, something is left.")]])
 def test_what_an_effect_with_memory_leaves_in_steady_sliding_is_told(monkeypatch, left):
     made = recordings(Joint(extra=late), seed=4)
     asked = []
@@ -189,7 +190,7 @@ def test_a_delay_beside_a_missing_effect_is_a_note():
     made = recordings(Joint(extra=PLANTED["viscous_asymmetry"]), Bench(delay_s=0.004), seed=3)
     found = diagnosis_of(made)
     assert found.candidates[0].effect.name == "viscous_asymmetry"
-    assert any("Measurement delay is missing" in note for note in found.notes)
+    assert any("Measurement delay is missing" in note.text for note in found.notes)
 
 
 @pytest.mark.parametrize(("delay_s", "first"), [(0.008, "viscous_asymmetry"), (0.015, "measurement_delay")])
@@ -198,8 +199,8 @@ def test_what_another_name_explains_is_not_said_to_be_left(delay_s, first):
     found = diagnosis_of(made)
     assert found.candidates[0].effect.name == first
     assert not found.remains
-    assert not [note for note in found.notes if note.startswith("After")]
-    assert len([note for note in found.notes if " is missing: adding it" in note]) == 1
+    assert not [note for note in found.notes if note.text.startswith("After")]
+    assert len([note for note in found.notes if " is missing: adding it" in note.text]) == 1
 
 
 @pytest.mark.timeout(400)  # forty diagnoses

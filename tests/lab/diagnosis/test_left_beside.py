@@ -42,7 +42,7 @@ def test_a_cause_that_is_imitated_leaves_much_of_what_its_formula_explains():
     found = diagnosed(in_steps)
     assert found.classes[0][0] == "position_periodic_friction"
     assert found.remains
-    (told,) = [note for note in found.notes if "in part" in note]
+    (told,) = [note.text for note in found.notes if "in part" in note.text]
     assert told.startswith(IN_PART)
 
 
@@ -65,7 +65,7 @@ def test_a_force_that_goes_round_is_as_large_at_any_speed(monkeypatch):
     monkeypatch.setattr(remaining, "what_remains", lambda *_: [])  # so much of it is told as such, too
     found = diagnose(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * (1.0 + 0.5 * x.v**2)))
     assert found.classes[0][0] == "cogging"
-    (told,) = [note for note in found.notes if "in part" in note]
+    (told,) = [note.text for note in found.notes if "in part" in note.text]
     assert f"about {ORDER:.0f} times a turn of the joint, and grows with the speed" in told
     assert found.remains
 
@@ -126,8 +126,8 @@ def test_what_goes_round_in_another_way_than_its_name_says_so(monkeypatch):
     gathered = with_noise(gather(fit))
     explained = fit_effects(fit.dataset, [*fit.names, "cogging"], fit.training)
     (told,) = remaining.beside_a_name(explained, gathered, screened(gathered, "cogging"), "cogging")
-    assert "against the motion" in told
-    assert "turns with the motion, as friction does, as cogging does not" in told
+    assert "against the motion" in told.text
+    assert "turns with the motion, as friction does, as cogging does not" in told.text
 
 
 @pytest.mark.parametrize("named", ["cogging", "position_periodic_friction"])
@@ -183,4 +183,4 @@ def test_what_an_effect_near_reversals_leaves_that_grows_with_the_speed_is_told_
             candidates=[SimpleNamespace(effect=SimpleNamespace(name="frictional_lag"))],
         )
         notes = diagnosing._left_in_sliding(fit, gather(fit), memory)
-        assert any("grows with the speed" in note for note in notes) == told, notes
+        assert any("grows with the speed" in note.text for note in notes) == told, notes

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.provisional import provisional
+from compensator.lab.diagnosis.unfollowed import provisional
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
 from compensator.lab.effects.free_curve import known, name_of
 from compensator.lab.errors import UnknownEffectError

@@ -61,7 +61,7 @@ def test_one_run_with_another_zero():
     words = by_run_in_words(found, "N m")
     assert re.search(rf"^A constant force, or the zero of the effort, differs .* in '{name}' \(-0.0", words)
     assert words.endswith("a floor for any model with one zero for all runs, unless what is missing makes it.")
-    assert words in diagnose(fit).notes
+    assert words in map(str, diagnose(fit).notes)
 
 
 def test_first_what_makes_more_of_the_error():
@@ -100,4 +100,4 @@ def test_what_a_missing_effect_makes_from_run_to_run_is_not_told_beside_its_name
     assert differences_by_run(fit, held_out(fit))
     answer = diagnose(fit)
     assert answer.candidates[0].effect.name == "viscous_asymmetry"
-    assert not any("from run to run" in note for note in answer.notes)
+    assert not any("from run to run" in note.text for note in answer.notes)

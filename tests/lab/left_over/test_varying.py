@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.wording import still_left_in_words, unexplained_in_words
+from compensator.lab.diagnosis.notes import part_of_it
+from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.left_over import following, varying
 from compensator.lab.left_over import left_over as left_over_module
@@ -67,9 +68,9 @@ def test_a_name_that_imitates_it_leaves_it():
         named = next(one for one in evidence if one.block.name == IMITATION)
         left = left_beside(fit_effects(fit.dataset, [*fit.names, IMITATION], fit.training), gathered, named)
     assert isinstance(left, Varying)
-    assert "has the form of viscous friction that varies with temperature" in still_left_in_words(
-        IMITATION, left, FACTS
-    )
+    told = part_of_it(IMITATION, left, FACTS)
+    assert "has the form of viscous friction that varies with temperature" in told.text
+    assert told.values == {"effect": IMITATION, "of": "Viscous friction", "condition": "temperature"}
 
 
 def test_the_effect_itself_leaves_no_such_thing():

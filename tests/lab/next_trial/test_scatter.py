@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.next_trial.scatter import rows_per_independent_row
+from compensator.lab.next_trial.rivalry import rows_per_independent_row
 
 ROWS = 40  # of a stretch
 

@@ -116,3 +116,21 @@ def test_no_position_says_what_was_found():
 def test_distance_to_the_nearest_mark():
     assert distance_to_nearest(np.array([0.0, 1.0, 2.6, 9.0]), np.array([1.0, 3.0])) == pytest.approx([1, 0, 0.4, 6])
     assert np.isinf(distance_to_nearest(np.zeros(2), np.empty(0))).all()
+
+
+def test_a_drive_that_is_polled_and_answers_by_twos_leaves_no_gaps():
+    """Steps of 1 and 14 ms alternate: half of the steps are long, and nearly all of the time passes in them."""
+    steps = np.tile([0.001, 0.014], 700)
+    for extra in ([], [0.001]):  # the median of the steps would be the one or the other
+        time_s = np.concatenate([[0.0], np.cumsum([*steps, *extra])])
+        found = signals_of(recording(time_s), 4.0)
+        inside = (found.time_s > 1.0) & (found.time_s < time_s[-1] - 1.0)
+        assert found.usable[inside].all()
+        assert found.rate_hz == pytest.approx(1 / 0.014)
+
+
+def test_a_gap_between_regular_samples_is_still_one():
+    time_s = np.arange(0, 10, 1 / 200)
+    time_s[1000:] += 0.2
+    found = signals_of(recording(time_s))
+    assert not found.usable[(found.time_s > 5.0) & (found.time_s < 5.19)].any()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compensator.lab.screening.hysteresis import SHARES, hysteresis_columns
+from compensator.lab.screening.generic import SHARES, hysteresis_columns
 from tests.lab.left_over.judged import fitted
 
 

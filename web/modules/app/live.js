@@ -4,19 +4,17 @@ import { events } from "./api.js";
 import { Ring } from "../bench/ring.js";
 
 const WINDOW_ROWS = 20_000; // as many as the service keeps: a page that is opened late sees what went before
-const RETRY_MS = 1000;
-const STALE_MS = 2000;
+const RETRY_MS = 1000; // doubled with each try that fails,
+const LONGEST_RETRY_MS = 8000; // up to this
 
 export class Live extends EventTarget {
   status = null;
   rows = new Ring([], 0);
+  heard_ms = -Infinity; // when the service was last heard
+  retry_ms = 0; // when it is asked again
   #after = -1;
-  #heard = -Infinity;
+  #wait_ms = RETRY_MS;
   #connection = null;
-
-  get stale() {
-    return performance.now() - this.#heard > STALE_MS;
-  }
 
   async run() {
     setInterval(() => this.#tell("tick"), 500);
@@ -31,12 +29,23 @@ export class Live extends EventTarget {
       } catch {
         this.#tell("tick");
       }
-      if (!document.hidden) await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+      if (!document.hidden) await this.#pause();
     }
   }
 
+  // a service that is gone is asked ever more seldom, and at once when the network comes back
+  async #pause() {
+    this.retry_ms = performance.now() + this.#wait_ms;
+    await new Promise((resolve) => {
+      const timer = setTimeout(resolve, this.#wait_ms);
+      addEventListener("online", () => { clearTimeout(timer); resolve(); }, { once: true });
+    });
+    this.#wait_ms = Math.min(2 * this.#wait_ms, LONGEST_RETRY_MS);
+  }
+
   #receive({ event, data }) {
-    this.#heard = performance.now();
+    this.heard_ms = performance.now();
+    this.#wait_ms = RETRY_MS;
     if (event === "status") this.status = data;
     if (event === "rows") this.#append(data);
     this.#tell(event);

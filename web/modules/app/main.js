@@ -1,38 +1,62 @@
-// The page: which view is shown, and what is there in every view (status, STOP, what the bench asks for, token).
+// The page: which view is shown, and what is there in every view (status, STOP, what the bench asks for, token, units).
 
 import { benchView } from "../bench/bench.js";
-import { replace } from "../ui/dom.js";
+import { homeView } from "../home/home.js";
 import { learnView } from "../learn/learn.js";
+import { queueView } from "../queue/view.js";
+import { studiesView } from "../studies/studies.js";
+import { trialsView } from "../trials/trials.js";
+import { h, panel, replace } from "../ui/dom.js";
+import { unitSwitch } from "../ui/units.js";
+import { here } from "./address.js";
 import { Live } from "./live.js";
 import { promptBar } from "./prompt.js";
+import { BenchState } from "./state.js";
 import { statusBar } from "./status.js";
 import { stopButton } from "./stop.js";
-import { studiesView } from "../studies/studies.js";
 import { tokenForm } from "./token.js";
-import { trialsView } from "../trials/trials.js";
-import { queueView } from "../queue/view.js";
 
-const VIEWS = { bench: benchView, queue: queueView, trials: trialsView, study: studiesView, learn: learnView };
+// by the name in the address; a view with a tab stands in the row at the top
+const VIEWS = {
+  "": { open: homeView },
+  home: { open: homeView },
+  bench: { open: benchView, tab: "Bench" },
+  queue: { open: queueView, tab: "Queue" },
+  trials: { open: trialsView, tab: "Trials" },
+  study: { open: studiesView, tab: "Study" },
+  learn: { open: learnView, tab: "Learn" },
+};
 const live = new Live();
+const state = new BenchState(live);
 let leave = () => {};
 
 function show() {
-  const [name, ...rest] = location.hash.slice(1).split("/");
-  const view = VIEWS[name] ?? benchView;
+  const { view, rest, query } = here();
   for (const link of document.querySelectorAll(".tabs a")) {
-    const current = (VIEWS[link.hash.slice(1)] ?? null) === view;
-    if (current) link.setAttribute("aria-current", "page");
+    if (link.hash === `#${view}`) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }
+  document.body.dataset.view = view || "home";
   leave();
   const place = replace(document.getElementById("view"));
-  leave = view(place, { live, rest }) ?? (() => {});
+  place.className = "";
+  leave = (Object.hasOwn(VIEWS, view) ? VIEWS[view].open : unknownView)(place, { live, state, rest, query }) ?? (() => {});
 }
 
-stopButton(document.getElementById("stop"), document.getElementById("stop-answer"));
-statusBar(document.getElementById("status"), live);
+function tabs(row) {
+  row.prepend(...Object.entries(VIEWS).filter(([, { tab }]) => tab).map(([name, { tab }]) => h("a", { href: `#${name}` }, tab)));
+}
+
+function unknownView(place) {
+  replace(place, panel("There is no such page", h("p", {}, `The address ${location.hash} leads nowhere.`), h("p", {}, h("a", { href: "#home" }, "To the first page"))));
+}
+
+stopButton(document.getElementById("stop"), document.getElementById("stop-answer"), state);
+statusBar(document.getElementById("status"), state);
 promptBar(document.getElementById("prompt"), live);
 tokenForm(document.getElementById("token"));
+unitSwitch(document.getElementById("units"), show);
+tabs(document.getElementById("tabs"));
 addEventListener("hashchange", show);
 show();
 live.run();

@@ -3,20 +3,22 @@
 import { h, replace } from "../ui/dom.js";
 import { number } from "../ui/format.js";
 
-export function statusBar(place, live) {
-  const show = () => replace(place, live.stale ? stale(live.status) : known(live.status));
+export function statusBar(place, state) {
   let shown = "";
-  const changed = () => {
-    const key = JSON.stringify([live.stale, live.status?.state, live.status?.run, live.status?.simulated]);
-    if (key !== shown) show();
+  const show = () => {
+    const now = state.now;
+    // the seconds are counted in the title alone: a screen reader need not hear each of them
+    const key = JSON.stringify([now.fresh, now.status?.state, now.status?.run, now.status?.simulated]);
+    if (key !== shown) replace(place, now.fresh ? known(now.status) : stale(now));
+    if (!now.fresh) place.title = `No news for ${Math.round(now.silent_s)} s; trying again in ${Math.ceil(now.retry_s)} s`;
+    else place.removeAttribute("title");
     shown = key;
   };
-  live.addEventListener("status", changed);
-  live.addEventListener("tick", changed);
+  state.addEventListener("change", show);
   show();
 }
 
-function stale(status) {
+function stale({ status }) {
   const text = status ? "STALE: no news from the service, what you see is old" : "connecting …";
   return h("span", { class: "badge stale" }, text);
 }

@@ -1,5 +1,5 @@
 // STOP: the button, and Esc. Asks until the service answers, frees the way where other requests block it, and says whether
-// the drive confirmed that its power is off.
+// the drive confirmed that its power is off. What is said here is taken back by state.js when it is no longer true.
 
 import { freeTheWay, get, post } from "./api.js";
 
@@ -7,26 +7,21 @@ const TIMEOUT_MS = 1500;
 const TRIES = 6;
 const CONFIRMED_WITHIN_MS = 4000;
 const ASK_EVERY_MS = 150;
-const SHOWN_MS = 10_000;
+const EMERGENCY = "Use the emergency stop of the bench.";
 
 const pause = (time_ms) => new Promise((resolve) => setTimeout(resolve, time_ms));
 
-export function stopButton(button, answer) {
+export function stopButton(button, answer, state) {
   let asked = 0;
-  const say = (text, level) => {
-    answer.textContent = text;
-    answer.className = level;
-  };
   const stop = async () => {
     asked += 1;
     const mine = asked; // a second press begins anew; what the first one finds is of no interest any more
-    const tell = (text, level = "") => { if (mine === asked) say(text, level); };
-    tell("Stopping …");
+    const run = state.live.status?.run;
+    const experiment_id = run ? run.experiment_id ?? undefined : null; // undefined: it runs, and has no number yet
+    const tell = (phase, text) => { if (mine === asked) state.stop = { phase, text, experiment_id }; };
+    tell("asking", "Stopping …");
     const accepted = await ask(tell, () => mine === asked);
-    if (!accepted) return;
-    const [text, level] = await confirmation(accepted, tell);
-    tell(text, level);
-    if (level === "confirmed") setTimeout(() => tell(""), SHOWN_MS);
+    if (accepted) tell(...(await confirmation(accepted, tell)));
   };
   button.addEventListener("click", stop);
   document.addEventListener("keydown", (event) => {
@@ -34,6 +29,15 @@ export function stopButton(button, answer) {
     event.preventDefault();
     stop();
   });
+  // who pressed STOP before the page had a token wants it still
+  document.addEventListener("token-set", () => { if (state.now.message?.phase === "no-token") stop(); });
+  state.addEventListener("change", () => show(answer, state.now.message));
+}
+
+function show(answer, message) {
+  const text = message?.text ?? "";
+  if (answer.textContent !== text) answer.textContent = text;
+  answer.className = message?.phase ?? "";
 }
 
 async function ask(tell, wanted) {
@@ -41,9 +45,13 @@ async function ask(tell, wanted) {
     try {
       return await post("/stop", { reason: "STOP on the page" }, TIMEOUT_MS);
     } catch (error) {
+      if (error.status === 401) {
+        tell("no-token", `Not stopped: this page has no token yet. Paste the token and it stops at once. If it cannot wait: ${EMERGENCY.toLowerCase().replace(".", "")}, or press Ctrl-C where 'friction-bench serve' runs.`);
+        return null;
+      }
       const why = error.name === "TimeoutError" ? `no answer within ${TIMEOUT_MS / 1000} s` : error.message;
-      const again = tries < TRIES && error.status !== 401;
-      tell(`Stop NOT confirmed: ${why}. Use the emergency stop of the bench.${again ? ` Asking again (${tries} of ${TRIES}) …` : ""}`, "unconfirmed");
+      const again = tries < TRIES;
+      tell("unconfirmed", `Stop NOT confirmed: ${why}. ${EMERGENCY}${again ? ` Asking again (${tries} of ${TRIES}) …` : " Then press STOP again."}`);
       if (!again) return null;
       freeTheWay();
       await pause(ASK_EVERY_MS * tries);
@@ -54,20 +62,18 @@ async function ask(tell, wanted) {
 
 // what the drive made of it: the record of a run is closed only when the power is off, or could not be taken away
 async function confirmation(accepted, tell) {
-  if (!accepted.was_running) return [accepted.detail, "confirmed"];
-  tell(`${accepted.detail} Waiting for the drive …`);
+  if (!accepted.was_running) return ["confirmed", accepted.detail];
+  tell("asking", `${accepted.detail} Waiting for the drive …`);
   const deadline = performance.now() + CONFIRMED_WITHIN_MS;
   while (performance.now() < deadline) {
     const run = await get("/bench", {}, { timeout_ms: TIMEOUT_MS }).then((bench) => bench.run, () => null);
     if (run && run.outcome !== "running") return verdict(run);
     await pause(ASK_EVERY_MS);
   }
-  return [`Stop accepted, but NOT confirmed by the drive within ${CONFIRMED_WITHIN_MS / 1000} s. Use the emergency stop of the bench.`, "unconfirmed"];
+  return ["unconfirmed", `Stop accepted, but NOT confirmed by the drive within ${CONFIRMED_WITHIN_MS / 1000} s. ${EMERGENCY}`];
 }
 
 export function verdict(run) {
-  if (/power-off failed|quick stop failed/.test(run.reason)) {
-    return [`Stop accepted, but NOT confirmed by the drive: ${run.reason}. Use the emergency stop of the bench.`, "unconfirmed"];
-  }
-  return [`Stop accepted and confirmed: the drive is powered off (experiment ${run.experiment_id} ${run.outcome}).`, "confirmed"];
+  if (run.power_off === "failed") return ["unconfirmed", `Stop accepted, but NOT confirmed by the drive: ${run.reason}. ${EMERGENCY}`];
+  return ["confirmed", `Stop accepted and confirmed: the drive is powered off (experiment ${run.experiment_id} ${run.outcome}).`];
 }

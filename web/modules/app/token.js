@@ -8,6 +8,7 @@ export function tokenForm(place) {
   const show = () => (token.get() ? replace(place) : replace(place, form(show)));
   document.addEventListener("token-needed", () => {
     token.forget();
+    place.className = "needed";
     show();
     place.querySelector("input")?.focus();
   });

@@ -6,17 +6,13 @@ import { facts, h, panel, replace } from "../ui/dom.js";
 import { nameOf, number } from "../ui/format.js";
 import { leasePanel } from "./lease.js";
 import { livePlot } from "./liveplot.js";
+import { withShownUnit } from "../ui/units.js";
 import { queuePanel } from "../queue/queue.js";
 import { startForm } from "./start.js";
 
-const UNITS = { degC: "°C" };
-
-export function benchView(place, { live }) {
-  const start = h("div");
-  const lease = h("div");
-  const queue = h("div");
-  const drive = h("div");
-  const plot = h("div");
+export function benchView(place, bench) {
+  const { live, state } = bench;
+  const [start, lease, queue, drive, plot] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
     panel("Queue", queue), panel("Drive and limits", drive)));
   const waiting = queuePanel(queue);
@@ -30,7 +26,7 @@ export function benchView(place, { live }) {
   };
   live.addEventListener("status", changed);
   together(place, [form, refresh()]);
-  const leave = livePlot(plot, live);
+  const leave = livePlot(plot, bench);
   const leaveLease = leasePanel(lease, live);
   return () => {
     leaveLease();
@@ -46,5 +42,5 @@ function description(bench) {
     ? [["drive", [drive.vendor, drive.product].filter(Boolean).join(" ") || drive.device], ["firmware", drive.firmware || "not told"],
       ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s`]]
     : [["drive", "opens at the first start"]];
-  return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, `${number(limit.value)} ${UNITS[limit.unit] ?? limit.unit}`]), ["software", bench.software_version]]);
+  return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, withShownUnit(limit.value, limit.unit)]), ["software", bench.software_version]]);
 }

@@ -1,29 +1,35 @@
 // Live: what the joint does, drawn whenever rows arrive (more than twenty times a second); frozen, zoomed, channel by channel.
 
+import { readingNote } from "../app/state.js";
+import { liveJoint } from "../joint/livejoint.js";
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
-import { number } from "../ui/format.js";
+import { axisTitle, number } from "../ui/format.js";
+import { shownUnit } from "../ui/units.js";
 import { LatestTrials } from "./latesttrials.js";
 import { around, HALF, LOAD, loadBands, newest } from "./load.js";
 import { markLegend, marksOf } from "../plots/marks.js";
 
-const STALE_EVERY_MS = 500;
 const SECONDS = [["0", "all of the trial"], ["5", "last 5 s"], ["20", "last 20 s"]];
 const CHANNELS = [
   { name: "target_rad", text: "target", unit: "rad", colour: "orange", dash: [5, 4] },
   { name: "position_rad", text: "position", unit: "rad", colour: "blue" },
   { name: "velocity_rad_s", text: "speed", unit: "rad/s", colour: "green" },
   { name: "current_a", text: "current", unit: "A", colour: "red" },
-  { name: "current_estimate_a", text: "current from duty", unit: "A", colour: "purple" },
+  { name: "current_estimate_a", text: "current from duty", unit: "A", colour: "orange" },
   { name: "current_load_a", text: "load current (band: 95 %)", unit: "A", colour: "sky", width: 3 },
-  { name: "duty", text: "duty", unit: "duty", colour: "blue" },
+  { name: "duty", text: "duty", unit: "", colour: "purple" },
   { name: "supply_v", text: "supply", unit: "V", colour: "orange", off: true },
   { name: "temperature_c", text: "temperature", unit: "°C", colour: "red", off: true },
 ];
 
-export function livePlot(place, live) {
+// the least that an axis spans, in SI: a joint at rest is a flat line, not its sensor's noise over the whole height
+const LEAST_SPAN = { rad: 0.05, "rad/s": 0.2, A: 0.05, "": 0.02, V: 1, "°C": 1 };
+
+export function livePlot(place, { live, state }) {
   const progress = h("progress", { max: "1", value: "0", "aria-label": "Progress of the experiment" });
   const outcome = h("p", { class: "soft", role: "status" });
+  const [joint, age] = [h("div", { class: "live-joint" }), h("p", { class: "soft age" })];
   const readings = h("dl", { class: "readings" });
   const note = h("p", { class: "soft" });
   const loads = h("div");
@@ -31,9 +37,9 @@ export function livePlot(place, live) {
   const freeze = h("input", { type: "checkbox", id: "freeze" });
   const seconds = h("select", { "aria-label": "Shown time" }, SECONDS.map(([value, text]) => h("option", { value }, text)));
   const picture = h("div");
-  replace(place, progress, outcome, readings, h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), seconds,
+  replace(place, progress, outcome, h("div", { class: "live-now" }, joint, h("div", {}, readings, age)), h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), seconds,
     h("details", {}, h("summary", {}, "Channels"), h("div", { class: "row centre" },
-      CHANNELS.map((one, index) => h("label", { class: "inline" }, boxes[index], `${one.text} [${one.unit}]`))))), picture, note, loads);
+      CHANNELS.map((one, index) => h("label", { class: "inline" }, boxes[index], one.unit ? `${one.text} [${shownUnit(one.unit).unit}]` : one.text))))), picture, note, loads);
   const chart = new Chart(picture, { label: "Position, speed, current and duty of the trial that runs", height: 520 });
   const latest = new LatestTrials(live);
 
@@ -56,7 +62,12 @@ export function livePlot(place, live) {
     load = { experiment: run?.experiment_id, text: newest(live.rows) ?? before };
     replace(readings, readingsOf(live.status?.reading, load.text));
   };
-  const timer = setInterval(() => place.classList.toggle("stale", live.stale), STALE_EVERY_MS);
+  const aged = () => {
+    const { dimmed, words } = readingNote(state.now);
+    place.classList.toggle("stale", !state.now.fresh);
+    readings.classList.toggle("dimmed", dimmed);
+    age.textContent = words || "\u00a0";
+  };
   // the chart draws once a frame, however often it is told
   const update = () => { if (!freeze.checked && !document.hidden) show(); };
   const trials = () => {
@@ -71,10 +82,14 @@ export function livePlot(place, live) {
   live.addEventListener("rows", update);
   live.addEventListener("status", status);
   latest.addEventListener("change", trials);
+  state.addEventListener("change", aged);
+  const leaveJoint = liveJoint(joint, { live, state }, latest);
   show();
   status();
+  aged();
   return () => {
-    clearInterval(timer);
+    state.removeEventListener("change", aged);
+    leaveJoint();
     latest.close();
     chart.close();
     live.removeEventListener("rows", update);
@@ -88,14 +103,20 @@ function contentOf(rows, chosen, marks, seconds) {
   const measured = chosen.filter((one) => rows.column(one.name)?.some(Number.isFinite));
   const units = [...new Set(measured.map((one) => one.unit))];
   const last = all.at(-1) ?? 0;
-  const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: rows.column(one.name), colour: one.colour, dash: one.dash, width: one.width }));
+  const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: scaled(rows.column(one.name), one.unit), colour: one.colour, dash: one.dash, width: one.width }));
   const load = measured.find((one) => one.name === LOAD);
   const bands = load && rows.column(HALF) ? [around(units.indexOf(load.unit), all, rows.column(LOAD), rows.column(HALF), load.colour)] : [];
   return {
-    rows: units.length ? units.map((title) => ({ title })) : [{ title: "" }], lines, bands,
+    rows: units.length ? units.map((unit) => ({ title: axisTitle(unit, "duty"), least: (LEAST_SPAN[unit] ?? 0) * shownUnit(unit).factor })) : [{ title: "" }], lines, bands,
     marks: marks.filter((one) => one.letter && one.x <= last), xTitle: "time in the trial [s]",
     limits: seconds && all.length ? [Math.max(all[0], last - seconds), last] : undefined,
   };
+}
+
+// a view where nothing is to be converted, a copy where it is
+function scaled(values, unit) {
+  const { factor } = shownUnit(unit);
+  return factor === 1 ? values : values.map((value) => factor * value);
 }
 
 function sentence(run) {
@@ -103,10 +124,21 @@ function sentence(run) {
   return `Experiment ${run.experiment_id} (${run.kind}): ${run.outcome}${run.reason ? `: ${run.reason}` : ""}`;
 }
 
+// the steps in which readings are shown, in SI: finer ones flicker
+const STEPS = { rad: 0.001, "rad/s": 0.005, A: 0.001, "": 0.001, V: 0.01, "°C": 0.1 };
+const READINGS = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
+  ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
+
 function readingsOf(values, load) {
-  const shown = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
-    ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
-  const known = shown.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
-  const read = known.map(([text, name, unit]) => [text, `${values[name].toFixed(3).replace("-", "−")} ${unit}`]);
+  const known = READINGS.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
+  const read = known.map(([text, name, unit]) => [text, readingText(values[name], unit)]);
   return [...read, ...(load ? [["load current, as last found", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
+}
+
+// always as many places, and never "−0.000"
+export function readingText(value, si) {
+  const { unit, factor } = shownUnit(si);
+  const places = Math.max(0, Math.ceil(-Math.log10(STEPS[si] * factor) - 1e-9));
+  const text = (value * factor).toFixed(places);
+  return `${Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−")}${unit.startsWith("°") && unit !== "°C" ? unit : unit && ` ${unit}`}`;
 }

@@ -1,69 +1,120 @@
-// Starting an experiment: choose a kind, fill in the form that its schema gives, start.
+// Starting an experiment: choose a kind, fill in the form that its schema gives, see what would move, start. Only the
+// Start button moves the joint; Enter in a field does not.
 
+import { here, note } from "../app/address.js";
 import { get, post } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
 import { Form } from "../ui/form.js";
+import { duration } from "../ui/format.js";
+import { withShownUnit } from "../ui/units.js";
+
+const PLAN_AFTER_MS = 300; // of quiet in the fields
 
 // queued(): something was put into the queue
 export async function startForm(place, live, queued) {
   const kinds = await attempt(place, async () => (await get("/experiment-kinds")).items);
   if (!kinds) return;
-  const choice = h("select", { id: "kind" }, kinds.map((kind) => h("option", { value: kind.name }, kind.title)));
-  const summary = h("p", { class: "soft" });
-  const parameters = h("div");
-  const operator = h("input", { id: "operator", autocomplete: "name" });
-  const note = h("input", { id: "note", autocomplete: "off" });
-  const pace = h("input", { type: "checkbox", id: "fast" });
-  const tags = h("input", { id: "tags", autocomplete: "off", placeholder: "separated by commas" });
-  const button = h("button", { class: "primary" }, "Start");
+  const asked = here().query;
+  const choice = h("select", { id: "kind" }, kinds.map((kind) => h("option", { value: kind.name, selected: kind.name === asked.kind }, kind.title)));
+  const [summary, parameters, motion, answer] = [h("p", { class: "soft" }), h("div"), h("p", { class: "motion", id: "motion", role: "status" }), h("div")];
+  const further = furtherFields();
+  const button = h("button", { type: "button", class: "primary", "aria-describedby": "motion" }, "Start");
   const later = h("button", { type: "button" }, "Queue");
-  const answer = h("div");
-  let form;
+  let [form, timer, started] = [null, null, null];
 
+  const wanted = () => ({ kind: choice.value, parameters: form.values(), ...further.values(live.status?.simulated) });
+  const plan = async () => {
+    clearTimeout(timer);
+    replace(motion);
+    if (!form.check()) {
+      replace(motion, "Something is marked above: nothing can be started yet.");
+      return null;
+    }
+    try {
+      const found = await post("/experiments/plan", wanted());
+      replace(motion, motionWords(found, live.status?.simulated));
+      return found;
+    } catch (error) {
+      const elsewhere = form.showProblems(error.errors ?? [], "parameters");
+      const marked = error.errors?.length && !elsewhere.length;
+      replace(motion, error.status === 401 ? "" : marked ? "Not possible on this bench: see the marked field." : error.message);
+      return error.status === 401 ? undefined : null; // without a token the service says so at the start itself
+    }
+  };
+  const soon = () => {
+    clearTimeout(timer);
+    timer = setTimeout(plan, PLAN_AFTER_MS);
+  };
   const choose = () => {
     const kind = kinds.find((one) => one.name === choice.value);
-    form = new Form(kind.parameters, "parameter");
+    form = new Form(kind.parameters, "parameter", soon);
+    form.fill(valuesOf(here().query, kind.name));
     summary.textContent = kind.summary;
     replace(parameters, form.element);
+    soon();
   };
-  const wanted = () => {
-    form.showProblems([], "parameters");
-    const body = { kind: choice.value, parameters: form.values(), operator: operator.value, note: note.value };
-    if (live.status?.simulated) body.pace = pace.checked ? "fast" : "real-time";
-    return { ...body, tags: tags.value.split(",").map((one) => one.trim()).filter(Boolean) };
-  };
-  later.addEventListener("click", async () => {
-    const added = await attempt(answer, () => send("/queue", { items: [wanted()] }, form, answer), { button: later });
-    if (!added) return;
-    replace(answer, h("div", { class: "good", role: "status" }, "It is in the queue; it starts when it is its turn."));
+  const send = async (path, body, pressed, told) => {
+    replace(answer);
+    if ((await plan()) === null) {
+      replace(answer, problemBox(new Error("Not started, nothing has moved, nothing is recorded. See what is marked.")));
+      return;
+    }
+    const done = await attempt(answer, () => post(path, body()), { button: pressed });
+    if (!done) return;
+    started = done.experiment_id ?? null;
+    replace(answer, h("div", { class: "good", role: "status" }, told(done)));
     queued();
-  });
-  const submit = async (event) => {
-    event.preventDefault();
-    const started = await attempt(answer, () => send("/experiments", wanted(), form, answer), { button });
-    if (started) replace(answer, h("div", { class: "good", role: "status" }, `Experiment ${started.experiment_id} has started.`));
   };
-  choice.addEventListener("change", choose);
+  // true for as long as it runs
+  live.addEventListener("status", () => {
+    const run = live.status?.run;
+    if (started === null || run?.experiment_id !== started || run.outcome === "running") return;
+    started = null;
+    replace(answer);
+  });
+  button.addEventListener("click", () => send("/experiments", wanted, button, (done) => `Experiment ${done.experiment_id} has started.`));
+  later.addEventListener("click", () => send("/queue", () => ({ items: [wanted()] }), later, () => "It is in the queue; it starts when it is its turn."));
+  choice.addEventListener("change", () => {
+    note({ view: "bench", query: { kind: choice.value } });
+    choose();
+  });
+  document.addEventListener("token-set", soon);
   choose();
-  replace(place, h("form", { class: "form", onsubmit: submit, novalidate: true },
-    h("label", { for: "kind" }, "What to do", choice), summary, parameters,
-    h("details", {}, h("summary", {}, "Operator, note, tags, pace"),
-      h("div", { class: "form" },
-        h("label", { for: "operator" }, "Operator", operator), h("label", { for: "note" }, "Note", note), h("label", { for: "tags" }, "Tags", tags),
-        h("label", { class: "inline" }, pace, "as fast as the computer can (simulated drive only)"))),
-    h("div", { class: "row" }, button, later), answer));
+  replace(place, h("form", { class: "form", onsubmit: (event) => { event.preventDefault(); plan(); }, novalidate: true },
+    h("label", { for: "kind" }, "What to do", choice), summary, parameters, further.element,
+    h("div", { class: "start" }, motion, h("div", { class: "row" }, button, later), answer)));
 }
 
-async function send(path, body, form, answer) {
-  try {
-    return await post(path, body);
-  } catch (error) {
-    const elsewhere = error.errors ? form.showProblems(error.errors, "parameters") : [];
-    if (error.errors?.length && !elsewhere.length) {
-      replace(answer, problemBox(new Error("Not started, nothing has moved. See the marked fields.")));
-      return undefined;
-    }
-    throw error;
-  }
+function furtherFields() {
+  const operator = h("input", { id: "operator", autocomplete: "name" });
+  const note_ = h("input", { id: "note", autocomplete: "off" });
+  const tags = h("input", { id: "tags", autocomplete: "off", placeholder: "separated by commas" });
+  const pace = h("input", { type: "checkbox", id: "fast" });
+  const element = h("details", {}, h("summary", {}, "Operator, note, tags, pace"),
+    h("div", { class: "form" },
+      h("label", { for: "operator" }, "Operator", operator), h("label", { for: "note" }, "Note", note_), h("label", { for: "tags" }, "Tags", tags),
+      h("label", { class: "inline" }, pace, "as fast as the computer can (simulated drive only)")));
+  const values = (simulated) => ({ operator: operator.value, note: note_.value, tags: tags.value.split(",").map((one) => one.trim()).filter(Boolean),
+    ...(simulated ? { pace: pace.checked ? "fast" : "real-time" } : {}) });
+  return { element, values };
+}
+
+// parameters that an address names: #bench?kind=steps&repeats=2, in SI
+function valuesOf({ kind, ...query }, name) {
+  if (kind !== name) return {};
+  return Object.fromEntries(Object.entries(query).map(([key, text]) => {
+    const values = text.split(",").map((one) => (one !== "" && Number.isFinite(Number(one)) ? Number(one) : one));
+    return [key, values.length > 1 ? values : values[0]];
+  }));
+}
+
+// what Start moves, how far, for how long
+export function motionWords({ trials, duration_s, angles_rad, position_limits_rad: limits, speed_rad_s, loads_kg, balanced }, simulated) {
+  const angle = (value) => withShownUnit(value, "rad", 3);
+  const [low, high] = [Math.min(0, ...angles_rad), Math.max(0, ...angles_rad)];
+  const way = angles_rad.length && low !== high ? `between ${angle(low)} and ${angle(high)}` : `within ${angle(limits[0])} to ${angle(limits[1])}`;
+  const speed = speed_rad_s === null ? "" : `, up to ${withShownUnit(speed_rad_s, "rad/s", 3)}`;
+  const load = loads_kg.length ? ` Load: ${loads_kg.map((one) => withShownUnit(one, "kg", 3)).join(", ")}${balanced ? ", balanced arm" : ""}.` : "";
+  return `Start moves the ${simulated ? "simulated " : ""}joint ${way}${speed}: ${trials} ${trials === 1 ? "trial" : "trials"}, about ${duration(duration_s)}.${load}`;
 }

@@ -89,7 +89,17 @@ export class Chart extends EventTarget {
   }
 
   point(pixel) {
-    this.#pointer = pixel === null ? null : valueAt(pixel, this.view, frame(0, 1, this.#width, this.height));
+    this.cursor = pixel === null ? null : valueAt(pixel, this.view, frame(0, 1, this.#width, this.height));
+    this.dispatchEvent(new Event("cursor"));
+  }
+
+  // where the values are read; null: nowhere
+  get cursor() {
+    return this.#pointer;
+  }
+
+  set cursor(x) {
+    this.#pointer = x;
     this.redraw();
   }
 

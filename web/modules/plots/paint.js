@@ -4,7 +4,7 @@ import { label, ticks, widened } from "./axis.js";
 import { extremes, thinned } from "./thin.js";
 import { columns, drawTrace, points } from "./trace.js";
 
-const LEFT = 58;
+const LEFT = 66;
 const RIGHT = 10;
 const TOP = 8;
 const BOTTOM = 34;
@@ -25,7 +25,7 @@ export function valueAt(x, [from, to], box) {
   return from + ((x - box.left) / (box.right - box.left)) * (to - from);
 }
 
-// content: {rows: [{title}], lines: [{row, x, y, colour, dash, width}], bands, marks, shades, xTitle}; theme: colours and font; pixel: how large one of the screen is
+// content: {rows: [{title, least}], lines: [{row, x, y, colour, dash, width}], bands, marks, shades, xTitle}; theme: colours and font; pixel: how large one of the screen is
 export function paint(context, { width, height, view, content, theme, pointer, pixel = 1 }) {
   context.clearRect(0, 0, width, height);
   context.font = theme.font;
@@ -33,7 +33,7 @@ export function paint(context, { width, height, view, content, theme, pointer, p
     const box = frame(index, content.rows.length, width, height);
     const lines = content.lines.filter((line) => line.row === index);
     const bands = (content.bands ?? []).filter((band) => band.row === index);
-    const range = rangeOf(lines, bands, view, box);
+    const range = rangeOf(lines, bands, view, box, row.least);
     grid(context, box, range, view, theme, index === content.rows.length - 1);
     title(context, row.title, box, theme);
     clipped(context, box, () => {
@@ -51,7 +51,8 @@ export function paint(context, { width, height, view, content, theme, pointer, p
   context.fillText(content.xTitle, (LEFT + width - RIGHT) / 2, height - 4);
 }
 
-function rangeOf(lines, bands, view, box) {
+// least: what the axis spans at least, so that the noise of what stands still is not drawn as large as motion
+function rangeOf(lines, bands, view, box, least = 0) {
   let [low, high] = [Infinity, -Infinity];
   const take = ([a, b]) => {
     low = Math.min(low, a);
@@ -59,7 +60,9 @@ function rangeOf(lines, bands, view, box) {
   };
   for (const line of lines) take(extremes(line.x, line.y, view));
   for (const band of bands) for (const edge of [band.low, band.high]) take(extremes(band.x, edge, view));
-  return low <= high ? widened(low, high, wanted(box)) : NOTHING;
+  if (!(low <= high)) return NOTHING;
+  const short = Math.max(0, least - (high - low)) / 2;
+  return widened(low - short, high + short, wanted(box));
 }
 
 function wanted(box) {

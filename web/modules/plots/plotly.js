@@ -24,7 +24,7 @@ export function layout(extra = {}) {
 
 export async function draw(place, traces, extra = {}) {
   place.classList.add("plot");
-  const plotly = await PLOTLY;
+  const plotly = await library();
   return plotly.react(place, traces, layout(extra), CONFIG);
 }
 
@@ -32,7 +32,7 @@ export async function draw(place, traces, extra = {}) {
 async function load() {
   const sheet = document.getElementById("plotly.js-style-global");
   if (!sheet.sheet) await new Promise((resolve) => sheet.addEventListener("load", resolve));
-  const script = h("script", { src: "/static/plotly.min.js" });
+  const script = h("script", { src: new URL("../../plotly.min.js", import.meta.url).href });
   await new Promise((resolve, reject) => {
     script.addEventListener("load", resolve);
     script.addEventListener("error", () => reject(new Error("the plots could not be loaded from the service; reload the page")));
@@ -41,8 +41,16 @@ async function load() {
   return window.Plotly;
 }
 
-const PLOTLY = load();
-PLOTLY.catch(() => {}); // each plot that waits for it says so itself
+let loading = null;
+
+// a megabyte, compressed: it is asked for with the first plot that needs it. One that failed is tried again
+function library() {
+  loading ??= load().catch((error) => {
+    loading = null;
+    throw error;
+  });
+  return loading;
+}
 
 export function forget(place) {
   if (place && window.Plotly) window.Plotly.purge(place);

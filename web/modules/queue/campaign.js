@@ -4,7 +4,8 @@ import { get, post } from "../app/api.js";
 import { attempt } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { Form } from "../ui/form.js";
-import { duration, number, withUnit } from "../ui/format.js";
+import { duration, number, unitOf, withUnit } from "../ui/format.js";
+import { toShown } from "../ui/units.js";
 import { Grid } from "./grid.js";
 
 const ORDERS = [["as-given", "as given"], ["boustrophedon", "there and back"], ["random", "shuffled"]];
@@ -43,17 +44,14 @@ export async function campaignForm(place, live, queued) {
     if (plan) shown(plan);
   };
   const plan = h("button", { type: "button", onclick: send("/campaigns/plan", (found) => replace(answer, planned(found))) }, "Plan");
-  const start = h("button", { type: "submit", class: "primary" }, "Put into the queue");
-  const submit = (event) => {
-    event.preventDefault();
-    return send("/campaigns", (found) => {
-      replace(answer, h("div", { class: "good", role: "status" }, `${found.item_ids.length} experiments are in the queue.`), planned(found));
-      queued();
-    })({ currentTarget: start });
-  };
+  // what is queued moves the joint when it is its turn: by this button alone, not by Enter in a field
+  const start = h("button", { type: "button", class: "primary", onclick: send("/campaigns", (found) => {
+    replace(answer, h("div", { class: "good", role: "status" }, `${found.item_ids.length} experiments are in the queue.`), planned(found));
+    queued();
+  }) }, "Put into the queue");
   kind.addEventListener("change", choose);
   choose();
-  replace(place, h("form", { class: "form", onsubmit: submit, novalidate: true },
+  replace(place, h("form", { class: "form", onsubmit: (event) => event.preventDefault(), novalidate: true },
     h("div", { class: "row" }, h("label", { for: "campaign-name" }, "Name", name), h("label", { for: "campaign-kind" }, "What to do", kind)),
     h("fieldset", {}, h("legend", {}, "What differs: every combination is run"), varied),
     h("details", {}, h("summary", {}, "What all share"), shared),
@@ -79,7 +77,7 @@ function planned({ items, duration_s, load_changes: changes }) {
   return [h("p", { class: "sentence", role: "status" }, `${items.length} experiments, about ${duration(duration_s)} of the joint's time; something is hung ${changes} ${changes === 1 ? "time" : "times"}.`),
     table("Plan of the campaign", [
       { title: "", unseen: "Place", number: true, cell: (one) => items.indexOf(one) + 1 },
-      ...differing.map((key) => ({ title: withUnit(key), number: true, cell: (one) => [one.parameters[key]].flat().map((value) => number(value)).join(", ") })),
+      ...differing.map((key) => ({ title: withUnit(key), number: true, cell: (one) => [one.parameters[key]].flat().map((value) => (typeof value === "number" ? number(toShown(value, unitOf(key))) : number(value))).join(", ") })),
       { title: "Loads hung [g]", number: true, cell: (one) => one.loads_kg.map((load) => number(1000 * load, 3)).join(", ") || "–" },
       { title: "About", number: true, cell: (one) => duration(one.duration_s) },
     ], items)];

@@ -2,7 +2,8 @@
 
 import { h, replace } from "../ui/dom.js";
 import { numberOrText, resolve } from "../ui/form.js";
-import { withUnit } from "../ui/format.js";
+import { unitOf, withUnit } from "../ui/format.js";
+import { toSi } from "../ui/units.js";
 
 const FIRST = ["load_kg"];
 
@@ -22,7 +23,7 @@ export class Grid {
 
   // parameter -> values; what cannot be read as a number goes as it is: the service then says what it wants
   values() {
-    return Object.fromEntries(this.#rows.filter((row) => row.input.value.trim()).map((row) => [row.choice.value, row.input.value.split(/[,;\s]+/).filter(Boolean).map(numberOrText)]));
+    return Object.fromEntries(this.#rows.filter((row) => row.input.value.trim()).map((row) => [row.choice.value, row.input.value.split(/[,;\s]+/).filter(Boolean).map((text) => inSiUnits(row.choice.value, numberOrText(text)))]));
   }
 
   #free() {
@@ -48,4 +49,8 @@ export class Grid {
     replace(this.list, this.#rows.map((row) => row.element));
     this.more.hidden = !this.#free().length;
   }
+}
+
+function inSiUnits(name, value) {
+  return typeof value === "number" ? toSi(value, unitOf(name)) : value;
 }

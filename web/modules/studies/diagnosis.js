@@ -7,7 +7,6 @@ import { colour } from "../ui/colours.js";
 import { band, draw } from "../plots/plotly.js";
 
 const SHOWN = 6;
-const NOT_JUDGED = /^Not judged/;
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
 export async function diagnosis(place, found, add) {
@@ -15,14 +14,16 @@ export async function diagnosis(place, found, add) {
   const others = h("div", { class: "cards" });
   const curve = found.provisional && h("div", { class: "cards" });
   const more = h("details", {}, h("summary", {}, `${Math.max(0, found.ranking.length - SHOWN)} more effects`), h("div", { class: "cards" }));
-  const notJudged = found.notes.filter((note) => NOT_JUDGED.test(note));
+  const problems = found.findings.filter(({ code }) => code === "data-problem");
+  const notJudged = found.findings.filter(({ code }) => code === "not-judged");
+  const notes = found.findings.filter((one) => !problems.includes(one) && !notJudged.includes(one));
   const first = found.ranking.slice(0, SHOWN);
   replace(place, h("p", { class: "sentence", role: "status" }, found.sentence),
-    found.data_problems.filter((problem) => !found.sentence.includes(problem)).map((problem) => h("div", { class: "problem" }, problem)),
-    found.notes.filter((note) => !NOT_JUDGED.test(note)).map((note) => h("p", { class: "soft" }, note)),
+    problems.map(({ text }) => h("div", { class: "problem" }, text)),
+    notes.map(({ text }) => h("p", { class: "soft" }, text)),
     found.classes.map(className), curve, named, first.some((one) => !one.in_class) && h("h3", {}, found.classes.length ? "Less likely" : "Tested"), others,
     found.ranking.length > SHOWN && more,
-    notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map((note) => h("p", { class: "soft" }, note))));
+    notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, text))));
   if (curve) await provisional(curve, found.provisional, add);
   for (const one of first) await card(one.in_class ? named : others, one, add);
   more.addEventListener("toggle", async () => {

@@ -4,7 +4,7 @@
 import { post } from "../app/api.js";
 import { attempt } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
-import { number, withUnit } from "../ui/format.js";
+import { nameOf, number, quantity } from "../ui/format.js";
 
 // model_id(): the model that is shown; extended(sentence): the study has more trials now
 export function suggestions(place, path, model_id, extended) {
@@ -57,5 +57,5 @@ function show(place, path, found, extended) {
 }
 
 function words(parameters) {
-  return Object.entries(parameters).map(([name, value]) => `${withUnit(name)} ${[value].flat().map((one) => number(one, 3)).join(", ")}`).join("; ");
+  return Object.entries(parameters).map(([name, value]) => `${nameOf(name)} ${[value].flat().map((one) => quantity(name, one)).join(", ")}`).join("; ");
 }

@@ -7,7 +7,7 @@ import { h, replace, table } from "../ui/dom.js";
 import { outcome, withFiles } from "../ui/files.js";
 import { when } from "../ui/format.js";
 
-const EACH = 100;
+const EACH = 10;
 const NOTHING = "Nothing has been run yet. Start an experiment on the Bench, or import a recording set.";
 
 // choose(experiment_id); returns {refresh}, which resolves to the newest page

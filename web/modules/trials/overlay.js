@@ -3,14 +3,17 @@
 import { attempt } from "../ui/attempt.js";
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
-import { nameOf, unitOf, withUnit } from "../ui/format.js";
+import { axisTitle, nameOf, unitOf, withUnit } from "../ui/format.js";
 import { around, HALF, LOAD } from "../bench/load.js";
 import { marksOf } from "../plots/marks.js";
 import { colour, SERIES } from "../ui/colours.js";
 import { draw, forget } from "../plots/plotly.js";
+import { firstFrom } from "../plots/thin.js";
+import { shownUnit } from "../ui/units.js";
 import { Stretches } from "./stretches.js";
 
 const SETTLED_MS = 150;
+const OF_THE_JOINT = ["position_rad", "target_rad", "current_a", "current_estimate_a"]; // that its drawing needs
 const DASHES = [undefined, [6, 4], [2, 3], [9, 3, 2, 3]];
 
 // the load's share of the current that the search found, with its 95 % interval, from when it was found
@@ -22,6 +25,11 @@ export function loadFound(trial, end_s, row) {
   const level = (value) => [value, value];
   return { line: { row, name: "load (band: 95 %)", x, y: level(current_a), colour: "sky", width: 3 },
     band: { row, x, low: level(interval[0]), high: level(interval[1]), colour: "sky" } };
+}
+
+function scaled(values, si) {
+  const { factor } = shownUnit(si);
+  return factor === 1 ? values : values.map((value) => factor * value);
 }
 
 export class Overlay {
@@ -60,6 +68,19 @@ export class Overlay {
     });
   }
 
+  // first and last time of all trials [s]
+  get limits() {
+    return this.#limits();
+  }
+
+  // what the joint of the first trial did at a time; NaN where it was not measured
+  at(time_s) {
+    const source = this.#stretches.get(this.trials[0].trial_id)?.best(this.chart.view) ?? {};
+    const index = Math.min(firstFrom(source.time_s ?? [], time_s), (source.time_s?.length ?? 1) - 1);
+    const value = (name) => source[name]?.[index] ?? NaN;
+    return { position_rad: value("position_rad"), target_rad: value("target_rad"), current_a: Number.isFinite(value("current_a")) ? value("current_a") : value("current_estimate_a") };
+  }
+
   close() {
     clearTimeout(this.#timer);
     this.#asked.abort();
@@ -75,7 +96,7 @@ export class Overlay {
 
   #channelsOf(trial) {
     const band = this.channels.includes(LOAD) ? [HALF] : [];
-    return [...new Set(["time_s", this.against, ...this.channels, ...band])].filter((name) => trial.channels.includes(name));
+    return [...new Set(["time_s", this.against, ...this.channels, ...band, ...OF_THE_JOINT])].filter((name) => trial.channels.includes(name));
   }
 
   async #lookCloser() {
@@ -109,7 +130,7 @@ export class Overlay {
       const source = sources[index];
       return this.channels.filter((name) => source[name]?.some(Number.isFinite)).map((name) => {
         const at = this.channels.indexOf(name);
-        return { row: units.indexOf(unitOf(name)), name: several ? `${trial.trial_id} ${nameOf(name)}` : nameOf(name), x: source.time_s, y: source[name], half: name === LOAD ? source[HALF] : null,
+        return { row: units.indexOf(unitOf(name)), name: several ? `${trial.trial_id} ${nameOf(name)}` : nameOf(name), x: source.time_s, y: scaled(source[name], unitOf(name)), half: name === LOAD ? source[HALF] : null,
           colour: SERIES[(several ? index : at) % SERIES.length], dash: several ? DASHES[at % DASHES.length] : undefined };
       });
     });
@@ -117,7 +138,7 @@ export class Overlay {
     if (load) lines.push(load.line);
     const bands = load ? [load.band] : [];
     for (const line of lines.filter((one) => one.half)) bands.push(around(line.row, line.x, line.y, line.half, line.colour));
-    this.chart.show({ rows: units.map((title) => ({ title })), lines, limits, bands, xTitle: "time in the trial [s]",
+    this.chart.show({ rows: units.map((unit) => ({ title: axisTitle(unit) })), lines, limits, bands, xTitle: "time in the trial [s]",
       marks: several ? [] : marksOf(this.trials[0].events).filter((mark) => mark.letter) });
   }
 
@@ -125,7 +146,7 @@ export class Overlay {
     const traces = this.trials.flatMap((trial, index) => {
       const source = this.#stretches.get(trial.trial_id).best([-Infinity, Infinity]);
       if (!source[this.against]) return [];
-      return this.channels.filter((name) => source[name]).map((name, at) => ({ x: [...source[this.against]], y: [...source[name]], mode: "markers", showlegend: true,
+      return this.channels.filter((name) => source[name]).map((name, at) => ({ x: [...scaled(source[this.against], unitOf(this.against))], y: [...scaled(source[name], unitOf(name))], mode: "markers", showlegend: true,
         name: this.trials.length > 1 ? `${trial.trial_id} ${nameOf(name)}` : withUnit(name), marker: { size: 3, color: colour(SERIES[(index + at) % SERIES.length]) } }));
     });
     return draw(this.across, traces, { height: 460, xaxis: { title: { text: withUnit(this.against) } }, uirevision: this.against });

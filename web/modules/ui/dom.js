@@ -23,12 +23,15 @@ export function replace(parent, ...children) {
   return parent;
 }
 
+// columns: {title, unseen, number, cell}; a title is text or an element. On a narrow screen each row becomes a card, and
+// each cell says its title
 export function table(caption, columns, rows) {
   const head = h("tr", {}, columns.map((column) => h("th", { scope: "col", class: column.number ? "number" : "" }, column.title || h("span", { class: "unseen" }, column.unseen ?? "Actions"))));
+  const words = columns.map(({ title, unseen }) => (title instanceof Element ? title.textContent.replace(/ [▴▾]$/, "") : title || unseen || ""));
   const body = rows.map((row) =>
-    h("tr", { class: row.chosen ? "chosen" : "" }, columns.map((column) => h("td", { class: column.number ? "number" : "" }, column.cell(row) ?? ""))));
+    h("tr", { class: row.chosen ? "chosen" : "" }, columns.map((column, at) => h("td", { class: column.number ? "number" : "", "data-title": words[at] }, column.cell(row) ?? ""))));
   return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    h("table", {}, h("thead", {}, head), h("tbody", {}, body)));
+    h("table", { class: "cards-if-narrow" }, h("thead", {}, head), h("tbody", {}, body)));
 }
 
 export function facts(entries) {

@@ -1,13 +1,17 @@
-// A form from a JSON schema: units, limits and defaults stand beside each input. The service checks; its words are shown at the field.
+// A form from a JSON schema: units, limits and defaults stand beside each input. What is typed is checked at once; what
+// the service says of it is shown at the field, too. Values are shown in the units that people chose, and sent in SI.
 
 import { h, replace } from "./dom.js";
 import { nameOf, number } from "./format.js";
+import { shownUnit, toShown, toSi } from "./units.js";
 
 export class Form {
   #fields = new Map();
 
-  constructor(schema, prefix) {
+  // changed(): something was typed
+  constructor(schema, prefix, changed = () => {}) {
     this.schema = schema;
+    this.changed = changed;
     const rows = Object.entries(schema.properties ?? {}).map(([name, property]) => this.#row(name, property, prefix));
     this.element = h("div", { class: "form" }, rows);
   }
@@ -15,6 +19,16 @@ export class Form {
   values() {
     const entries = [...this.#fields].map(([name, field]) => [name, field.read()]);
     return Object.fromEntries(entries.filter(([, value]) => value !== undefined));
+  }
+
+  // marks what cannot be sent; true where all can
+  check() {
+    return [...this.#fields.values()].map((field) => field.check()).every(Boolean);
+  }
+
+  // fills the fields with values in SI, by name; others keep what they have
+  fill(values) {
+    for (const [name, value] of Object.entries(values)) this.#fields.get(name)?.write(value);
   }
 
   // returns the problems that belong to no field of this form
@@ -32,21 +46,26 @@ export class Form {
     const id = `${prefix}-${name}`;
     const input = control(kind, id);
     const problem = h("div", { id: `${id}-problem` });
-    const hint = [kind.description && `${kind.description}.`, bounds(kind)].filter(Boolean).join(" ");
-    const degrees = h("span");
-    if (kind.unit === "rad") input.addEventListener("input", () => { degrees.textContent = inDegrees(input.value); });
-    degrees.textContent = kind.unit === "rad" ? inDegrees(input.value) : "";
-    this.#fields.set(name, {
-      read: () => read(kind, input),
-      show: (error) => {
-        input.setAttribute("aria-invalid", String(Boolean(error)));
-        replace(problem, error && h("div", { class: "problem field-problem", role: "alert" }, error.message));
-      },
+    const show = (message) => {
+      input.setAttribute("aria-invalid", String(Boolean(message)));
+      replace(problem, message && h("div", { class: "problem field-problem", role: "alert" }, message));
+    };
+    const check = () => {
+      const message = problemOf(kind, read(kind, input));
+      show(message);
+      return !message;
+    };
+    this.#fields.set(name, { read: () => read(kind, input), write: (value) => write(kind, input, value), show: (error) => show(error?.message), check });
+    input.addEventListener("input", () => {
+      check();
+      this.changed();
     });
     input.setAttribute("aria-describedby", `${id}-hint ${id}-problem`);
-    const text = `${nameOf(name)}${kind.unit ? ` [${kind.unit}]` : ""}`;
+    const unit = unitText(kind);
+    const text = `${nameOf(name)}${unit ? ` [${unit}]` : ""}`;
     const label = kind.type === "boolean" ? h("label", { class: "inline" }, input, text) : h("label", { for: id }, text, input);
-    return h("div", { class: "field" }, label, h("div", { class: "hint", id: `${id}-hint` }, hint, degrees), problem);
+    const hint = [kind.description && `${kind.description}.`, bounds(kind)].filter(Boolean).join(" ");
+    return h("div", { class: "field" }, label, h("div", { class: "hint", id: `${id}-hint` }, hint), problem);
   }
 }
 
@@ -63,22 +82,34 @@ function control(kind, id) {
   if (kind.enum) return h("select", { id }, kind.enum.map((value) => h("option", { value, selected: value === kind.default }, String(value))));
   if (kind.type === "boolean") return h("input", { id, type: "checkbox", checked: kind.default === true });
   if (kind.file) return h("textarea", { id, rows: 6, spellcheck: false, placeholder: "t_s,position_rad\n0,0\n..." });
-  const value = kind.default === null || kind.default === undefined ? "" : [kind.default].flat().map((one) => number(one, 12)).join(", ");
-  return h("input", { id, type: "text", inputMode: numeric(kind) ? "decimal" : "text", value, autocomplete: "off", placeholder: kind.optional ? "not set" : "" });
+  return h("input", { id, type: "text", inputMode: numeric(kind) ? "decimal" : "text", value: shownText(kind, kind.default), autocomplete: "off", placeholder: kind.optional ? "not set" : "" });
+}
+
+function shownText(kind, value) {
+  if (value === null || value === undefined) return "";
+  return [value].flat().map((one) => (typeof one === "number" ? number(toShown(one, kind.unit, 12), 6) : one)).join(", ");
+}
+
+function write(kind, input, value) {
+  if (kind.type === "boolean") input.checked = value === true;
+  else input.value = kind.enum ? String(value) : shownText(kind, value);
 }
 
 function numeric(kind) {
   return kind.type === "number" || kind.type === "integer";
 }
 
-// what cannot be read as a number goes as it is: the service then says what it wants
+// what cannot be read as a number goes as it is: the check, and the service, then say what is wanted
 function read(kind, input) {
   if (kind.type === "boolean") return input.checked;
   const text = input.value.trim();
   if (text === "") return kind.optional ? null : undefined;
   if (kind.enum) return kind.enum.find((value) => String(value) === text);
-  if (kind.type === "array") return text.split(/[,;\s]+/).filter(Boolean).map(numberOrText);
-  return numeric(kind) ? numberOrText(text) : text;
+  // what nobody changed is sent as it came: a conversion there and back would round it
+  if (text === shownText(kind, kind.default)) return kind.default;
+  const value = (one) => (typeof one === "number" ? toSi(one, kind.unit) : one);
+  if (kind.type === "array") return text.split(/[,;\s]+/).filter(Boolean).map((one) => value(numberOrText(one)));
+  return numeric(kind) ? value(numberOrText(text)) : text;
 }
 
 export function numberOrText(text) {
@@ -86,19 +117,34 @@ export function numberOrText(text) {
   return Number.isFinite(value) ? value : text;
 }
 
-function inDegrees(text) {
-  const values = text.split(/[,;\s]+/).filter(Boolean).map((one) => (Number(one) * 180) / Math.PI);
-  return values.length && values.every(Number.isFinite) ? ` Now ${values.map((one) => `${number(one, 4)}°`).join(", ")}.` : "";
+// what is wrong with a value that would be sent, in the units that are shown; "" where nothing is
+export function problemOf(kind, value) {
+  if (value === null) return "";
+  if (value === undefined) return numeric(kind) && kind.default === undefined ? "A number is missing." : "";
+  if (kind.type === "array") return [value].flat().map((one) => problemOf({ ...kind.items, unit: kind.unit }, one)).find(Boolean) ?? "";
+  if (!numeric(kind)) return "";
+  if (typeof value !== "number") return `'${value}' is no number.`;
+  if (kind.type === "integer" && !Number.isInteger(value)) return `${number(value)} is no whole number.`;
+  const { minimum, maximum, exclusiveMinimum: above, exclusiveMaximum: below } = kind;
+  const inside = value >= (minimum ?? -Infinity) && value <= (maximum ?? Infinity) && value > (above ?? -Infinity) && value < (below ?? Infinity);
+  return inside ? "" : `${shown(value, kind)} is not allowed. ${bounds(kind)}`;
+}
+
+function shown(value, kind) {
+  return `${number(toShown(value, kind.unit))}${unitText(kind) ? ` ${unitText(kind)}` : ""}`;
+}
+
+function unitText(kind) {
+  return kind.unit ? shownUnit(kind.unit).unit : "";
 }
 
 function bounds(kind) {
-  const source = kind.type === "array" ? { ...kind.items } : kind;
+  const source = kind.type === "array" ? { ...kind.items, unit: kind.unit } : kind;
   const low = source.minimum ?? source.exclusiveMinimum;
   const high = source.maximum ?? source.exclusiveMaximum;
-  const unit = kind.unit ? ` ${kind.unit}` : "";
   const each = kind.type === "array" ? "Several, separated by commas. " : "";
-  if (low !== undefined && high !== undefined) return `${each}${number(low)} to ${number(high)}${unit}.`;
-  if (low !== undefined) return `${each}${source.minimum === undefined ? "Above" : "At least"} ${number(low)}${unit}.`;
-  if (high !== undefined) return `${each}At most ${number(high)}${unit}.`;
+  if (low !== undefined && high !== undefined) return `${each}${number(toShown(low, kind.unit))} to ${shown(high, kind)}.`;
+  if (low !== undefined) return `${each}${source.minimum === undefined ? "Above" : "At least"} ${shown(low, kind)}.`;
+  if (high !== undefined) return `${each}At most ${shown(high, kind)}.`;
   return each.trim();
 }

@@ -1,5 +1,7 @@
 // Numbers, units and names as people read them.
 
+import { shownUnit, withShownUnit } from "./units.js";
+
 const UNITS = [
   ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
   ["_s", "s"], ["_a", "A"], ["_v", "V"], ["_c", "°C"], ["_m", "m"], ["_n", "N"], ["_g", "g"],
@@ -13,11 +15,19 @@ export function unitOf(name) {
 export function nameOf(name) {
   const found = UNITS.find(([suffix]) => name.endsWith(suffix));
   const bare = found ? name.slice(0, -found[0].length) : name;
-  return bare.replaceAll("_", " ");
+  return bare.replace(/\bvelocity(?=_|$)/, "speed").replaceAll("_", " ");
+}
+
+const AXES = { rad: "angle", "rad/s": "speed", m: "position", "m/s": "speed", A: "current", "N m": "torque", N: "force", V: "supply", "°C": "temperature" };
+
+// title of an axis for all that has an SI unit, in the unit that is shown
+export function axisTitle(si, other = "") {
+  const { unit } = shownUnit(si);
+  return unit ? `${AXES[si] ? `${AXES[si]} ` : ""}[${unit}]` : other;
 }
 
 export function withUnit(name) {
-  const unit = unitOf(name);
+  const { unit } = shownUnit(unitOf(name));
   return unit ? `${nameOf(name)} [${unit}]` : nameOf(name);
 }
 
@@ -26,6 +36,11 @@ export function number(value, digits = 4) {
   if (typeof value !== "number") return String(value);
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
   return String(Number(value.toPrecision(digits)));
+}
+
+// a value whose name tells its unit, in the units that are shown
+export function quantity(name, value) {
+  return typeof value === "number" ? withShownUnit(value, unitOf(name)) : number(value);
 }
 
 const ROUNDING = 1e-7;
@@ -51,7 +66,7 @@ export function conditions(values) {
   return Object.entries(values ?? {}).map(([name, value]) => {
     if (value === true) return nameOf(name);
     if (value === false) return `not ${nameOf(name)}`;
-    return `${nameOf(name)} ${number(value)}${unitOf(name) ? " " + unitOf(name) : ""}`;
+    return `${nameOf(name)} ${quantity(name, value)}`;
   }).join(", ");
 }
 

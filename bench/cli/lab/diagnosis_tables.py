@@ -1,0 +1,107 @@
+"""What the `study` commands print of diagnoses, and of what is to be recorded next."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from bench.cli.output import percent, say, share_interval, table, text
+from compensator.lab.chance import chance_cell
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.json_types import Json
+    from bench.study.extend import Extended
+    from bench.study.models.change import Searched
+    from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
+    from bench.study.suggestion.suggested import Suggested
+
+
+def diagnosis(found: "Diagnosis") -> None:
+    """The verdict and the ranking."""
+    say(found.sentence)
+    for finding in found.findings:
+        if finding.code == "data-problem":
+            say(f"data: {finding.text}")
+    for members in found.classes:
+        say(members.sentence)
+        if members.separating_trial:
+            say(f"  to tell them apart: {members.separating_trial}")
+    rows = [
+        (
+            one.effect,
+            "yes" if one.in_class else "",
+            one.score,
+            chance_cell(one.p_value),
+            percent(one.held_out_before),
+            percent(one.held_out_after),
+            share_interval(one.gain, one.gain_low, one.gain_high),
+            text(one.d_prime),
+        )
+        for one in found.ranking
+    ]
+    if rows:
+        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#"]
+        table("Effects by evidence", columns, rows)
+    if found.provisional:
+        say(found.provisional.sentence)
+    for note in found.notes:
+        say(note)
+
+
+def search(found: "Searched") -> None:
+    """The steps of a search, and what is left."""
+    for step in found.steps:
+        say(step.sentence)
+    say(found.sentence)
+
+
+def suggestion(found: "Suggested") -> None:
+    """Trials to record next, and why."""
+    say(found.diagnosis)
+    say(found.sentence)
+    rows = [
+        (
+            one.kind,
+            _values(one.parameters),
+            one.minutes,
+            f"{one.before:.1f} -> {one.after:.1f}",
+            one.sentence,
+        )
+        for one in found.trials
+    ]
+    if rows:
+        table("Trials to record next", ["kind", "parameters", "minutes#", "predicted d'#", "why"], rows)
+    for one in found.kept_out:
+        say(f"kept out: {one.kind}, experiment {one.experiment_id}, {one.outcome}: {one.reason}")
+    pairs = [(one.true, one.rival or "nothing", one.before, one.after, one.promised) for one in found.pairs]
+    columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
+    table("If the truth is one, predicted d' against the other", columns, pairs)
+
+
+def _values(parameters: "Json") -> str:
+    return ", ".join(f"{name} {_value(value)}" for name, value in parameters.items())
+
+
+def _value(value: object) -> str:
+    return " ".join(map(_value, value)) or "none" if isinstance(value, list | tuple) else text(value)
+
+
+def extended(found: "Extended") -> None:
+    """What was added to a study."""
+    say(found.sentence)
+    if found.left_out:
+        say(f"left out, too short for the study's filter or without its effort: {', '.join(found.left_out)}")
+    table("Added", ["id#", "name"], [(one.trial_id, one.name) for one in found.added])
+
+
+def diagnoses(found: "Sequence[Diagnosis | NotDiagnosed]") -> None:
+    """One line for each study."""
+    table("Diagnoses", ["study#", "verdict", "first", "held out before#", "after#", "p#", "sentence"], map(_row, found))
+
+
+def _row(one: "Diagnosis | NotDiagnosed") -> tuple[object, ...]:
+    from bench.study.models.diagnosis import NotDiagnosed
+
+    if isinstance(one, NotDiagnosed):
+        return one.study_id, "not judged", None, None, None, None, one.error
+    first = one.ranking[0] if one.ranking else None
+    errors = (None, None) if first is None else (percent(first.held_out_before), percent(first.held_out_after))
+    return one.study_id, one.verdict, first and first.effect, *errors, chance_cell(one.p_value), one.sentence

@@ -1,0 +1,160 @@
+"""One joint in the control loop: its drive, its limits, its current servo, and the state of its power stage."""
+
+from math import nan
+
+from bench.control.cycle import OFF, Action, Reading
+from bench.control.limits import Guard
+from bench.control.servo import CurrentServo
+from bench.errors import ConfigurationError, LimitTrip
+from drivers.contract import Command, Drive, Mode, Sample, Status
+from drivers.errors import DriveStateError
+
+_OFF, _DUTY, _CURRENT, _ENABLED = Mode.OFF, Mode.DUTY, Mode.CURRENT, Status.ENABLED  # at hand, see cycle.py
+_IDLE = Action(OFF)
+_NOTHING = Reading(0.0, Sample(nan, nan, nan, nan, nan, nan, nan, nan, Status.DISABLED), 0.0, nan)
+POWER_OFF_TRIES = 3
+
+
+class ControlledJoint:
+    """What the control loop does with each of its joints.
+
+    Args:
+        drive: open and disabled.
+        guard: the limits.
+        current_servo: eq. (3); None where the rig does not say enough. Then there is no current estimate, and
+            current commands need a drive with a current mode.
+        name: messages begin with it; "" where there is one joint only.
+
+    Attributes:
+        action: of this cycle.
+        reading: the last one.
+        demanded: mode of the last command that the power stage was switched for.
+        prefix: the name, as messages begin with it.
+    """
+
+    def __init__(self, drive: Drive, guard: Guard, current_servo: CurrentServo | None = None, name: str = "") -> None:
+        self._drive = drive
+        self._guard = guard
+        self._current_servo = current_servo
+        self.prefix = f"{name}: " if name else ""
+        self._lacks_current_mode = Mode.CURRENT not in drive.describe().modes
+        self.action = _IDLE
+        self.reading = _NOTHING
+        self.demanded = Mode.OFF
+        self._mode = Mode.OFF  # of the power stage
+        self._origin_s = 0.0
+
+    @property
+    def is_powered(self) -> bool:
+        """Whether the stage has been powered and not been switched off again."""
+        return self._mode is not _OFF
+
+    def begin(self) -> None:
+        """Begin a trial with a sample taken with the power off: its time counts from there."""
+        self.reading, self._origin_s = _NOTHING, 0.0
+        self.coast()
+        self._origin_s = self.reading.time_s
+        self.reading = self.reading._replace(time_s=0.0)
+
+    def is_stale(self) -> bool:
+        """Whether something in the last sample is older than allowed."""
+        return self._guard.is_stale(self.reading.sample)
+
+    def coast(self) -> None:
+        """One exchange without a demand: before motion, or of a drive that brakes by itself."""
+        self.action = _IDLE
+        self.exchange()
+
+    def require_mode(self) -> None:
+        """Refuse an action that neither the drive nor eq. (3) can do.
+
+        Raises:
+            ConfigurationError: a current is demanded that the drive cannot be asked for.
+        """
+        if self._current_servo is None and self._wire_mode() is not self.action.command.mode:
+            raise ConfigurationError(
+                f"{self.prefix}the drive has no current mode, and the rig lacks the resistance, back-EMF constant or "
+                "gear ratio that eq. (3) needs to do without; add them to the rig"
+            )
+
+    def switch(self) -> bool:
+        """Power the stage for the action, or take the power away; False where it stands as it has to."""
+        wanted = self._wire_mode()
+        stands = wanted is self._mode
+        # marked before the call: an `enable` that fails half-way may have powered the stage
+        self.demanded, self._mode = self.action.command.mode, wanted
+        if stands:
+            return False
+        if wanted is _OFF:
+            self._drive.disable()
+        else:
+            self._drive.enable(wanted)
+        return True
+
+    def exchange(self) -> None:
+        """Send the action, in a mode that the drive closes itself, and take the reading that answers it."""
+        command, servo = self.action[0], self._current_servo
+        if self._lacks_current_mode and command[0] is _CURRENT and servo is not None:
+            _, previous, velocity_rad_s, _, _ = self.reading
+            command = Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
+        sample = self._drive.exchange(command)
+        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _ = sample
+        if velocity_rad_s != velocity_rad_s:  # NaN
+            velocity_rad_s = self._derived_velocity(sample)
+        estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
+        if current_a != current_a:  # NaN
+            current_a = estimate_a
+        self.reading = Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a, estimate_a)
+
+    def check(self, target_rad: float) -> None:
+        """Compare the reading with the limits, and the drive's state with what was asked of it.
+
+        Raises:
+            LimitTrip, DriveStateError: naming the joint, where it has a name.
+            DriveFault: what the drive says of its fault.
+        """
+        _, sample, velocity_rad_s, current_a, _ = self.reading
+        try:
+            self._guard.check(sample, velocity_rad_s, current_a, target_rad)
+        except LimitTrip as trip:
+            raise LimitTrip(f"{self.prefix}{trip}") from trip
+        if self._mode is not _OFF and sample[8] is not _ENABLED:
+            self._refuse_state(sample.status)
+
+    def quick_stop(self) -> None:
+        """Have the drive brake, where it is powered."""
+        if self.is_powered:
+            self._drive.quick_stop()
+
+    def power_off(self) -> list[str]:
+        """Take the power away, and say what went wrong. Tried again when it fails or is interrupted."""
+        notes = []
+        for _ in range(POWER_OFF_TRIES):
+            try:
+                self._drive.disable()
+                break
+            except BaseException as error:  # the power has to go, whatever happens meanwhile
+                notes.append(f"{self.prefix}power-off failed: {str(error) or type(error).__name__}")
+        self.demanded = self._mode = Mode.OFF
+        return notes
+
+    def _wire_mode(self) -> Mode:
+        """The mode that the drive is sent the action in."""
+        mode = self.action.command.mode
+        return _DUTY if mode is _CURRENT and self._lacks_current_mode else mode
+
+    def _derived_velocity(self, sample: Sample) -> float:
+        """By the sample before; as it was where no time has passed, and 0 at the first."""
+        _, previous, velocity_rad_s, _, _ = self.reading
+        elapsed_s = sample.time_s - previous.time_s
+        if not elapsed_s > 0.0:  # NaN, too
+            return velocity_rad_s
+        return (sample.position_rad - previous.position_rad) / elapsed_s
+
+    def _refuse_state(self, status: Status) -> None:
+        if status is Status.FAULT:
+            self.exchange()  # a drive in fault refuses the command, and says what the fault is
+        raise DriveStateError(
+            self._drive.describe().device,
+            f"{self.prefix}status is {status.name} during motion; ENABLED is wanted. See the drive's own display",
+        )

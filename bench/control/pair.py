@@ -1,0 +1,117 @@
+"""A master and a slave in the control loop: action, reading and row of a cycle, by those of the two joints."""
+
+from collections.abc import Callable, Generator
+from math import nan
+from typing import Any, NamedTuple
+
+from bench.config.channels import PAIR_CHANNELS, PAIR_RECORDED
+from bench.control.cycle import OFF, VALUES, Action, Reading, Row, row_reader, values_of
+from bench.control.joint import ControlledJoint
+from bench.json_types import Value
+
+
+class Reach(NamedTuple):
+    """What the operator at a simulated master is to do from now on; a person is free.
+
+    Attributes:
+        angle_rad: where the arm is to be in the end.
+        duration_s: that he takes for it.
+    """
+
+    angle_rad: float
+    duration_s: float
+
+
+class Truth(NamedTuple):
+    """What acts on the arms of a simulated pair; NaN of a real one.
+
+    Attributes:
+        interaction_n_m: torque that holds up the slave's load and presses its arm against a wall.
+        hand_n_m: torque of the operator's hand on the master's arm.
+    """
+
+    interaction_n_m: float = nan
+    hand_n_m: float = nan
+
+
+class PairAction(NamedTuple):
+    """What a procedure yields each cycle.
+
+    Attributes:
+        slave, master: of each joint; events are the slave's.
+        reflected_n_m: load that is reflected to the operator, recorded.
+        reach: what the operator does from this cycle on.
+    """
+
+    slave: Action
+    master: Action
+    reflected_n_m: float = nan
+    reach: Reach | None = None
+
+
+class PairReading(NamedTuple):
+    """What a procedure receives each cycle."""
+
+    slave: Reading
+    master: Reading
+    truth: Truth
+
+
+PairProcedure = Generator[PairAction, PairReading, dict[str, Value]]
+"""Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
+
+PAIR_VALUES = (
+    *VALUES,
+    *(f"master.{name}" for name in VALUES),
+    "pair.reflected_n_m",
+    *(f"pair.{one}" for one in Truth._fields),
+)
+"""What a cycle of a pair can be asked for; the slave's without a prefix."""
+
+_row: Callable[[tuple[Any, ...]], Row] = row_reader(PAIR_CHANNELS, PAIR_VALUES)
+
+
+def _nothing_known() -> Truth:
+    return Truth()
+
+
+def _free(_reach: Reach) -> None:
+    """The operator does as he likes."""
+
+
+class JointPair:
+    """A master and a slave. The master is first: what the operator feels is as new as can be.
+
+    Args:
+        slave, master: the joints.
+        truth: what acts on the arms, where that is known.
+        operate: tells the operator of a simulated master what to do.
+    """
+
+    channels, off = PAIR_RECORDED, PairAction(Action(OFF), Action(OFF))
+
+    def __init__(
+        self,
+        slave: ControlledJoint,
+        master: ControlledJoint,
+        truth: Callable[[], Truth] = _nothing_known,
+        operate: Callable[[Reach], None] = _free,
+    ) -> None:
+        self.joints = (master, slave)
+        self._slave, self._master = slave, master
+        self._truth, self._operate = truth, operate
+
+    def assign(self, action: PairAction) -> None:
+        """Tell the operator what he does, and each joint its action."""
+        if action.reach is not None:
+            self._operate(action.reach)
+        self._slave.action, self._master.action = action.slave, action.master
+
+    def reading(self) -> PairReading:
+        """Both readings, and what acts on the arms."""
+        return PairReading(self._slave.reading, self._master.reading, self._truth())
+
+    def row(self, action: PairAction, reading: PairReading) -> Row:
+        """In the order of `bench.config.channels.PAIR_RECORDED`; its time is the slave's."""
+        slave, master = values_of(action.slave, reading.slave), values_of(action.master, reading.master)
+        return _row((*slave, *master, action.reflected_n_m, *reading.truth))

@@ -1,1 +1,0 @@
-"""A master and a slave: two joints, two drives, one loop."""

@@ -1,0 +1,146 @@
+"""What stands on a bench of two joints: both drives, who hangs the load, and who holds the master."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import nan
+from typing import Protocol
+
+from bench.config.configuration import BenchConfiguration
+from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody
+from bench.control.pair import Reach, Truth
+from bench.drives.sim.joint import make_environment, make_hand
+from bench.errors import ExperimentError
+
+HOLD = (
+    "Take hold of the master's arm, let it hang straight down, and keep it there. It will pull at your hand, and the "
+    "slave will do what it does."
+)
+
+
+class Hand(Protocol):
+    """The operator at the master."""
+
+    def take_hold(self) -> None:
+        """Hold the arm where it is."""
+
+    def reach(self, angle_rad: float, duration_s: float) -> None:
+        """Reach for an angle, beginning now."""
+
+    def torque_n_m(self) -> float:
+        """What the hand does to the arm; NaN where nobody knows."""
+
+
+class Environment(Protocol):
+    """What the slave's arm meets."""
+
+    def put_wall(self, angle_rad: float | None) -> None:
+        """Have a wall at an angle, or none."""
+
+    def interaction_n_m(self) -> float:
+        """Torque that load and wall truly take; NaN where nobody knows."""
+
+
+class PersonHand:
+    """A person at a real master: is asked to take hold, and moves it as he likes.
+
+    Args:
+        ask: shows a sentence and returns True when it is done, False when the person gives up.
+    """
+
+    def __init__(self, ask: Ask) -> None:
+        self._ask = ask
+
+    def take_hold(self) -> None:
+        """Ask for it.
+
+        Raises:
+            ExperimentError: the person gave up.
+        """
+        if not self._ask(HOLD):
+            raise ExperimentError("nobody took hold of the master; start again when somebody can")
+
+    def reach(self, angle_rad: float, duration_s: float) -> None:
+        """A person is free."""
+
+    def torque_n_m(self) -> float:
+        """Not known."""
+        return nan
+
+
+class PersonEnvironment:
+    """Round a real slave: a person puts a wall there, and takes it away.
+
+    Args:
+        ask: as of `PersonHand`.
+    """
+
+    def __init__(self, ask: Ask) -> None:
+        self._ask = ask
+        self._stands: float | None = None
+
+    def put_wall(self, angle_rad: float | None) -> None:
+        """Ask for it, where something has to change.
+
+        Raises:
+            ExperimentError: the person gave up.
+        """
+        if angle_rad == self._stands:
+            return
+        wanted = "Take the wall away from the slave." if angle_rad is None else _wall(angle_rad)
+        if not self._ask(wanted):
+            raise ExperimentError("the slave's wall is not as the trial wants it; start again when it can be")
+        self._stands = angle_rad
+
+    def interaction_n_m(self) -> float:
+        """Not known."""
+        return nan
+
+
+@dataclass(frozen=True)
+class PairEquipment:
+    """Both joints, and who stands beside them."""
+
+    slave: Equipment
+    master: Equipment
+    hand: Hand
+    environment: Environment
+
+    def prepare(self, load_kg: float, balanced: bool, wall_rad: float | None) -> None:
+        """Before a trial, with the power off: the slave's wall and load, the operator's hand on the master.
+
+        Raises:
+            ExperimentError: something of it was not done.
+        """
+        self.environment.put_wall(None)
+        self.slave.technician.hang_load(load_kg, balanced)
+        if wall_rad is not None:
+            self.environment.put_wall(wall_rad)
+        self.hand.take_hold()
+
+    def operate(self, reach: Reach) -> None:
+        """What the operator does from now on."""
+        self.hand.reach(*reach)
+
+    def truth(self) -> Truth:
+        """What acts on the arms now."""
+        return Truth(self.environment.interaction_n_m(), self.hand.torque_n_m())
+
+
+def make_pair(configuration: BenchConfiguration, ask: Callable[[str], bool] = nobody) -> PairEquipment:
+    """Both drives, not yet open, and who stands beside them.
+
+    Raises:
+        ConfigurationError: the bench has no master, or a joint is impossible.
+    """
+    master_bench = configuration.of_master()
+    slave, master = make_equipment(configuration, ask), make_equipment(master_bench, ask)
+    return PairEquipment(
+        slave,
+        master,
+        make_hand(master.drive) or PersonHand(ask),
+        make_environment(slave.drive) or PersonEnvironment(ask),
+    )
+
+
+def _wall(angle_rad: float) -> str:
+    return f"Put a wall in the way of the slave's arm, at {angle_rad:.3g} rad from straight down, and stand clear."

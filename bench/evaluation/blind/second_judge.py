@@ -1,0 +1,145 @@
+"""The same questions to the lab on joints of the second plant: its families of items, and how each is judged."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.errors import ParameterError
+from bench.evaluation.blind.baseline_methods import RIVALS
+from bench.evaluation.blind.items import Item
+from bench.evaluation.blind.judge import Result, can_be_seen, left_beside
+from bench.evaluation.blind.lab_answer import LabAnswer, ask_lab, base_fit
+from bench.evaluation.blind.oracle import NEEDED, Standing
+from bench.evaluation.blind.second_plant import (
+    KNOWN,
+    NAMES,
+    OUTSIDE,
+    SecondJoint,
+    recordings_of,
+    rig_of,
+    second_joint,
+)
+from compensator.lab.effects.catalogue import withheld
+from compensator.lab.errors import LabError
+from compensator.lab.model.fit import fit_effects
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.validation import held_out
+from compensator.lab.screening.candidates import gather
+
+OTHER_LAWS = "other-laws"
+
+
+@dataclass(frozen=True)
+class SecondFamily:
+    """A kind of item.
+
+    Attributes:
+        name: as in the table of results.
+        per_plant: how many for each plant asked for.
+        names: mechanisms that come in turn.
+        count: how many are hidden.
+        ratios: r of each, drawn from here (log).
+        other_laws: share of the joints whose friction follows laws that the base model does not have.
+    """
+
+    name: str
+    per_plant: int
+    names: tuple[str, ...]
+    count: int
+    ratios: tuple[float, float] = (0.1, 1.0)
+    other_laws: float = 0.5
+
+
+SECOND_FAMILIES: dict[str, SecondFamily] = {
+    family.name: family
+    for family in (
+        SecondFamily("complete", 2, (), 0, other_laws=0.0),
+        SecondFamily(OTHER_LAWS, 1, (), 0, other_laws=1.0),
+        SecondFamily("single", 3, KNOWN, 1),
+        SecondFamily("pair", 1, KNOWN, 2, (0.35, 1.0)),
+        SecondFamily("outside", 2, OUTSIDE, 1, (0.3, 1.2)),
+    )
+}
+
+
+def second_items_of(seed: int, plants: int, only: Sequence[str] = ()) -> list[Item]:
+    """Every item of a run; a longer run begins with the items of a shorter one.
+
+    Args:
+        seed: of the run.
+        plants: rounds.
+        only: families that are asked; all where none is named.
+
+    Raises:
+        ParameterError: no such family.
+    """
+    for name in only:
+        if name not in SECOND_FAMILIES:
+            raise ParameterError(f"there is no family '{name}' of items; known are {', '.join(SECOND_FAMILIES)}")
+    found = []
+    for plant in range(plants):
+        for number, family in enumerate(SECOND_FAMILIES.values()):
+            for repeat in range(family.per_plant if not only or family.name in only else 0):
+                drawn = np.random.SeedSequence((seed, plant, number, repeat, 2)).generate_state(1)
+                turn = plant * family.per_plant + repeat
+                found.append(Item(f"second-{seed}-{plant}-{family.name}-{repeat}", family.name, int(drawn[0]), turn))
+    return found
+
+
+def draw_second(item: Item) -> SecondJoint:
+    """The joint of an item."""
+    family, random = SECOND_FAMILIES[item.family], np.random.default_rng(item.seed)
+    level = "foreign" if random.random() < family.other_laws else "textbook"
+    names: tuple[str, ...] = ()
+    if family.count == 1:
+        names = (family.names[item.turn % len(family.names)],)
+    elif family.count > 1:
+        names = tuple(str(name) for name in random.choice(family.names, family.count, replace=False))
+    ratios = tuple(float(np.exp(random.uniform(*np.log(family.ratios)))) for _ in names)
+    return second_joint(int(random.integers(2**31)), names, ratios, level)  # type: ignore[arg-type]
+
+
+def judge_second(item: Item) -> Result:
+    """Draw, record, ask."""
+    joint = draw_second(item)
+    names = tuple(NAMES.get(truth, "") for truth in joint.truths)
+    standings: tuple[Standing | None, ...] = tuple(
+        Standing(
+            one.ratio, one.detectability, NAMES.get(one.rival, one.rival), float(np.sqrt(NEEDED / one.independent))
+        )
+        for one in joint.evidences
+    )
+    outside = float(np.hypot(1.0, joint.evidences[0].ratio)) if names == ("",) else None
+    try:
+        fit = base_fit(recordings_of(joint), rig_of(joint))
+        began = time.process_time()
+        answer = ask_lab(fit, several=len(names) > 1)
+        seconds = time.process_time() - began
+        gathered = gather(fit)
+        error = held_out(_whole(fit, names)).relative
+        rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
+        unlisted = _without_name(fit, names[0]) if item.family == "single" else None
+        left = None if unlisted is None else left_beside(fit, gathered, names[0], unlisted.first[:1])
+    except LabError as refusal:
+        return Result(
+            item.key, item.family, joint.truths, names, joint.sizes, None, standings, outside, float("nan"),
+            refusal=str(refusal),
+        )  # fmt: skip
+    return Result(
+        item.key, item.family, joint.truths, names, joint.sizes, answer, standings, outside, error, rivals, seconds,
+        withheld=unlisted, withheld_left=left,
+    )  # fmt: skip
+
+
+def _whole(fit: Fit, names: tuple[str, ...]) -> Fit:
+    """The model with all that is hidden, as far as the catalogue and these trials have it."""
+    known = [name for name in names if name and can_be_seen(fit, name)]
+    return fit_effects(fit.dataset, [*fit.names, *known], fit.training) if known else fit
+
+
+def _without_name(fit: Fit, name: str) -> LabAnswer:
+    """What the lab says as if nobody had written the effect yet."""
+    with withheld([name]):
+        return ask_lab(fit, several=False)

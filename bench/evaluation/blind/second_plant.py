@@ -1,0 +1,156 @@
+"""Joints of the second plant, as the benchmark takes them: recordings and rig for the lab, and the oracle's word.
+
+The only file that knows both the second plant and the lab's names. Names count for scoring alone.
+"""
+
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+
+from bench.config.rig import Arm, Gear, Motor, Rig, Sensor, Supply
+from compensator.lab.effects.effect import SESSION_START
+from compensator.lab.recordings.recording import Condition, Recording
+from sim_backend.second_plant.draw import draw_joint
+from sim_backend.second_plant.foreign_mechanisms import FOREIGN
+from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint, Level
+from sim_backend.second_plant.oracle import Evidence, evidence, floor_of
+from sim_backend.second_plant.recording import SecondRecording, record
+
+NAMES: dict[str, str] = {
+    "asymmetric_coulomb": "coulomb_asymmetry",
+    "asymmetric_viscous": "viscous_asymmetry",
+    "square_drag": "viscous_quadratic",
+    "tooth_loss": "load_friction",
+    "tooth_loss_square": "load_friction_quadratic",
+    "bearing_loss": "weight_friction",
+    "back_driving_loss": "back_driving_friction",
+    "cold_coulomb": "coulomb_temperature",
+    "lubricant": "viscous_temperature",
+    "running_in": "warm_up",
+    "eccentric_gear": "position_periodic_friction",
+    "cogging": "cogging",
+    "spring": "spring",
+    "turned_centre": "centre_of_mass_angle",
+    "saturation": "torque_constant_saturation",
+    "hot_winding": "winding_temperature",
+    "long_bristles": "pre_sliding",
+    "backlash": "backlash",
+    "twist": "elasticity",
+    "lag": "frictional_lag",
+    "ageing_contact": "dwell_strengthening",
+    "quick_breakaway": "rate_dependent_breakaway",
+    "eccentric_encoder": "encoder_eccentricity",
+    "sensor_gain": "current_gain_asymmetry",
+    "blanking": "dead_time",
+    "sag": "supply_sag",
+    "emf_sheet": "back_emf_error",
+}
+"""Mechanism -> effect of the catalogue; the others are outside it."""
+
+ABSORBED = {"asymmetric_coulomb": "offset", "emf_sheet": "viscous"}
+"""Mechanism -> effect of every model that does the same: no recording of the joint can tell."""
+
+KNOWN = tuple(name for name in NAMES if name not in ABSORBED)
+OUTSIDE = tuple(FOREIGN)
+FIRST_SIZE, LEAST_RATIO = 0.1, 0.003
+SCALINGS = 6  # sizes that are tried for an r
+NEAR = 1.25  # factor: an r so near to the wanted one will do
+LARGEST_STEP = 2.5  # of the logarithm of a size at once
+
+
+@dataclass(frozen=True)
+class SecondJoint:
+    """A joint and how far each of its mechanisms stands out, in their order."""
+
+    drawn: DrawnJoint
+    evidences: tuple[Evidence, ...]
+
+    @property
+    def truths(self) -> tuple[str, ...]:
+        """Names of the mechanisms that it hides."""
+        return tuple(hidden.name for hidden in self.drawn.hidden)
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Their sizes."""
+        return tuple(hidden.size for hidden in self.drawn.hidden)
+
+
+def second_joint(seed: int, names: tuple[str, ...], ratios: tuple[float, ...], level: Level) -> SecondJoint:
+    """A joint that hides mechanisms of such sizes that each stands out by an r.
+
+    Args:
+        seed: of all that is drawn.
+        names: of mechanisms; ratios: the r that each should have alone.
+        level: of the friction laws.
+    """
+    sizes = tuple(_size_for(seed, name, ratio, level) for name, ratio in zip(names, ratios, strict=True))
+    drawn = draw_joint(seed, names, sizes, level)
+    return SecondJoint(drawn, tuple(evidence(drawn, name) for name in names))
+
+
+def _size_for(seed: int, name: str, wanted: float, level: Level) -> float:
+    """The size by which a mechanism stands out by an r, or the nearest that it can have: r goes with the size, roughly."""
+    most, size, floor = MECHANISMS[name].most, FIRST_SIZE, None
+    tried: list[tuple[float, float]] = []
+    for _ in range(SCALINGS):
+        drawn = draw_joint(seed, (name,), (size,), level)
+        floor = floor or floor_of(drawn, name)
+        off = log(max(evidence(drawn, name, floor).ratio, LEAST_RATIO) / wanted)
+        tried.append((log(size), off))
+        if abs(off) < log(NEAR) or (size == most and off < 0.0):
+            break
+        size = min(float(np.exp(_next(tried))), most)
+    return float(np.exp(min(tried, key=lambda one: abs(one[1]))[0]))
+
+
+def _next(tried: list[tuple[float, float]]) -> float:
+    """Where to look for a rising function's zero: between the nearest points of either sign, or beyond the last."""
+    below = max((one for one in tried if one[1] < 0.0), default=None)
+    above = min((one for one in tried if one[1] >= 0.0), default=None)
+    if below is None or above is None or below[0] >= above[0]:
+        place, off = tried[-1]
+        return place - float(np.clip(off, -LARGEST_STEP, LARGEST_STEP))
+    share = float(np.clip(-below[1] / (above[1] - below[1]), 0.2, 0.8))
+    return below[0] + share * (above[0] - below[0])
+
+
+def recordings_of(joint: SecondJoint) -> list[Recording]:
+    """Every trial of a joint, for the lab."""
+    return [_recording(joint.drawn, one) for one in record(joint.drawn)]
+
+
+def _recording(drawn: DrawnJoint, one: SecondRecording) -> Recording:
+    conditions: dict[str, Condition] = {"load_kg": one.load_kg}
+    if not drawn.told.length_in_rig:
+        conditions["arm_m"] = float(f"{drawn.arm.length_m:.3g}")
+    if drawn.sensors.session_told:
+        conditions[SESSION_START] = round(one.session_s, 1)
+    return Recording(one.name, one.kind, conditions, one.channels)
+
+
+def rig_of(joint: SecondJoint) -> Rig:
+    """What the owner knows of a joint: as much as was drawn, rounded as data sheets are."""
+    drawn, told, arm = joint.drawn, joint.drawn.told, joint.drawn.arm
+    turns, constant = drawn.physics.turns, drawn.physics.torque_per_a / drawn.physics.turns
+
+    def when(known: bool, value: float) -> float | None:
+        return float(f"{value:.3g}") if known else None
+
+    return Rig(
+        name="second plant",
+        motor=Motor(
+            torque_constant_n_m_a=when(told.torque_constant, constant * told.tolerance),
+            resistance_ohm=when(told.torque_constant, drawn.physics.resistance_ohm),
+        ),
+        gear=Gear(ratio=when(told.ratio, turns)),
+        arm=Arm(
+            length_m=when(told.length_in_rig, arm.length_m),
+            inertia_kg_m2=when(told.inertia, arm.inertia_kg_m2),
+            mass_kg=when(told.mass, arm.mass_kg),
+            centre_of_mass_m=when(told.mass, arm.centre_m),
+        ),
+        sensor=Sensor(counts_per_turn=drawn.sensors.counts_per_turn if told.counts else None),
+        supply=Supply(voltage_v=drawn.physics.supply_v, is_nominal=True if told.nominal else None),
+    )

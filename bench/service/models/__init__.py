@@ -1,4 +1,0 @@
-"""What routes take and answer with, as pydantic models.
-
-Data only.
-"""

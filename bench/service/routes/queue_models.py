@@ -1,0 +1,159 @@
+"""What the routes of the queue take and answer."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from bench.json_types import Json
+from bench.runs.queue import QueueState
+from bench.runs.queue.campaign import MOST_ITEMS
+from bench.store.tables.queue import NewItem, QueueItem
+from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
+
+Tag = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=LONGEST_TAG)]
+Tags = Annotated[list[Tag], Field(max_length=MOST_TAGS, description="free words to find experiments by")]
+Note = Annotated[str, Field(max_length=2000)]
+Operator = Annotated[str, Field(max_length=200)]
+
+
+class NewQueueItem(BaseModel):
+    """An experiment to come."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"kind": "steps", "parameters": {"repeats": 3, "load_kg": 0.1}, "tags": ["winter"]}]
+        },
+    )
+    kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
+    parameters: Json = Field(default={}, description="what differs from the defaults, SI")
+    operator: Operator = ""
+    note: Note = ""
+    tags: Tags = []
+    pace: Literal["real-time", "fast"] | None = Field(default=None, description="as for POST /experiments")
+
+
+class NewQueueItems(BaseModel):
+    """Experiments to come, taken in all or none."""
+
+    model_config = ConfigDict(extra="forbid")
+    items: list[NewQueueItem] = Field(min_length=1, max_length=MOST_ITEMS)
+
+
+class ChangedItem(BaseModel):
+    """What is changed of an item that waits; what is left out stays."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"position": 0}]})
+    position: int | None = Field(default=None, ge=0, description="its new place among those that wait, from 0")
+    operator: Operator | None = None
+    note: Note | None = None
+    tags: Tags | None = None
+
+
+class Item(BaseModel):
+    """An experiment in the queue, or one that came out of it."""
+
+    item_id: int
+    campaign_id: int | None
+    kind: str
+    parameters: Json
+    operator: str
+    note: str
+    tags: list[str]
+    duration_s: float = Field(description="estimate, in the joint's time")
+    state: str = Field(description="waiting, running, or how its experiment ended")
+    reason: str = Field(description="why it ended")
+    experiment_id: int | None
+    created_utc: datetime
+    finished_utc: datetime | None
+
+
+class Queue(BaseModel):
+    """The queue of the bench."""
+
+    state: Literal["idle", "running", "pausing", "paused", "held"] = Field(
+        description="held: nothing is started until somebody resumes; pausing: it stands still after its present trial"
+    )
+    reason: str = Field(description="why it is held or paused")
+    running: Item | None
+    waiting: list[Item] = Field(description="in the order in which they will be run")
+    duration_s: float = Field(description="estimate of all of them, in the joint's time; a simulated one may be faster")
+    left_s: float = Field(description="what is left of it")
+    load_changes: int = Field(description="how often something has to be hung yet")
+    ended: list[Item] = Field(description="what came out last, newest first")
+
+
+class Added(BaseModel):
+    """The items that were taken in."""
+
+    item_ids: list[int]
+
+
+class Cleared(BaseModel):
+    """How many items were removed."""
+
+    removed: int
+
+
+class PlannedItem(BaseModel):
+    """One experiment of a campaign."""
+
+    kind: str
+    parameters: Json
+    loads_kg: list[float] = Field(description="that are hung in turn")
+    duration_s: float
+
+
+class Plan(BaseModel):
+    """What a campaign comes to, in the order in which it is run."""
+
+    name: str
+    items: list[PlannedItem]
+    duration_s: float = Field(description="estimate of the whole, in the joint's time, hanging of loads included")
+    load_changes: int = Field(description="how often something has to be hung, the first load included")
+
+
+class StartedCampaign(Plan):
+    """A campaign in the queue."""
+
+    item_ids: list[int]
+
+
+def item_of(found: QueueItem) -> Item:
+    """An item as it is answered."""
+    return Item(
+        item_id=found.id,
+        campaign_id=found.campaign_id,
+        kind=found.kind,
+        parameters=found.parameters,
+        operator=found.operator,
+        note=found.note,
+        tags=list(found.tags),
+        duration_s=found.duration_s,
+        state=found.state,
+        reason=found.reason,
+        experiment_id=found.experiment_id,
+        created_utc=found.created_utc,
+        finished_utc=found.finished_utc,
+    )
+
+
+def queue_of(found: QueueState, ended: list[QueueItem]) -> Queue:
+    """The queue as it is answered."""
+    return Queue(
+        state=found.state,
+        reason=found.reason,
+        running=None if found.running is None else item_of(found.running),
+        waiting=[item_of(item) for item in found.waiting],
+        duration_s=found.duration_s,
+        left_s=found.left_s,
+        load_changes=found.load_changes,
+        ended=[item_of(item) for item in ended],
+    )
+
+
+def planned(item: NewItem) -> PlannedItem:
+    """An item of a plan as it is answered."""
+    loads_kg = [float(load) for load, _ in item.loads]
+    return PlannedItem(kind=item.kind, parameters=item.parameters, loads_kg=loads_kg, duration_s=item.duration_s)

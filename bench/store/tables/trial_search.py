@@ -1,0 +1,130 @@
+"""Trials found by words and conditions, sorted, a page at a time: for a list that a person looks through."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sqlalchemy import Column, ColumnElement, Connection, and_, func, not_, or_, select
+
+from bench.store.errors import StoreValueError
+from bench.store.records import HIDDEN
+from bench.store.schema import EXPERIMENT, TRIAL, TRIAL_CONDITION
+from bench.store.tables import conditions as condition_rows
+from bench.store.tables.conditions import Wanted
+
+SORTED_BY: dict[str, Column[object]] = {
+    "trial": TRIAL.c.id, "name": TRIAL.c.name, "kind": TRIAL.c.kind, "outcome": TRIAL.c.outcome, "rows": TRIAL.c.rows,
+}  # fmt: skip
+MOST_WORDS = 8
+ESCAPE = "\\"
+ROUNDING = 5e-4  # relative: numbers are shown with four digits
+SHOWN_AS = {"_kg": 1e-3, "_rad": math.radians(1.0), "_rad_s": math.radians(1.0)}  # SI of what the page shows as 1
+
+
+@dataclass(frozen=True, slots=True)
+class TrialQuery:
+    """What is looked for.
+
+    Attributes:
+        experiment_id, kind, outcome: exact; None: any.
+        words: each has to be in the name, kind, outcome, reason, a condition's name or text, or be the number of the
+            trial or the value of a condition.
+        conditions: value, or lowest and highest number, by condition.
+        sort: a key of `SORTED_BY`; trials that are alike come in the order in which they were made.
+        descending: the highest, or newest, first.
+    """
+
+    experiment_id: int | None = None
+    kind: str | None = None
+    outcome: str | None = None
+    words: tuple[str, ...] = ()
+    conditions: Mapping[str, Wanted] = field(default_factory=dict)
+    sort: str = "trial"
+    descending: bool = False
+
+
+def search(connection: Connection, wanted: TrialQuery, limit: int, offset: int) -> tuple[list[int], int]:
+    """Ids of one page, and how many trials are found in all.
+
+    Raises:
+        StoreValueError: an unknown order, or too many words.
+    """
+    if wanted.sort not in SORTED_BY:
+        raise StoreValueError(f"sort is '{wanted.sort}'; wanted is one of {', '.join(SORTED_BY)}")
+    if len(wanted.words) > MOST_WORDS:
+        raise StoreValueError(f"found {len(wanted.words)} words; wanted at most {MOST_WORDS}")
+    filters = _filters(connection, wanted)
+    key = SORTED_BY[wanted.sort]
+    order = [column.desc() if wanted.descending else column.asc() for column in dict.fromkeys((key, TRIAL.c.id))]
+    found = select(TRIAL.c.id).where(*filters).order_by(*order)
+    if wanted.words:  # every trial is looked at once: counting them apart would look again
+        ids = list(connection.execute(found).scalars())
+        return ids[offset : offset + limit], len(ids)
+    count = connection.execute(select(func.count()).select_from(TRIAL).where(*filters)).scalar_one()
+    return list(connection.execute(found.limit(limit).offset(offset)).scalars()), int(count)
+
+
+def _filters(connection: Connection, wanted: TrialQuery) -> list[ColumnElement[bool]]:
+    filters = condition_rows.match_all(wanted.conditions)
+    hidden = list(connection.execute(select(EXPERIMENT.c.id).where(EXPERIMENT.c.outcome.in_(HIDDEN))).scalars())
+    if hidden:
+        filters.append(not_(TRIAL.c.experiment_id.in_(hidden)))
+    for column, value in (("experiment_id", wanted.experiment_id), ("kind", wanted.kind), ("outcome", wanted.outcome)):
+        if value is not None:
+            filters.append(TRIAL.c[column] == value)
+    if not wanted.words:
+        return filters
+    keys = _keys(connection)
+    return filters + [_has(connection, word, keys) for word in wanted.words]
+
+
+def _has(connection: Connection, word: str, keys: list[str]) -> ColumnElement[bool]:
+    """A word is somewhere in the trial. Conditions have few texts and keys: they are found first, trials by index."""
+    table = TRIAL_CONDITION.c
+    hits = [_like(connection, TRIAL.c[name], word) for name in ("name", "kind", "outcome", "reason")]
+    texts = select(table.key, table.text).where(table.text.is_not(None), _like(connection, table.text, word)).distinct()
+    by_key: dict[str, list[str]] = {}
+    for key, text in connection.execute(texts).all():
+        by_key.setdefault(key, []).append(text)
+    told = [and_(table.key == key, table.text.in_(found)) for key, found in by_key.items()]
+    named = [key for key in keys if word.lower() in key.lower()]
+    if named:  # a flag that is not set is no sign of what it is called
+        told.append(and_(table.key.in_(named), or_(table.flag.is_(None), table.flag.is_(True))))
+    number = _number(word)
+    if number is not None:
+        told += [and_(table.key == key, or_(*_about(table.number, number, key))) for key in keys]
+        hits.append(TRIAL.c.id == number)
+    return or_(*hits, *(TRIAL.c.id.in_(select(table.trial_id).where(one)) for one in told))
+
+
+def _keys(connection: Connection) -> list[str]:
+    """The keys of all conditions: from one to the next in the index, as there are few of them and many rows."""
+    key = TRIAL_CONDITION.c.key
+    found: list[str] = []
+    following = connection.execute(select(func.min(key))).scalar_one()
+    while following is not None:
+        found.append(following)
+        following = connection.execute(select(func.min(key)).where(key > following)).scalar_one()
+    return found
+
+
+def _like(connection: Connection, column: ColumnElement[str], word: str) -> ColumnElement[bool]:
+    """A column has the word in it, in any case. SQLite's LIKE ignores the case by itself, three times as fast."""
+    escaped = word.replace(ESCAPE, 2 * ESCAPE).replace("%", f"{ESCAPE}%").replace("_", f"{ESCAPE}_")
+    compare = column.like if connection.dialect.name == "sqlite" else column.ilike
+    return compare(f"%{escaped}%", escape=ESCAPE)
+
+
+def _about(column: ColumnElement[float], number: float, key: str) -> list[ColumnElement[bool]]:
+    """A condition is the number, as it is rounded where it is shown: in SI, or in grams and degrees."""
+    scale = next((scale for suffix, scale in SHOWN_AS.items() if key.endswith(suffix)), 1.0)
+    spans = [sorted((value * (1 - ROUNDING), value * (1 + ROUNDING))) for value in {number, number * scale}]
+    return [column.between(low, high) for low, high in spans]
+
+
+def _number(word: str) -> float | None:
+    try:
+        value = float(word)
+    except ValueError:
+        return None
+    return value if abs(value) < 2**31 else None  # nan is below nothing

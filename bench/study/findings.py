@@ -1,0 +1,55 @@
+"""What a diagnosis found, with codes: the one place where the lab's answer becomes codes, numbers and words."""
+
+from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, Value
+from compensator.lab.chance import stated
+from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.examination import SIGNIFICANT
+
+
+def conclusion_of(found: Diagnosis) -> Conclusion:
+    """The answer itself."""
+    return Conclusion(code=_code(found), values=_values(found), text=found.sentence)
+
+
+def findings_of(found: Diagnosis) -> list[Finding]:
+    """What stands beside the answer: problems of the data that it does not tell itself, notes, effects not judged."""
+    # where the data are wrong, a problem is the answer itself
+    untold = [problem for problem in found.data_problems if problem not in found.sentence]
+    return [
+        *(Finding(code="data-problem", values={}, text=problem) for problem in untold),
+        *(Finding(code=note.code, values=dict(note.values), text=note.text) for note in found.notes),
+        *(not_judged(effect, reason) for effect, reason in found.left_out.items()),
+    ]
+
+
+def not_judged(effect: str, reason: str) -> Finding:
+    """An effect that these trials cannot show."""
+    return Finding(code="not-judged", values={"effect": effect, "reason": reason}, text=f"Not judged: {reason}.")
+
+
+def _code(found: Diagnosis) -> ConclusionCode:
+    if found.verdict != "nothing":
+        return found.verdict
+    if found.too_short:
+        return "too-short"
+    if found.remains:
+        return "unexplained"
+    return "not-confirmed" if found.p_value <= SIGNIFICANT else "nothing"
+
+
+def _values(found: Diagnosis) -> dict[str, Value]:
+    """Names and numbers of the sentence."""
+    values: dict[str, Value] = {}
+    if found.verdict != "data-problem":
+        values["p_value"] = stated(found.p_value)
+    if found.driver is not None:
+        values["driver"] = found.driver
+    if found.verdict == "missing":
+        best = found.candidates[0]
+        values |= {
+            "effect": best.effect.name,
+            "held_out_before": best.before,
+            "held_out_after": best.after,
+            "gain": best.gain.value,
+        }
+    return values

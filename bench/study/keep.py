@@ -1,0 +1,61 @@
+"""Keep a fitted model in the store, with the errors it had and the shapes it was fitted at."""
+
+from bench.json_types import Values
+from bench.store import Store
+from bench.store.records import ModelRow
+from bench.study.models.kept import KeptModel
+from bench.study.models.ladder import BreakawayRung
+from compensator.lab.at_rest.breakaway_comparison import compare_breakaway
+from compensator.lab.comparison.comparison import repeatability_floor
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.gain import error_interval
+from compensator.lab.model.validation import HeldOut, held_out, relative_error
+
+
+def keep_model(store: Store, study_id: int, parent_id: int | None, fit: Fit) -> int:
+    """Add a fitted model to its study. Returns its id."""
+    return store.add_model(study_id, parent_id, list(fit.names), stored(result_of(fit, held_out(fit))))
+
+
+def kept_of(model: ModelRow) -> KeptModel:
+    """What the store has of a model."""
+    return KeptModel.model_validate(model.result)
+
+
+def stored(kept: KeptModel) -> Values:
+    """The same for the store: what was never found is left out."""
+    return kept.model_dump(exclude_unset=True)
+
+
+def breakaway_result(fit: Fit) -> BreakawayRung | None:
+    """Relative errors (0..1) of the effort of breaking away; None where the trials hold too few starts from rest."""
+    found = compare_breakaway(fit)
+    if found is None:
+        return None
+    low, high = error_interval(found.held_out)
+    return BreakawayRung(
+        starts=found.starts,
+        training=found.relative,
+        held_out=found.held_out.relative,
+        held_out_low=low,
+        held_out_high=high,
+    )
+
+
+def result_of(fit: Fit, outside: HeldOut) -> KeptModel:
+    """What is kept of a fit."""
+    low, high = error_interval(outside)
+    floor = repeatability_floor(fit)
+    rows = fit.training & fit.dataset.counted
+    return KeptModel(
+        training=relative_error(fit.residual[rows], fit.dataset.effort[rows]),
+        held_out=outside.relative,
+        held_out_low=low,
+        held_out_high=high,
+        held_out_kind=outside.kind,
+        trials=len(fit.dataset.trials),
+        floor=None if floor is None else floor.relative,
+        breakaway=breakaway_result(fit),
+        shapes={name: tuple(shape) for name, shape in fit.shapes.items()},
+        coefficients={term.effect.name: term.coefficients.tolist() for term in fit.terms},
+    )

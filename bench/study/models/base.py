@@ -1,0 +1,50 @@
+"""What all answers of a study share: how they show themselves, names of roles, the quantity that is explained."""
+
+from html import escape
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from compensator.lab.chance import LEAST_STATED
+
+LONGEST = 80  # characters of a cell in a notebook
+LEAST_P = f"{LEAST_STATED:g} stands for that and less: no smaller chance can be known"
+
+
+Condition = float | str | bool
+Role = Literal["training", "held_out"]
+
+
+class StudyModel(BaseModel):
+    """An answer of a study, or a part of one. It shows itself by its sentence, or as a table in a notebook."""
+
+    model_config = ConfigDict(frozen=True)
+
+    def __repr__(self) -> str:
+        values = dict(self)
+        if sentence := values.get("sentence"):
+            return f"<{sentence}>"
+        return "<" + ", ".join(f"{name}={short(value)}" for name, value in values.items()) + ">"
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(short(value))}</td></tr>" for name, value in self)
+        return f"<table>{rows}</table>"
+
+
+def short(value: object) -> str:
+    """A cell: numbers of four digits; of lists only the length."""
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, list):
+        return f"[{len(value)}]"
+    text = "-" if value is None or value == "" else str(value)
+    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+
+
+class EffortName(StudyModel):
+    """The quantity that the models explain."""
+
+    name: str = Field(examples=["torque"])
+    unit: str = Field(examples=["N m"])

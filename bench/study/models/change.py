@@ -1,0 +1,63 @@
+"""What a change of a model did to its error. Errors are relative (0..1); gain = 1 - after / before."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from bench.json_types import Number
+from bench.study.models.base import StudyModel
+
+
+class BeforeAfter(StudyModel):
+    """Relative errors (0..1) of one model."""
+
+    training: Number
+    held_out: Number
+
+
+class BreakawayChange(StudyModel):
+    """What a change did to the error of the breakaway effort, held out; relative (0..1)."""
+
+    held_out_before: Number
+    held_out_after: Number
+    gain: Number
+    gain_low: Number
+    gain_high: Number
+
+
+class Changed(StudyModel):
+    """The child model and what the change did to the error."""
+
+    model_id: int
+    parent_id: int
+    effects: list[str]
+    before: BeforeAfter
+    after: BeforeAfter
+    gain: Number
+    gain_low: Number
+    gain_high: Number
+    breakaway: BreakawayChange | None = Field(description="null: no effect of breakaway, or too few starts from rest")
+    sentence: str
+
+
+class SearchStep(StudyModel):
+    """One change that a search made; errors are relative (0..1)."""
+
+    model_id: int
+    change: Literal["add", "swap", "drop"]
+    effect: str
+    instead_of: str | None
+    before: Number
+    after: Number
+    sentence: str
+
+
+class Searched(StudyModel):
+    """The way of a search, and what is still missing at its end."""
+
+    study_id: int
+    model_id: int
+    added: list[str]
+    steps: list[SearchStep]
+    verdict: str
+    sentence: str

@@ -1,0 +1,122 @@
+"""What is missing in a model, how sure that is, and what adding it would bring."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from bench.json_types import Number, Numbers
+from bench.study.models.base import LEAST_P, StudyModel
+from compensator.lab.diagnosis.note import NoteCode
+
+Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
+ConclusionCode = Literal[
+    "missing", "nothing", "not-confirmed", "too-short", "unexplained", "unknown-effect", "data-problem"
+]
+FindingCode = NoteCode | Literal["data-problem", "not-judged"]
+Value = float | str | bool
+
+
+class Finding(StudyModel):
+    """Something found beside the answer: a code for programs, its numbers, and the same in one sentence."""
+
+    code: FindingCode = Field(examples=["not-judged"])
+    values: dict[str, Value] = Field(
+        description="names and numbers that the sentence is made of, SI", examples=[{"effect": "viscous_temperature"}]
+    )
+    text: str
+
+
+class Conclusion(StudyModel):
+    """The answer itself, finer than the verdict: a code for programs, its numbers, and the same in one sentence."""
+
+    code: ConclusionCode = Field(
+        description="of the verdict `nothing`: nothing that these trials can show; more than noise, but no effect is "
+        "confirmed; trials too short to tell; or something is left that nothing explains"
+    )
+    values: dict[str, Value] = Field(description="names and numbers that the sentence is made of, SI")
+    text: str
+
+
+class EffectClass(StudyModel):
+    """Effects that these data cannot tell apart."""
+
+    effects: list[str]
+    sentence: str
+    separating_trial: str | None = Field(description="the trial that would tell them apart")
+
+
+class Picture(StudyModel):
+    """Why: the residual against the effect's driving variable, and the effect's curve over it."""
+
+    driver: str
+    unit: str
+    against_motion: bool = Field(description="True where the residual is counted positive against the motion")
+    x: Numbers
+    residual: Numbers
+    low: Numbers
+    high: Numbers
+    curve_x: Numbers
+    curve: Numbers
+
+
+class Ranked(StudyModel):
+    """One effect of the ranking. Held-out errors are relative (0..1); gain = 1 - after / before."""
+
+    effect: str
+    title: str
+    score: Number
+    p_value: Number = Field(description=f"of this effect alone; {LEAST_P}")
+    held_out_before: Number
+    held_out_after: Number
+    gain: Number
+    gain_low: Number
+    gain_high: Number
+    in_class: bool = Field(description="one of the effects that the data name")
+    confused_with: list[str]
+    d_prime: Number = Field(description="how well it stands apart from its best rival; from 6 on the name is sure")
+    physical: bool = Field(description="False where the fitted sign or size is physically impossible")
+    sentence: str
+    picture: Picture | None
+
+
+class ProvisionalTerm(StudyModel):
+    """A curve over the variable that something unknown varies with; held-out errors are relative (0..1)."""
+
+    effect: str = Field(description="to be added like any effect", examples=["curve_of_temperature_against_motion"])
+    title: str
+    held_out_before: Number
+    held_out_after: Number
+    gain: Number
+    gain_low: Number
+    gain_high: Number
+    sentence: str
+    picture: Picture | None
+
+
+class Diagnosis(StudyModel):
+    """Is anything missing, what is it called, and does it help?"""
+
+    study_id: int
+    model_id: int
+    verdict: Verdict
+    sentence: str
+    p_value: Number = Field(
+        description=f"chance of such evidence in any of a diagnosis's screenings if nothing were missing; {LEAST_P}"
+    )
+    notes: list[str] = Field(description="sentences; `findings` has them with their codes")
+    data_problems: list[str]
+    classes: list[EffectClass]
+    ranking: list[Ranked]
+    provisional: ProvisionalTerm | None = Field(description="null unless the verdict is unknown-effect")
+    conclusion: Conclusion
+    findings: list[Finding] = Field(
+        description="all that stands beside the answer, each once: problems of the data, notes, effects not judged"
+    )
+
+
+class NotDiagnosed(StudyModel):
+    """A study whose newest model cannot be judged, and why."""
+
+    study_id: int
+    model_id: int
+    error: str

@@ -1,0 +1,71 @@
+"""Trials that were suggested before and did not come to their end: what trips once trips again."""
+
+import json
+from collections.abc import Sequence
+
+from bench.experiments.registry import find_kind, parse_parameters
+from bench.json_types import Values
+from bench.store import Experiment, Store
+from bench.study.extend import note_for
+from bench.study.suggestion.options import Choice
+from bench.study.suggestion.suggested import Came, Suggested
+from compensator.lab.effects.catalogue import effect_named
+
+
+def what_came(suggested: Suggested, next_suggested: Suggested) -> list[Came]:
+    """Of each rival of a suggestion, the smallest d' that was predicted, and that the next suggestion begins with.
+
+    Args:
+        suggested: before the trials were recorded.
+        next_suggested: the same after.
+    """
+    predicted = _smallest([(pair.true, pair.after) for pair in suggested.pairs])
+    came = _smallest([(pair.true, pair.before) for pair in next_suggested.pairs])
+    return [Came(effect=name, predicted=value, came=came.get(name)) for name, value in predicted.items()]
+
+
+def in_words(came: Sequence[Came]) -> str:
+    """One sentence."""
+    parts = []
+    for one in came:
+        what = "it is no rival any more" if one.came is None else f"{one.came:.1f} came"
+        parts.append(f"{effect_named(one.effect).title}: {one.predicted:.1f} was predicted, {what}")
+    return f"Smallest d' with these trials. {'; '.join(parts)}."
+
+
+def _smallest(values: Sequence[tuple[str, float]]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for name, value in values:
+        found[name] = min(found.get(name, value), value)
+    return found
+
+
+NOT_POSSIBLE = ("tripped", "failed")  # stopped by somebody, or with the process, it may be possible all the same
+
+
+def kept_out(store: Store, study_id: int) -> list[Experiment]:
+    """Experiments that a study asked for, that moved the joint and did not complete, nor later; oldest first."""
+    found: dict[str, Experiment] = {}
+    for one in reversed(store.experiments()):
+        if one.note != note_for(study_id):
+            continue
+        if one.outcome == "completed":
+            found.pop(_key(one.kind, one.parameters), None)
+        elif one.outcome in NOT_POSSIBLE and any(trial.rows for trial in store.trials(one.id)):
+            found[_key(one.kind, one.parameters)] = one
+    return list(found.values())
+
+
+def without(choices: list[Choice], experiments: list[Experiment]) -> list[Choice]:
+    """The choices that are none of these experiments."""
+    known = {_key(one.kind, one.parameters) for one in experiments}
+    return [one for one in choices if _key(one.kind, _all_parameters(one)) not in known]
+
+
+def _all_parameters(choice: Choice) -> Values:
+    """Also those that do not differ from the defaults, as they are kept with an experiment."""
+    return parse_parameters(find_kind(choice.kind), choice.parameters).model_dump(mode="json")
+
+
+def _key(kind: str, parameters: Values) -> str:
+    return json.dumps([kind, parameters], sort_keys=True)

@@ -1,0 +1,21 @@
+"""The tables of the recording set's format: channels, and the keys of a mapping file."""
+
+from bench.recording_set.mapping import Mapping
+from compensator.lab.recordings.channels import CHANNELS
+from docs.generate.markdown import code, table
+from docs.generate.schema import keys
+
+
+def channels() -> str:
+    """The columns that the CSV of a trial may have."""
+    return table(
+        ("column", "unit", "meaning"), [(code(one.name), code(one.unit), one.meaning) for one in CHANNELS.values()]
+    )
+
+
+def mapping() -> str:
+    """The keys of `mapping.toml`, and those of one of its columns."""
+    whole = Mapping.model_json_schema(by_alias=True)
+    column = whole["$defs"]["Column"]
+    trial = whole["$defs"]["MappedTrial"]
+    return f"{keys(whole)}\nA `Column`:\n\n{keys(column)}\nA `MappedTrial`:\n\n{keys(trial)}"

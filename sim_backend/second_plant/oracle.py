@@ -1,0 +1,143 @@
+"""How far a mechanism stands out of recordings, from the truth: what an ideal judge could know.
+
+The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true motion
+takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of the
+difference D. (The joint moves a little otherwise without the mechanism, so D alone holds what no model has of either.)
+
+    s = rms that the base model leaves of the noisy joint without the mechanism, in steady motion, near reversals, and
+        where the current is commanded, each for itself
+    r^2 = mean square of what is left with it, over s, less that without
+    lambda = n / v ln(1 + r^2),   v = (1 + rho_1) / (1 - rho_1) of that remainder (rows per independent row)
+    d' = sqrt(lambda (1 - rho^2)), rho the largest correlation of D / s with another mechanism's columns
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_backend.second_plant.columns import Rows, base_columns, rival_columns
+from sim_backend.second_plant.joint import DrawnJoint
+from sim_backend.second_plant.recording import record
+
+FloatArray = NDArray[np.float64]
+MOST_CORRELATED = 0.97
+STRATA = 3
+
+
+@dataclass(frozen=True)
+class Floor:
+    """What the base model leaves of a joint without the mechanism.
+
+    Attributes:
+        left: noisy, root mean square of each stratum, in the effort's unit, shape (3,).
+        dependent: rows per independent row.
+        rows: without noise.
+        remainder: of these over `left`, shape (n,); 0 where the joint rests.
+    """
+
+    left: FloatArray
+    dependent: float
+    rows: Rows
+    remainder: FloatArray
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """How far a mechanism stands out; see above.
+
+    Attributes:
+        ratio: r.
+        detectability: d'.
+        rival: the mechanism that is most like it.
+        independent: rows, of those that move.
+    """
+
+    ratio: float
+    detectability: float
+    rival: str
+    independent: float
+
+
+def floor_of(joint: DrawnJoint, name: str) -> Floor:
+    """Record a joint without one of its mechanisms, as it is and quiet.
+
+    Args:
+        joint: drawn.
+        name: of the mechanism.
+    """
+    without = frozenset({name})
+    noisy = Rows.of(record(joint, without=without), joint.scales)
+    quiet = Rows.of(record(joint, quiet=True, without=without), joint.scales)
+    left = np.ones(STRATA)
+    for _ in range(2):  # least squares, then weighted by what each stratum leaves
+        remainder = _remainder(noisy, joint, left) * left[noisy.stratum]
+        for stratum in range(STRATA):
+            own = remainder[noisy.moving & (noisy.stratum == stratum)]
+            left[stratum] = float(np.sqrt(np.mean(own**2))) if len(own) else 1.0
+    white = (remainder / left[noisy.stratum])[noisy.moving]
+    one = float(np.clip(white[:-1] @ white[1:] / (white @ white), 0.0, MOST_CORRELATED))
+    return Floor(left, (1.0 + one) / (1.0 - one), quiet, _remainder(quiet, joint, left))
+
+
+def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Evidence:
+    """How far one of a joint's mechanisms stands out of a base model with nothing else missing.
+
+    Args:
+        joint: drawn.
+        name: of the mechanism.
+        floor: of the same joint without it, where it is known.
+    """
+    floor = floor or floor_of(joint, name)
+    rows = Rows.of(record(joint, quiet=True), joint.scales)
+    moving, weight = rows.moving, 1.0 / floor.left[rows.stratum]
+    paired = moving & floor.rows.moving
+    remainder = _remainder(rows, joint, floor.left)
+    more = _power(remainder, moving) - _power(floor.remainder, floor.rows.moving)
+    shown = np.where(paired, remainder - floor.remainder, 0.0)[moving]
+    basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[moving])
+    shown = shown - basis @ (basis.T @ shown)
+    # never more than the difference itself
+    ratio = float(np.sqrt(min(max(more, 0.0), float(np.mean(shown**2)))))
+    independent = len(shown) / floor.dependent
+    correlation, rival = 0.0, ""
+    for other, columns in rival_columns(rows, joint.scales).items():
+        alike = 0.0 if other == name else _correlation(shown, basis, (columns * weight[:, None])[moving])
+        if alike > correlation:
+            correlation, rival = alike, other
+    strength = independent * float(np.log1p(ratio**2))
+    return Evidence(ratio, float(np.sqrt(strength * (1.0 - correlation**2))), rival, independent)
+
+
+def _power(remainder: FloatArray, moving: NDArray[np.bool_]) -> float:
+    return float(np.mean(remainder[moving] ** 2))
+
+
+def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:
+    """Share of a difference's amplitude that lies in what columns add to the base model, 0 .. 1."""
+    power = float(np.linalg.norm(shown))
+    if power == 0.0:
+        return 0.0
+    fresh = columns - basis @ (basis.T @ columns)
+    kept = np.linalg.norm(fresh, axis=0) > 1e-3 * np.linalg.norm(columns, axis=0)
+    return min(float(np.linalg.norm(_orthonormal(fresh[:, kept]).T @ shown)) / power, 1.0)
+
+
+def _remainder(rows: Rows, joint: DrawnJoint, left: FloatArray) -> FloatArray:
+    """What the base model leaves of the rows that move, over `left`; 0 elsewhere."""
+    weight = 1.0 / left[rows.stratum]
+    basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[rows.moving])
+    effort = (rows.effort * weight)[rows.moving]
+    remainder = np.zeros(len(rows.effort))
+    remainder[rows.moving] = effort - basis @ (basis.T @ effort)
+    return remainder
+
+
+def _orthonormal(columns: FloatArray) -> FloatArray:
+    """Orthonormal basis of the columns' span."""
+    scale = np.linalg.norm(columns, axis=0)
+    scaled = columns[:, scale > 0.0] / scale[scale > 0.0]
+    if scaled.shape[1] == 0:
+        return scaled
+    left, values, _ = np.linalg.svd(scaled, full_matrices=False)
+    return np.asarray(left[:, values > 1e-8 * values[0]])

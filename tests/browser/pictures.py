@@ -1,0 +1,65 @@
+"""The pictures of README.md: `python -m tests.browser.pictures docs/pictures`.
+
+One is the page while a joint is tested. The other is a hidden effect that the lab has named: a challenge with a fixed
+seed, whose recordings tell nothing of the answer.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from tests.browser.browser import browser
+from tests.browser.screenshots import SEED, WAIT_MS, open_page
+from tests.service.running_service import RunningService, running_service
+
+LARGEST_BYTES = 150_000
+DRAWN_MS = 1500  # the last plot is drawn
+
+
+def main() -> None:
+    """Take both pictures.
+
+    Raises:
+        SystemExit: a picture has become too large for the repository.
+    """
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/pictures")
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as store, running_service(Path(store)) as service, browser() as chromium:
+        page = open_page(chromium, f"{service.url}/#bench", 1100, "light")
+        _bench(page, folder / "page.png")
+        _hidden_effect(page, service, folder / "hidden-effect.png")
+    for picture in sorted(folder.glob("*.png")):
+        size = picture.stat().st_size
+        print(f"{picture}: {size / 1e3:.0f} kB")
+        if size > LARGEST_BYTES:
+            raise SystemExit(f"{picture} has {size} bytes; allowed are {LARGEST_BYTES}. Show less")
+
+
+def _bench(page: Any, picture: Path) -> None:
+    """The view Bench at the end of a short run."""
+    page.locator(".badge.idle").wait_for()
+    page.get_by_label("repeats").fill("1")
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.get_by_text("B breakaway").wait_for()
+    page.locator(".badge.idle").wait_for()
+    page.wait_for_timeout(DRAWN_MS)
+    page.screenshot(path=picture)
+
+
+def _hidden_effect(page: Any, service: RunningService, picture: Path) -> None:
+    """What the lab names in a challenge."""
+    made = service.client.post("/challenges", json={"difficulty": "easy", "seed": SEED}, timeout=WAIT_MS / 1000)
+    page.get_by_role("link", name="Learn").click()
+    page.get_by_role("link", name=f"Study challenge {made.json()['challenge_id']}").click()
+    page.get_by_label("Name").fill("what is hidden?")
+    page.get_by_role("button", name="Create study").click()
+    page.locator("table.heat button.cell").first.wait_for()
+    page.get_by_role("button", name="Diagnose").click()
+    page.locator("article .js-plotly-plot").first.wait_for()
+    page.wait_for_timeout(DRAWN_MS)
+    page.locator("article").first.screenshot(path=picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,145 @@
+"""What the page says of the bench is true now: one state behind badge, message and readings."""
+
+import json
+import re
+
+import pytest
+
+from tests.browser.browser import imported
+from tests.service.running_service import TOKEN
+
+pytestmark = pytest.mark.browser
+RUNNING = {"state": "running", "run": {"experiment_id": 2, "power_off": None}}
+STOPPED = {"state": "idle", "run": {"experiment_id": 1, "power_off": "confirmed"}}
+POWERED = {"state": "idle", "run": {"experiment_id": 1, "power_off": "failed"}}
+
+
+def start(page) -> None:
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.locator(".badge.running").wait_for()
+
+
+@pytest.mark.parametrize(
+    ("phase", "status", "heard_ms", "said"),
+    [
+        ("confirmed", STOPPED, 1100, True),
+        ("confirmed", RUNNING, 1100, False),  # another experiment has begun
+        ("confirmed", STOPPED, 20_000, False),  # long ago
+        ("unconfirmed", STOPPED, 900, True),  # heard before STOP was pressed: tells nothing of it
+        ("unconfirmed", STOPPED, 1100, False),
+        ("unconfirmed", POWERED, 1100, True),
+        ("unconfirmed", {**RUNNING, "run": {"experiment_id": 1}}, 1100, True),
+        ("no-token", STOPPED, 1100, False),
+        ("asking", STOPPED, 1100, True),
+    ],
+)
+def test_a_message_about_a_stop_stands_as_long_as_it_is_true(open_page, phase, status, heard_ms, said):
+    stop = {"phase": phase, "text": "…", "experiment_id": 1, "at_ms": 1000}
+    facts = {"status": status, "fresh": True, "heard_ms": heard_ms, "now_ms": heard_ms + 10}
+    call = f"{imported('app/state')}.then((m) => m.messageOf({json.dumps(stop)}, {json.dumps(facts)}) !== null)"
+    assert open_page().evaluate(call) is said
+
+
+def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page):
+    page = open_page("#bench?kind=steps&repeats=20")
+    start(page)
+    page.keyboard.press("Escape")
+    said = page.locator("#stop-answer").get_by_text("the drive is powered off")
+    said.wait_for()
+    page.locator(".badge.idle").wait_for()
+    start(page)
+    said.wait_for(state="detached", timeout=1000)
+    page.keyboard.press("Escape")
+    page.locator(".badge.idle").wait_for()
+
+
+def test_not_confirmed_is_taken_back_when_the_joint_has_come_to_rest(service, open_page):
+    page = open_page("#bench?kind=steps&repeats=20")
+    start(page)
+    page.route("**/api/v1/stop", lambda route: route.abort())
+    page.keyboard.press("Escape")
+    page.get_by_text("Stop NOT confirmed").wait_for()
+    service.client.post("/stop").raise_for_status()
+    page.locator(".badge.idle").wait_for()
+    page.locator("#stop-answer").get_by_text("NOT confirmed").wait_for(state="detached", timeout=10_000)
+    open_page.complaints[:] = [text for text in open_page.complaints if "ERR_FAILED" not in text]
+
+
+def test_old_readings_are_dimmed_and_say_how_old_they_are(service, open_page):
+    page = open_page("#bench?kind=steps&repeats=20")
+    start(page)
+    readings = page.locator(".readings:not(.dimmed)")
+    readings.get_by_text("position").wait_for()
+    page.keyboard.press("Escape")
+    page.locator(".readings.dimmed").get_by_text("position").wait_for()
+    page.get_by_text(re.compile(r"Last reading, \d+ s ago\. The drive is off\.")).wait_for()
+    assert service.client.get("/bench").json()["reading"]["power"] == "disabled"
+    late = open_page()
+    late.get_by_text(re.compile(r"Last reading, .* ago\. The drive is off\.")).wait_for()
+
+
+def test_stop_without_a_token_says_what_to_do_in_plain_words(service, open_page):
+    service.start("steps", pace="real-time", repeats=20)
+    page = open_page(token=False)
+    page.locator(".badge.running").wait_for()
+    page.keyboard.press("Escape")
+    answer = page.locator("#stop-answer")
+    answer.get_by_text("Not stopped: this page has no token yet. Paste the token").wait_for()
+    assert "Authorization" not in answer.inner_text()
+    page.get_by_label("Token: to start").fill(TOKEN)
+    page.get_by_role("button", name="Use token").click()
+    answer.get_by_text("the drive is powered off").wait_for()
+    assert service.runner.status().outcome == "stopped"
+    open_page.complaints[:] = [text for text in open_page.complaints if "401" not in text]
+
+
+def test_enter_in_a_field_moves_nothing(service, open_page):
+    page = open_page("#bench?kind=steps&repeats=2")
+    before = len(service.client.get("/experiments").json()["items"])
+    for label in ("repeats", "load [g]", "angle [°]"):
+        page.get_by_label(label).press("Enter")
+    page.get_by_text("Start moves the simulated joint between 0° and 90°").wait_for()
+    page.wait_for_timeout(700)
+    assert len(service.client.get("/experiments").json()["items"]) == before
+    page.goto(page.url.replace("#bench?kind=steps&repeats=2", "#queue"))
+    page.get_by_label("Name").press("Enter")
+    page.wait_for_timeout(700)
+    assert service.client.get("/queue").json()["waiting"] == []
+
+
+def test_a_typing_error_is_marked_before_anything_is_sent_and_leaves_no_record(service, open_page):
+    page = open_page()
+    asked = []
+    page.on("request", lambda request: asked.append(request.url) if request.method == "POST" else None)
+    page.get_by_label("repeats").fill("many")
+    page.get_by_text("'many' is no number.").wait_for()
+    page.get_by_label("load [g]").fill("-1")
+    page.get_by_text("-1 g is not allowed. At least 0 g.").wait_for()
+    assert page.locator("[aria-invalid=true]").count() == 2
+    before = service.client.get("/experiments").json()["items"]
+    asked.clear()
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.get_by_text("nothing has moved, nothing is recorded").wait_for()
+    assert asked == []
+    assert service.client.get("/experiments").json()["items"] == before
+
+
+def test_a_limit_of_the_bench_is_marked_at_its_field(service, open_page):
+    page = open_page()
+    page.get_by_label("load [g]").fill("5000")
+    page.locator("#parameter-load_kg-problem").get_by_text("allowed is at most 0.1 kg").wait_for()
+    before = service.client.get("/experiments").json()["items"]
+    page.get_by_role("button", name="Start", exact=True).click()
+    page.get_by_text("nothing has moved, nothing is recorded").wait_for()
+    assert service.client.get("/experiments").json()["items"] == before
+    open_page.complaints[:] = [text for text in open_page.complaints if "422" not in text]
+
+
+def test_units_are_switched_for_the_whole_page(open_page):
+    page = open_page("#bench?kind=steps&repeats=2")
+    page.get_by_label("angle [°]").wait_for()
+    page.get_by_title("Units: degrees and grams, or SI").click()
+    assert page.get_by_label("angle [rad]").input_value() == "1.5708"
+    assert page.get_by_label("load [kg]").input_value() == "0.1"
+    page.get_by_title("Units: degrees and grams, or SI").click()
+    assert page.get_by_label("angle [°]").input_value() == "90"

@@ -1,0 +1,48 @@
+"""What the guides to REST and Python say to paste works when it is pasted."""
+
+import os
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from tests.paths import ROOT
+from tests.service.running_service import TOKEN
+
+REST = (ROOT / "docs" / "how-to" / "rest.md").read_text(encoding="utf-8")
+PYTHON = (ROOT / "docs" / "how-to" / "python.md").read_text(encoding="utf-8")
+ADDRESS = "http://127.0.0.1:8000"
+# fails on an answer that is an error, and on one that does not come; -m of the stream is its end
+STRICT = """curl() {
+    command curl --fail-with-body -sS "$@"; code=$?
+    [ $code = 28 ] && [[ "$*" == *live* ]] || return $code
+}"""
+
+
+def test_the_curl_examples(bench, service, study):
+    if shutil.which("curl") is None or shutil.which("bash") is None:
+        pytest.skip("needs curl and bash")
+    commands = re.findall(r"^    (curl (?:.*\\\n)*.*)$", REST, re.MULTILINE)
+    assert len(commands) == 5
+    for command in commands:
+        script = f"{STRICT}\n{command.replace(ADDRESS, service.url)}"
+        done = subprocess.run(
+            ["bash", "-c", script], env=os.environ | {"TOKEN": TOKEN}, capture_output=True, timeout=60
+        )
+        assert done.returncode == 0, (command, done.stdout, done.stderr)
+        assert done.stdout
+
+
+def test_the_python_example(bench, service, study, capsys):
+    [code] = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
+    code = code.replace(ADDRESS, service.url).replace('"..."', repr(TOKEN))
+    names: dict[str, object] = {}
+    exec(code, names)
+    channels = names["channels"]
+    assert isinstance(channels, dict)
+    assert len(channels["time_s"]) > 100
+    shown = capsys.readouterr().out
+    assert "steps: completed" in shown
+    assert "missing" in shown or "nothing" in shown.lower()
+    names["bench"].close()  # type: ignore[attr-defined]

@@ -1,0 +1,98 @@
+"""What the documents name is there: files, places, targets of make, commands and their options, versions."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+import typer
+import yaml
+from typer.core import TyperGroup
+
+import bench
+from bench.cli.command_group import ListedCommand
+from bench.cli.commands import COMMANDS
+from tests.docs.documents import DOCUMENTS, GENERATED, commands_in, name_of, text_of
+from tests.paths import ROOT
+
+MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+TARGETS = set(re.findall(r"^([a-z-]+):.*##", MAKEFILE, re.MULTILINE))
+COMMAND_LINES = sorted({(name_of(file), line) for file in DOCUMENTS for line in commands_in(text_of(file))})
+
+
+def test_the_readme_is_short() -> None:
+    lines = text_of(ROOT / "README.md").splitlines()
+    assert len(lines) <= 120
+    assert max(map(len, lines)) <= 120
+
+
+@pytest.mark.parametrize("file", DOCUMENTS, ids=name_of)
+def test_links_lead_to_files(file: Path) -> None:
+    for link in re.findall(r"\]\(([^)\s]+)\)", text_of(file)):
+        path = link.partition("#")[0]
+        if path and ":" not in link:
+            target = (file.parent / path).resolve()
+            assert target.exists() or GENERATED in target.parents, link
+
+
+@pytest.mark.parametrize("folder", ["bench", "compensator", "drivers", "sim_backend", "tests", "docs"])
+def test_documents_that_programs_name_are_there(folder: str) -> None:
+    for file in (ROOT / folder).rglob("*.py"):
+        for path in re.findall(r"\bdocs/[\w/-]+\.md", file.read_text(encoding="utf-8")):
+            assert (ROOT / path).is_file(), (name_of(file), path)
+
+
+@pytest.mark.parametrize("file", DOCUMENTS, ids=name_of)
+def test_targets_of_make_are_there(file: Path) -> None:
+    named = re.findall(r"(?:`|^ {4})make ((?:[a-z]+-?)+)", text_of(file), re.MULTILINE)
+    assert set(named) <= TARGETS
+
+
+def test_every_target_of_make_is_explained() -> None:
+    phony = re.search(r"\.PHONY: ((?:.*\\\n)*.*)", MAKEFILE)
+    assert phony is not None
+    assert set(phony[1].replace("\\\n", "").split()) == TARGETS
+
+
+def test_there_are_commands_in_the_documents() -> None:
+    assert len(COMMAND_LINES) > 50
+
+
+@pytest.mark.parametrize(("place", "line"), COMMAND_LINES)
+def test_commands_and_options_are_there(place: str, line: str) -> None:
+    words = shlex.split(line)[1:]
+    while words and words[0].startswith("--"):  # what stands before every command takes a value
+        assert words[0] in ("--config", "--store", "--log", "--help"), place
+        words = words[2:]
+    if not words or words[0].isupper():
+        return
+    command = next(ListedCommand(entry).loaded for entry in COMMANDS if entry.name == words[0])
+    words = words[1:]
+    while isinstance(command, TyperGroup) and words and not words[0].startswith("--"):
+        command = command.get_command(typer.Context(command), words.pop(0))
+        assert command is not None, place
+    known = {"--help"} | {option for parameter in command.params for option in parameter.opts}
+    assert {word.partition("=")[0] for word in words if word.startswith("--")} <= known, place
+
+
+def test_the_release_is_described() -> None:
+    changes = text_of(ROOT / "CHANGELOG.md")
+    assert re.findall(r"^## \[([^\]]+)\]", changes, re.MULTILINE)[:2] == ["Unreleased", bench.__version__]
+    citation = yaml.safe_load(text_of(ROOT / "CITATION.cff"))
+    assert citation["version"] == bench.__version__
+    assert citation["license"] == "Apache-2.0"
+
+
+def test_pre_commit_runs_what_make_check_runs() -> None:
+    recipe = re.search(r"^check:.*\n((?:\t.*\n)+)", MAKEFILE, re.MULTILINE)
+    assert recipe is not None
+    checks = [line.strip().replace("$(BIN)", ".venv/bin") for line in recipe[1].splitlines()]
+    hooks = yaml.safe_load(text_of(ROOT / ".pre-commit-config.yaml"))["repos"][0]["hooks"]
+    assert [hook["entry"] for hook in hooks] == checks
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "docs" / "decisions").glob("0*.md")), ids=name_of)
+def test_a_decision_is_one_page(file: Path) -> None:
+    text = text_of(file)
+    assert len(text.splitlines()) <= 40
+    assert re.findall(r"^## (.*)$", text, re.MULTILINE) == ["Context", "Decision", "Consequences"]

@@ -1,0 +1,65 @@
+"""A list of trials that a person looks through: words, order, pages."""
+
+import pytest
+
+from bench.store.errors import StoreValueError
+from bench.store.tables.trial_search import TrialQuery
+from tests.store.rates import fill
+
+COUNT = 300
+
+
+@pytest.fixture
+def filled(store):
+    fill(store, COUNT)
+    return store
+
+
+def names(found):
+    return [trial.name for trial in found[0]]
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        ((), lambda n: True),
+        (("steps",), lambda n: n % 3 == 0),
+        (("STEPS", "tripped"), lambda n: n % 3 == 0 and n % 97 == 0),
+        (("nlgi", "sweep"), lambda n: n % 3 > 0),
+        (("balanced", "load-sweep"), lambda n: n % 2 == 0 and n % 3 == 1),
+        (("0.05",), lambda n: n % 11 == 5),
+        (("load", "50"), lambda n: n % 11 == 5 or n == 49 or "50" in str(n)),  # grams, or a number
+        (("100%",), lambda n: False),
+        (("trial_",), lambda n: False),  # an underscore is no wildcard
+        (("zzz",), lambda n: False),
+    ],
+)
+def test_words_find_what_has_all_of_them_somewhere(filled, words, wanted):
+    found, total = filled.search_trials(TrialQuery(words=words), limit=1000)
+    expected = [f"trial {number}" for number in range(COUNT) if wanted(number)]
+    assert [trial.name for trial in found] == expected
+    assert total == len(expected)
+
+
+def test_pages_are_cut_from_one_order(filled):
+    query = TrialQuery(sort="kind", descending=True)
+    whole = names(filled.search_trials(query, limit=COUNT))
+    pages = [name for offset in range(0, COUNT, 70) for name in names(filled.search_trials(query, 70, offset))]
+    assert pages == whole
+    kinds = [trial.kind for trial in filled.search_trials(query, limit=COUNT)[0]]
+    assert kinds == sorted(kinds, reverse=True)
+    assert filled.search_trials(query, 10, COUNT)[1] == COUNT
+
+
+def test_conditions_come_with_each_trial_and_filters_join_words(filled):
+    query = TrialQuery(conditions={"load_kg": (0.02, 0.03)}, outcome="completed", words=("steps",))
+    found, total = filled.search_trials(query, limit=5)
+    assert total > len(found) == 5
+    assert all(trial.conditions["load_kg"] in (0.02, 0.03) and trial.kind == "steps" for trial in found)
+
+
+def test_what_cannot_be_looked_for_is_said(filled):
+    with pytest.raises(StoreValueError, match="sort is 'colour'"):
+        filled.search_trials(TrialQuery(sort="colour"), limit=1)
+    with pytest.raises(StoreValueError, match="at most 8"):
+        filled.search_trials(TrialQuery(words=("a",) * 9), limit=1)
