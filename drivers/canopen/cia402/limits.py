@@ -35,7 +35,10 @@ def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilit
             "out, and set the limit in the drive's own tool",
         )
     for item in items:
-        table.set(item, int(limit_a / found.scale.current_a(item)), _PURPOSE)  # never above what was asked for
+        try:
+            table.set(item, int(limit_a / found.scale.current_a(item)), _PURPOSE)  # never above what was asked for
+        except DriveConfigurationError as error:
+            raise DriveConfigurationError(settings.device, f"current_limit_a is {limit_a:g} A: {error}") from error
 
 
 def _set_positions(table: ObjectTable, found: Capabilities, low_rad: float, high_rad: float) -> None:
