@@ -103,6 +103,8 @@ def _family(name: str) -> Family:
 
 def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, Any]]:
     """Interface, channel and whatever else python-can is told."""
+    if settings.interface == "udp_multicast":
+        return settings.interface, settings.channel, {"hop_limit": 0}  # it does not leave this machine
     if settings.interface != "join":
         return settings.interface, settings.channel, {}
     host, _, port = settings.channel.rpartition(":")

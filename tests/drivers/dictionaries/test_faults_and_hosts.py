@@ -2,8 +2,10 @@
 
 import pytest
 
+from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError
-from tests.drivers.dictionaries.attempt import PERIOD_S, device, host
+from sim_backend.devices.canopen.conduct import Conduct
+from tests.drivers.dictionaries.attempt import PERIOD_S, cycles, device, host
 from tests.drivers.dictionaries.fault_reset import TICKS_MS, resets
 from tests.drivers.dictionaries.traits import TRAITS
 from tests.drivers.dictionaries.two_hosts import WAYS, Running
@@ -34,12 +36,16 @@ def test_a_second_host_is_named_before_anything_moves(sheet) -> None:
         moving.end()
 
 
-def test_a_host_id_that_somebody_uses_is_not_taken(sheet) -> None:
-    with device(sheet) as running, host(running) as first, host(running, node=6, host_node_id=None) as second:
-        first.open(PERIOD_S)
-        second.open  # not opened: only the choice is looked at
-        ids = {first._session.host_id}
-        first.close()
-        first.open(PERIOD_S)
-        ids.add(first._session.host_id)
-    assert all(64 <= number <= 127 for number in ids)
+def test_a_drive_that_was_left_in_operation_is_shut_down_before_anything_else(sheet) -> None:
+    with device(sheet, Conduct(deaf=True)) as running, host(running) as gone, host(running) as successor:
+        gone.open(PERIOD_S)
+        gone.enable(Mode.CURRENT)
+        cycles(gone, Command(Mode.CURRENT, 0.2), 0.1)
+        gone._link.close()  # it dies without a word
+        assert running.device.axis.power.on
+        successor.open(PERIOD_S)
+        assert not running.device.axis.power.on
+        row = next(row for row in successor.objects if row.object == "power")
+        assert row.outcome == "found in state 'operation enabled', left by a host before: off"
+        successor.enable(Mode.CURRENT)
+        assert successor.exchange(Command(Mode.CURRENT, 0.0)).status is Status.ENABLED

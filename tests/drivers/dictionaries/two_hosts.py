@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +10,7 @@ from pathlib import Path
 from drivers.canopen import CanopenDrive
 from drivers.contract import Command, Mode
 from drivers.errors import DriveError
+from sim_backend.devices.canopen.drive import ServoDrive
 from tests.drivers.dictionaries.attempt import NODE, OFF, PERIOD_S, WATCHDOG_S, device, host
 
 PUSH = Command(Mode.CURRENT, 0.2)
@@ -31,8 +32,8 @@ class Meeting:
 
     @property
     def is_safe(self) -> bool:
-        """Refused or guarded."""
-        return bool(self.refused) or self.guarded
+        """Refused for the other host, or guarded."""
+        return "another host" in self.refused or self.guarded
 
 
 class Running:
@@ -63,13 +64,11 @@ class Running:
 
 
 @contextmanager
-def both(sheet: Path, channel: str, **settings: object) -> Iterator[tuple[list[CanopenDrive], list[object]]]:
+def both(sheet: Path, channel: str) -> Iterator[tuple[list[CanopenDrive], list[ServoDrive]]]:
     """Two drives with their hosts on one bus; the hosts are not yet open."""
     with ExitStack() as stack:
         devices = [stack.enter_context(device(sheet, node=node, channel=channel)) for node in NODES]
-        hosts = [
-            stack.enter_context(host(one, node=node, **settings)) for one, node in zip(devices, NODES, strict=True)
-        ]
+        hosts = [stack.enter_context(host(one, node=node)) for one, node in zip(devices, NODES, strict=True)]
         yield hosts, [one.device for one in devices]
 
 
@@ -132,7 +131,7 @@ WAYS = (
 )
 
 
-def _silence(hosts: list[CanopenDrive], drives: list[object]) -> Meeting:
+def _silence(hosts: list[CanopenDrive], drives: list[ServoDrive]) -> Meeting:
     """Both move; the first falls silent while the other goes on. Whether its drive stops."""
     running = [Running(one) for one in hosts]
     for one in running:
@@ -140,15 +139,19 @@ def _silence(hosts: list[CanopenDrive], drives: list[object]) -> Meeting:
         time.sleep(0.1)
     running[0].end()
     time.sleep(_DEAD_S)
-    powered = drives[0].axis.power.on  # type: ignore[attr-defined]
+    powered = drives[0].axis.power.on
     running[1].end()
     refused = next(filter(None, (one.error for one in running)), "")
     return Meeting(refused, guarded=not powered)
 
 
-def _refusal(call: object) -> str:
+def _open(one: CanopenDrive, errors: list[str]) -> None:
+    errors.append(_refusal(lambda: one.open(PERIOD_S)))
+
+
+def _refusal(call: Callable[[], object]) -> str:
     try:
-        call()  # type: ignore[operator]
+        call()
     except DriveError as error:
         return str(error)
     return ""
