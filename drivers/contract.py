@@ -111,13 +111,13 @@ class Inspection:
     """What a drive says of itself while nothing is written to it.
 
     Attributes:
-        status: of the power stage, by the drive's own word; what it was told last where it does not tell.
+        status: of the power stage, by the drive's own word; None where it has none for it.
         fault: in words; "" where it reports none.
         duty: applied PWM duty, -1 .. 1; NaN where it is not measured.
         current_a: motor current [A]; NaN where it is not measured.
     """
 
-    status: Status
+    status: Status | None
     fault: str = ""
     duty: float = nan
     current_a: float = nan

@@ -31,14 +31,16 @@ def simulate(
             help="socketcand: TCP port, 0 is any free one; join: host:port of the other; else the interface's: vcan0."
         ),
     ] = "0",
-    look: Annotated[
+    look_s: Annotated[
         float, typer.Option(min=0, max=1, help="Look at the controlword every so many seconds; 0: at each.")
     ] = 0.0,
-    enable: Annotated[
+    enable_s: Annotated[
         float, typer.Option(min=0, max=60, help="Seconds from the command to operation enabled: brake, finding phase.")
     ] = 0.0,
-    late_mode: Annotated[bool, typer.Option("--late-mode", help="Show the mode (0x6061) only once enabled.")] = False,
-    late_answers: Annotated[float, typer.Option(min=0, max=60, help="Seconds by which SDO answers are late.")] = 0.0,
+    mode_shown_enabled: Annotated[
+        bool, typer.Option("--mode-shown-enabled", help="Show the mode (0x6061) only once enabled.")
+    ] = False,
+    answer_s: Annotated[float, typer.Option(min=0, max=60, help="Seconds by which SDO answers are late.")] = 0.0,
     absent_code: Annotated[
         str, typer.Option(help="Abort code for an object that is not there, such as 0x08000000; left out: CiA 301's.")
     ] = "",
@@ -63,7 +65,7 @@ def simulate(
 
     def start() -> Simulated:
         conduct = Conduct(
-            look_s=look, enable_s=enable, mode_shown_enabled=late_mode, answer_s=late_answers,
+            look_s=look_s, enable_s=enable_s, mode_shown_enabled=mode_shown_enabled, answer_s=answer_s,
             absent_code=_code(absent_code), refused_code=_code(refused_code), deaf=deaf, reaction=reaction,
         )  # fmt: skip
         settings = CanOpenSettings(

@@ -9,6 +9,9 @@ from typing import Any, Final
 HOST_LOST: Final = (0x8130, 0x8250)
 """Codes that say only that the host was silent: heartbeat or guarding, RPDO timeout."""
 
+Table = dict[str, Any]
+"""A file of codes as TOML has it."""
+
 _FOLDER = resources.files("drivers.canopen") / "error_codes"
 _STANDARD: Final = "cia.toml"
 
@@ -40,12 +43,12 @@ def error_codes(vendor_id: int | None = None) -> ErrorCodes:
 
 
 @cache
-def _vendors() -> tuple[dict[str, Any], ...]:
+def _vendors() -> tuple[Table, ...]:
     names = sorted(item.name for item in _FOLDER.iterdir() if item.name.endswith(".toml"))
     return tuple(_read(name) for name in names if name != _STANDARD)
 
 
-def _read(name: str) -> dict[str, Any]:
+def _read(name: str) -> Table:
     return tomllib.loads((_FOLDER / name).read_text(encoding="utf-8"))
 
 

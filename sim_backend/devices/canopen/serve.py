@@ -15,8 +15,8 @@ from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.transport.bus_port import BusPort
 from sim_backend.devices.canopen.transport.stream_port import SlcanPort, SocketcandPort
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
-from sim_backend.devices.plant_tables import behind_a_drive
 from sim_backend.devices.process import Port, RunningDevice, Workplace
 from sim_backend.errors import ParameterError
 
@@ -101,7 +101,7 @@ def _family(name: str) -> Family:
     return FAMILIES[name]
 
 
-def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, Any]]:
+def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, str | int]]:
     """Interface, channel and whatever else python-can is told."""
     if settings.interface == "udp_multicast":
         return settings.interface, settings.channel, {"hop_limit": 0}  # it does not leave this machine

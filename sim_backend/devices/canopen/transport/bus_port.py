@@ -24,7 +24,12 @@ class BusPort(threading.Thread):
     """
 
     def __init__(
-        self, device: CanDevice, clock: WallTime, interface: str, channel: str, more: dict[str, Any] | None = None
+        self,
+        device: CanDevice,
+        clock: WallTime,
+        interface: str,
+        channel: str,
+        more: dict[str, Any] | None = None,
     ) -> None:
         super().__init__(name="device CAN bus", daemon=True)
         self._device = device
