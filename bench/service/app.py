@@ -25,6 +25,7 @@ from bench.service.routes import (
     bench_state,
     calibrations,
     challenges,
+    drive,
     effects,
     experiment_plan,
     experiments,
@@ -86,6 +87,7 @@ A missing effect, found and added:
 
 _ROOMS = (
     bench_state,
+    drive,
     leases,
     experiment_plan,
     experiments,

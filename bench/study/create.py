@@ -6,13 +6,12 @@ from dataclasses import replace
 from bench.config.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
-from bench.study.base_model import base_model
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import keep_model
 from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models.study import ModelName, Study, StudyName
 from bench.study.selection import keep, split
-from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
@@ -147,3 +146,25 @@ def _facts(store: Store, experiment_ids: Sequence[int]) -> Facts:
             "make one study for each"
         )
     return next(iter(found.values()))
+
+
+SAMPLING_DELAY = "measurement_delay"
+CONTROL_LOOP = "recorded_by_control_loop"
+"""Parameter of an imported experiment whose rows our own control loop recorded."""
+OWN_SOURCES = ("simulated", "real")
+
+
+def base_model(store: Store, experiment_ids: Sequence[int], facts: Facts) -> tuple[str, ...]:
+    """Rigid joint with General Kinetic Friction; of our own control loop, with its sampling delay.
+
+    The loop samples the position at the end of the cycle whose effort stands in the same row: on average the effort
+    is half a period older. That is how the rows are made, no property of the joint that a diagnosis should name.
+
+    Args:
+        store: with the experiments.
+        experiment_ids: whose trials are used.
+        facts: of their rig.
+    """
+    experiments = [store.experiment(number) for number in experiment_ids]
+    own = all(one.source in OWN_SOURCES or CONTROL_LOOP in one.parameters for one in experiments)
+    return (*default_effects(facts), SAMPLING_DELAY) if own else default_effects(facts)

@@ -40,12 +40,17 @@ class Rows:
     def of(cls, recordings: list[SecondRecording], scales: Scales) -> "Rows":
         """Join the trials of a joint."""
         parts = [_of_one(one, number) for number, one in enumerate(recordings)]
-        joined = [np.concatenate([part[at] for part in parts]) for at in range(len(parts[0]))]
-        speed, trial = np.abs(joined[1]), joined[10].astype(np.int64)
+        angle, rate, acceleration, passed, load_kg, warm_c, session_s, way, effort, effort_rate, number = (
+            np.concatenate(values) for values in zip(*parts, strict=True)
+        )
+        speed, trial = np.abs(rate), number.astype(np.int64)
         is_open = np.array([one.kind in OPEN_KINDS for one in recordings])[trial]
-        near = (speed < SLOW * scales.top_rad_s) | (joined[7] < NEAR_RAD)
+        near = (speed < SLOW * scales.top_rad_s) | (way < NEAR_RAD)
         stratum = np.where(is_open, 2, np.where(near, 1, 0))
-        return cls(*joined[:10], trial, speed > MOVING * scales.top_rad_s, stratum)
+        return cls(
+            angle, rate, acceleration, passed, load_kg, warm_c, session_s, way, effort, effort_rate,
+            trial, speed > MOVING * scales.top_rad_s, stratum,
+        )  # fmt: skip
 
 
 def _of_one(one: SecondRecording, number: int) -> list[FloatArray]:
@@ -75,7 +80,7 @@ def _way(angle: FloatArray, speed: FloatArray) -> FloatArray:
 
 
 def base_columns(rows: Rows, scales: Scales) -> FloatArray:
-    """Inertia, weight, offset, Coulomb, viscous and Stribeck friction, and a delay of the effort; shape (n, columns)."""
+    """Inertia, weight, offset, Coulomb, viscous and Stribeck friction, delay of the effort; shape (n, columns)."""
     direction, size = np.sign(rows.speed), np.abs(rows.speed)
     weight = np.sin(rows.angle)
     films = [

@@ -1,8 +1,8 @@
 """The drive's position controller: a cascade P-PI, or PD with gravity feed-forward, on quantised position.
 
 It gives a current; a voltage drive turns it into a duty by the resistance and the back-EMF constant of its data sheet.
-While the current is commanded open loop, a tether stops the joint when it has left its place. The position loop takes over
-without a bump: what the joint is off by fades out.
+While the current is commanded open loop, a tether stops the joint when it has left its place. The position loop takes
+over without a bump: what the joint is off by fades out.
 """
 
 from math import pi, sin

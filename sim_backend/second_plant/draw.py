@@ -16,7 +16,7 @@ from sim_backend.second_plant.joint import (
     control_drawn,
     physics_drawn,
 )
-from sim_backend.second_plant.mechanism import Scales
+from sim_backend.second_plant.mechanism import Need, Scales
 from sim_backend.second_plant.protocol import KINDS, Bounds
 
 STARTS = ("breakaway_ramp", "torque_staircase", "point_to_point")
@@ -58,7 +58,7 @@ def draw_joint(
     return DrawnJoint(seed, level, physics, scales, control, sensors, arm, told, trials, bounds, hidden)
 
 
-def sensors_drawn(random: np.random.Generator, needs: set[str]) -> Sensors:
+def sensors_drawn(random: np.random.Generator, needs: set[Need]) -> Sensors:
     """How a joint is recorded; with what its mechanism needs to be there at all."""
     channels: tuple[EffortChannel, ...] = ("current", "torque", "duty", "estimate")
     effort = channels[int(random.choice(4, p=[0.45, 0.2, 0.2, 0.15]))]
@@ -68,7 +68,7 @@ def sensors_drawn(random: np.random.Generator, needs: set[str]) -> Sensors:
         effort = "current"
     elif "voltage" in needs and effort not in ("duty", "estimate"):
         effort = "duty" if random.random() < 0.5 else "estimate"
-    rate_hz = float(random.choice(RATES_HZ, p=[0.1, 0.2, 0.15, 0.2, 0.15, 0.15, 0.05]))
+    rate_hz = float(random.choice(RATES_HZ, p=[0.12, 0.22, 0.18, 0.22, 0.16, 0.08, 0.02]))
     return Sensors(
         effort=effort,
         supply_measured="nominal" not in needs and bool(random.random() < 0.5),
@@ -77,7 +77,7 @@ def sensors_drawn(random: np.random.Generator, needs: set[str]) -> Sensors:
         hold_s=float(random.choice([0.0, 0.5, 1.0])) / rate_hz,
         skew_s=float(random.uniform(-1e-3, 4e-3)),
         filter_hz=float(np.exp(random.uniform(np.log(50.0), np.log(400.0)))),
-        noise=float(np.exp(random.uniform(np.log(0.0005), np.log(0.005)))),
+        noise=float(np.exp(random.uniform(np.log(0.001), np.log(0.01)))),
         counts_per_turn=float(random.choice([1000, 2000, 4096, 16384])),
         speed_told=bool(random.random() < 0.3),
         temperature_told="temperature" in needs or bool(random.random() < 0.5),
@@ -85,7 +85,7 @@ def sensors_drawn(random: np.random.Generator, needs: set[str]) -> Sensors:
     )
 
 
-def told_drawn(random: np.random.Generator, needs: set[str]) -> Told:
+def told_drawn(random: np.random.Generator, needs: set[Need]) -> Told:
     """Which facts the owner knows."""
     nominal = "nominal" in needs
     shares = (0.8, 0.8, 0.8, 0.7, 0.5, 0.5, 0.7)
@@ -94,9 +94,9 @@ def told_drawn(random: np.random.Generator, needs: set[str]) -> Told:
     return Told(ratio, counts, constant, length, inertia, mass, nominal and known, tolerance)
 
 
-def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[str], level: Level) -> tuple[Trial, ...]:
+def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[Need], level: Level) -> tuple[Trial, ...]:
     """Kinds in turn from a shuffled list, loads, temperatures and the time between trials drawn."""
-    count, levels = int(random.integers(16, 31)), int(random.integers(2, 5))
+    count, levels = int(random.integers(16, 27)), int(random.integers(2, 5))
     loads_kg = np.linspace(0.0, scales.heaviest_kg, levels)
     kinds = [str(kind) for _ in range(4) for kind in random.permutation(list(KINDS))][:count]
     if "starts" in needs:
@@ -107,7 +107,7 @@ def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[str], l
     scatter = float(random.uniform(0.0, 0.01)) if level == "textbook" else float(random.uniform(0.0, 0.03))
     session_s, trials = 0.0, []
     for number, kind in enumerate(kinds):
-        seconds = round(float(random.uniform(6.0, 10.0)), 1)
+        seconds = round(float(random.uniform(6.0, 9.0)), 1)
         warm = 22.0 + 8.0 * (1.0 - np.exp(-session_s / 900.0)) + spread_k * float(random.standard_normal())
         factor = 1.0 + scatter * float(random.standard_normal())
         load_kg = round(float(random.choice(loads_kg)), 3)

@@ -1,8 +1,8 @@
 """Bristle friction: three elasto-plastic elements of different stiffness share one level that depends on speed.
 
-dz/dt = v - alpha lambda z, F = sum sigma z + sigma_1 dz/dt (Dupont, Hayward, Armstrong, Altpeter 2002, eqs. 3 to 8; Al-Bender,
-Lampaert, Swevers 2005 for the parallel elements). The bristle equation is integrated exactly over a step of constant speed,
-so that it is stable however stiff the bristles are.
+dz/dt = v - alpha lambda z, F = sum sigma z + sigma_1 dz/dt (Dupont, Hayward, Armstrong, Altpeter 2002; Al-Bender,
+Lampaert, Swevers 2005 for the parallel elements). The bristle equation is integrated exactly over a step of constant
+speed, so that it is stable however stiff the bristles are.
 """
 
 from math import exp, log, sin

@@ -181,7 +181,7 @@ def physics_drawn(random: np.random.Generator, level: Level) -> tuple[Physics, S
         stribeck_power=between(0.5, 2.5) if foreign else float(random.choice([1.0, 2.0])),
         viscous_n_m=between(0.04, 0.12) * peak_n_m / top_rad_s,
         viscous_power=between(0.6, 1.4) if foreign else 1.0,
-        bristle_rad=log_between(1e-4, 4e-4),
+        bristle_rad=log_between(5e-5, 2e-4) if foreign else log_between(1e-5, 4e-5),
         bristle_damping_n_m_s=0.0,
         gear_c=REFERENCE_C,
         winding_c=REFERENCE_C,

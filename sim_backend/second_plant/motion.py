@@ -1,7 +1,7 @@
 """Equations of motion: rotor and arm, rigid or with a twisting, gapped gear; hanging cable and swinging tip.
 
-Positions drift by half steps, speeds are kicked by Heun's rule in between (Strang splitting; Hairer, Lubich, Wanner 2006,
-section II.5): second order, and without drift of the energy where nothing is lost.
+Positions drift by half steps, speeds are kicked by Heun's rule in between (Strang splitting; Hairer, Lubich, Wanner
+2006, section II.5): second order, and without drift of the energy where nothing is lost.
 """
 
 from math import cos, sin, tanh

@@ -1,8 +1,8 @@
 """How far a mechanism stands out of recordings, from the truth: what an ideal judge could know.
 
-The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true motion
-takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of the
-difference D. (The joint moves a little otherwise without the mechanism, so D alone holds what no model has of either.)
+The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true
+motion takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of
+the difference D. (The joint moves a little otherwise without it, so D alone holds what no model has of either.)
 
     s = rms that the base model leaves of the noisy joint without the mechanism, in steady motion, near reversals, and
         where the current is commanded, each for itself
@@ -93,12 +93,11 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
     moving, weight = rows.moving, 1.0 / floor.left[rows.stratum]
     paired = moving & floor.rows.moving
     remainder = _remainder(rows, joint, floor.left)
-    more = _power(remainder, moving) - _power(floor.remainder, floor.rows.moving)
-    shown = np.where(paired, remainder - floor.remainder, 0.0)[moving]
+    difference = np.where(paired, remainder - floor.remainder, 0.0)
+    ratio = _ratio(rows, remainder, difference, floor)
+    shown = difference[moving]
     basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[moving])
     shown = shown - basis @ (basis.T @ shown)
-    # never more than the difference itself
-    ratio = float(np.sqrt(min(max(more, 0.0), float(np.mean(shown**2)))))
     independent = len(shown) / floor.dependent
     correlation, rival = 0.0, ""
     for other, columns in rival_columns(rows, joint.scales).items():
@@ -109,8 +108,16 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
     return Evidence(ratio, float(np.sqrt(strength * (1.0 - correlation**2))), rival, independent)
 
 
-def _power(remainder: FloatArray, moving: NDArray[np.bool_]) -> float:
-    return float(np.mean(remainder[moving] ** 2))
+def _ratio(rows: Rows, remainder: FloatArray, difference: FloatArray, floor: Floor) -> float:
+    """r: of each stratum the power that is left more with the mechanism, never more than that of the difference."""
+    power = 0.0
+    for stratum in range(STRATA):
+        with_it = rows.moving & (rows.stratum == stratum)
+        without = floor.rows.moving & (floor.rows.stratum == stratum)
+        if with_it.any() and without.any():
+            more = float(np.mean(remainder[with_it] ** 2) - np.mean(floor.remainder[without] ** 2))
+            power += min(more, float(np.mean(difference[with_it] ** 2))) * np.count_nonzero(with_it)
+    return float(np.sqrt(max(power, 0.0) / np.count_nonzero(rows.moving)))
 
 
 def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:
@@ -136,8 +143,9 @@ def _remainder(rows: Rows, joint: DrawnJoint, left: FloatArray) -> FloatArray:
 def _orthonormal(columns: FloatArray) -> FloatArray:
     """Orthonormal basis of the columns' span."""
     scale = np.linalg.norm(columns, axis=0)
-    scaled = columns[:, scale > 0.0] / scale[scale > 0.0]
+    scaled: FloatArray = columns[:, scale > 0.0] / scale[scale > 0.0]
     if scaled.shape[1] == 0:
         return scaled
     left, values, _ = np.linalg.svd(scaled, full_matrices=False)
-    return np.asarray(left[:, values > 1e-8 * values[0]])
+    basis: FloatArray = left[:, values > 1e-8 * values[0]]
+    return basis

@@ -47,7 +47,7 @@ def _closed(target: FloatArray) -> Motion:
 
 
 def _times(ticks: int) -> FloatArray:
-    return np.arange(ticks) * TICK_S
+    return np.arange(ticks, dtype=np.float64) * TICK_S
 
 
 def _quintic(start: float, end: float, ticks: int) -> FloatArray:

@@ -25,7 +25,7 @@ class SecondRecording:
         load_kg, gear_c, session_s: its conditions.
         channels: name with unit -> samples, shape (n,).
         effort: the one that stands for the effort, in N m, A or V, shape (n,).
-        truth: without counts, at the stamps of the samples.
+        truth: without counts, filtered and delayed like the effort, at the stamps of the samples.
     """
 
     name: str
@@ -65,7 +65,7 @@ def _recorded(joint: DrawnJoint, trial: Trial, quiet: bool, without: frozenset[s
         trial = replace(trial, friction_factor=1.0)
     _, traces = simulated(joint, trial, without)
     random = np.random.default_rng((trial.seed, 3))
-    sensors, times = joint.sensors, np.arange(len(traces.reading_rad)) * TICK_S
+    sensors, times = joint.sensors, np.arange(len(traces.reading_rad), dtype=np.float64) * TICK_S
     stamps = _stamps(joint, float(times[-1]), random)
     # values are as old as the drive's last update
     taken = np.floor(stamps / sensors.hold_s + 1e-9) * sensors.hold_s if sensors.hold_s > 0.0 else stamps
@@ -79,7 +79,8 @@ def _recorded(joint: DrawnJoint, trial: Trial, quiet: bool, without: frozenset[s
     if sensors.temperature_told:
         channels["temperature_c"] = np.round(np.interp(taken, times, traces.winding_c), 1)
     product = np.prod([values for name, values in effort.items()], axis=0)
-    truth = Traces(*(np.interp(taken, times, values) for values in traces))
+    seen_as = taken - sensors.skew_s
+    truth = Traces(*(np.interp(seen_as, times, _filtered(values, sensors.filter_hz)) for values in traces))
     return SecondRecording(
         trial.name, trial.kind, trial.load_kg, trial.gear_c, trial.session_s, channels, product, truth
     )
@@ -95,7 +96,9 @@ def _stamps(joint: DrawnJoint, last_s: float, random: np.random.Generator) -> Fl
 def _filtered(values: FloatArray, hertz: float) -> FloatArray:
     """First order, from the steady state of the first value on."""
     fade = float(np.exp(-2.0 * pi * hertz * TICK_S))
-    return np.asarray(lfilter([1.0 - fade], [1.0, -fade], values - values[0])) + values[0]
+    filtered: FloatArray = lfilter([1.0 - fade], [1.0, -fade], values - values[0])
+    filtered += values[0]
+    return filtered
 
 
 def _efforts(

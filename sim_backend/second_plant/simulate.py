@@ -1,4 +1,4 @@
-"""One trial of the joint in its fine steps: power stage, current, bristles, motion, and the drive's controller between."""
+"""One trial of the joint in fine steps: power stage, current, bristles, motion, and the drive's controller between."""
 
 from math import cos, exp, floor, pi, sin
 from typing import NamedTuple
@@ -16,6 +16,7 @@ FloatArray = NDArray[np.float64]
 TICK_S, STEPS = 5e-4, 10  # period of the controller, and steps of the physics in it (20 kHz)
 CURRENT_LOOP_RAD_S = 2500.0
 REST_RAD_S = 2e-3
+CONTACT_S = 2e-3  # in which the friction level follows the force between the teeth
 RATE_S = 0.05  # over which the rate of the torque is taken
 ELEMENTS = (0.1, 0.25, 0.5, 1.0)  # slip lengths of the hysteresis, as shares of the longest
 TRACES = 8
@@ -110,7 +111,7 @@ def _impact_n_m(p: Physics, angle: float, speed: float) -> float:
 
 
 @compiled
-def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:
+def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:  # noqa: C901 - one compiled loop
     step_s = TICK_S / STEPS
     start = plan.target_rad[0]
     at, speeds = Places(start, start, start, 0.0), Speeds(0.0, 0.0, 0.0, 0.0)
@@ -122,6 +123,7 @@ def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:
     current, winding_c, passed, acceleration = held_a, p.winding_c, p.torque_per_a * held_a, 0.0
     bristles, longer = np.zeros(3), np.zeros(4)
     lagged, rest_s, seal, slow_n_m, rate = 0.0, 1.0, 0.0, p.torque_per_a * held_a, 0.0
+    pressed_n_m, shaken, follow = passed, 0.0, step_s / CONTACT_S
     duty_v, integral_v, bus = p.resistance_ohm * held_a, p.resistance_ohm * held_a, p.supply_v
     for tick in range(len(plan.mode)):
         reading = encoder(p.turns, control.count_rad, at.rotor, p.eccentricity_rad, interpolation)
@@ -157,20 +159,21 @@ def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:
             # friction level, and the bristles that carry it
             v = speeds.rotor
             lagged = lagged + (v - lagged) * (1.0 - exp(-step_s / p.lag_s)) if p.lag_s > 0.0 else v
-            level = level_n_m(p, lagged, time_s, dwell_n_m, breakaway) + load_loss_n_m(p, passed, v)
+            level = level_n_m(p, lagged, time_s, dwell_n_m, breakaway) + load_loss_n_m(p, pressed_n_m, v)
             level = (level + added_n_m) * place
             if p.periodic_share != 0.0:
                 level *= 1.0 + p.periodic_share * sin(at.rotor * p.turns + p.periodic_phase_rad)
             level *= 1.0 + (p.coulomb_asymmetry if v > 0.0 else -p.coulomb_asymmetry)
             if p.acceleration_loss != 0.0:
-                level *= 1.0 + p.acceleration_loss * min(abs(acceleration), 100.0)
+                level *= 1.0 + p.acceleration_loss * min(abs(shaken), 100.0)
+            damping = p.bristle_damping_n_m_s * exp(-((v / p.stribeck_rad_s) ** 2))  # Olsson 1996: of slow motion alone
             friction = 0.0
             for one in range(3):
                 length = LENGTHS[one] * p.bristle_rad
                 stiffness = SHARES[one] * p.coulomb_n_m / length
                 after = bent(bristles[one], v, SHARES[one] * level / stiffness, step_s)
                 rate_of = (after - bristles[one]) / step_s
-                friction += stiffness * 0.5 * (after + bristles[one]) + SHARES[one] * p.bristle_damping_n_m_s * rate_of
+                friction += stiffness * 0.5 * (after + bristles[one]) + SHARES[one] * damping * rate_of
                 bristles[one] = after
             if p.hysteresis_n_m != 0.0:
                 for one in range(4):
@@ -186,6 +189,8 @@ def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:
             at = drifted(at, speeds, 0.5 * step_s)
             speeds, acceleration, passed = kicked(p, at, speeds, torque - friction, step_s)
             at = drifted(at, speeds, 0.5 * step_s)
+            pressed_n_m += follow * (passed - pressed_n_m)
+            shaken += follow * (acceleration - shaken)
             if p.creep_per_s != 0.0:
                 at = Places(at.rotor, at.arm - p.creep_per_s * passed * step_s, at.tip, at.cable)
             if p.rate_share != 0.0 and abs(v) < REST_RAD_S:

@@ -103,6 +103,23 @@ def test_the_joint_breaks_away_at_its_static_friction_and_only_bends_before():
     assert np.abs(traces.reading_rad[: int(0.4 / ramp_n_m_s / TICK_S)]).max() < 2.0 * p.bristle_rad
 
 
+def test_a_gear_that_loses_by_its_load_slides_smoothly_and_loses_that_share():
+    p = PLAIN._replace(
+        moment_n_m=0.0, spring_n_m_rad=3.0, coulomb_n_m=0.2, static_n_m=0.2, bristle_rad=2e-5,
+        bristle_damping_n_m_s=20.0, tooth_loss=0.3,
+    )  # fmt: skip
+    at = seconds(4.0)
+    target = 0.4 * np.maximum(at - 0.2, 0.0)
+    zero = np.zeros(len(at))
+    plan = Plan(np.full(len(at), CLOSED), target, np.gradient(target, TICK_S), zero, zero, zero, zero, zero)
+    traces = run(p, CONTROL._replace(speed_a_s=10.0, integral_a=100.0), plan)
+    late = slice(3000, None)
+
+    expected = 0.2 + 1.3 * 3.0 * traces.reading_rad[late]
+    assert p.torque_per_a * traces.current_a[late] == pytest.approx(expected, abs=0.03)
+    assert np.std(traces.acceleration_rad_s2[late]) < 0.1
+
+
 def test_a_motor_crosses_the_gap_alone_before_it_moves_the_arm():
     p = PLAIN._replace(moment_n_m=0.0, gap_rad=0.04, stiffness_n_m_rad=500.0, coupling_n_m_s=1.0)
     at = seconds(0.6)

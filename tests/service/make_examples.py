@@ -62,6 +62,8 @@ def bench(asking: Asking, service: RunningService) -> None:
     ask("PUT /lease", {"duration_s": 60})
     ask("GET /lease")
     service.client.delete("/lease")
+    ask("POST /drive/state")
+    ask("POST /drive/clear-fault", {"fault": ""})
     ask("GET /experiment-kinds")
     ask("GET /channels")
     ask("POST /experiments/plan", STEPS)

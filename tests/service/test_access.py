@@ -17,6 +17,8 @@ CHANGES = [
     ("POST", "/experiments/plan"),
     ("POST", "/stop"),
     ("POST", "/continue"),
+    ("POST", "/drive/state"),
+    ("POST", "/drive/clear-fault"),
     ("POST", "/lease"),
     ("PUT", "/lease"),
     ("DELETE", "/lease"),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.study.base_model import SAMPLING_DELAY
+from bench.study.create import SAMPLING_DELAY
 
 
 @pytest.fixture(scope="module")

@@ -82,7 +82,8 @@ def second_joint(seed: int, names: tuple[str, ...], ratios: tuple[float, ...], l
 
     Args:
         seed: of all that is drawn.
-        names: of mechanisms; ratios: the r that each should have alone.
+        names: of mechanisms.
+        ratios: the r that each should have alone.
         level: of the friction laws.
     """
     sizes = tuple(_size_for(seed, name, ratio, level) for name, ratio in zip(names, ratios, strict=True))
@@ -91,7 +92,7 @@ def second_joint(seed: int, names: tuple[str, ...], ratios: tuple[float, ...], l
 
 
 def _size_for(seed: int, name: str, wanted: float, level: Level) -> float:
-    """The size by which a mechanism stands out by an r, or the nearest that it can have: r goes with the size, roughly."""
+    """The size by which a mechanism stands out by an r, or the nearest that it can have."""
     most, size, floor = MECHANISMS[name].most, FIRST_SIZE, None
     tried: list[tuple[float, float]] = []
     for _ in range(SCALINGS):

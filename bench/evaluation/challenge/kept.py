@@ -12,7 +12,7 @@ from bench.recording_set.transfer import IMPORT_KIND
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.store.records import Experiment
-from bench.study.base_model import CONTROL_LOOP
+from bench.study.create import CONTROL_LOOP
 
 SEALED, DIFFICULTY = "sealed_answer", "difficulty"
 PAGE = 1000  # experiments read at once

@@ -1,0 +1,85 @@
+"""Drawn joints and what is recorded of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim_backend.second_plant.draw import draw_joint
+from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint
+from sim_backend.second_plant.oracle import evidence
+from sim_backend.second_plant.recording import record, simulated
+
+
+def short(joint: DrawnJoint, trials: int = 8) -> DrawnJoint:
+    return replace(joint, trials=joint.trials[:trials])
+
+
+def test_the_same_seed_records_the_same_and_another_seed_another_joint():
+    first, again, other = (record(short(draw_joint(seed), 2)) for seed in (5, 5, 6))
+
+    for one, two in zip(first, again, strict=True):
+        assert all(np.array_equal(one.channels[name], two.channels[name]) for name in one.channels)
+    assert not np.array_equal(first[0].effort[:50], other[0].effort[:50])
+
+
+@pytest.mark.parametrize("name", list(MECHANISMS))
+def test_every_mechanism_changes_what_is_recorded_and_can_be_left_out(name):
+    joint = short(draw_joint(3, (name,), (1.0,)))
+    complete = replace(joint, hidden=())
+
+    hidden, without, plain = record(joint), record(joint, without=frozenset({name})), record(complete)
+
+    assert any(not np.array_equal(a.effort, b.effort) for a, b in zip(hidden, plain, strict=True))
+    assert all(np.array_equal(a.effort, b.effort) for a, b in zip(without, plain, strict=True))
+    assert all(np.isfinite(values).all() for one in hidden for values in one.channels.values())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_textbook_joint_obeys_the_rigid_joint_formula_once_its_bristles_are_bent(seed):
+    joint = draw_joint(seed)
+    for trial in joint.trials[:8]:
+        p, true = simulated(joint, trial)
+        speed = true.speed_rad_s
+        film = np.exp(-((np.abs(speed) / p.stribeck_rad_s) ** p.stribeck_power))
+        friction = np.sign(speed) * (p.coulomb_n_m + (p.static_n_m - p.coulomb_n_m) * film) + p.viscous_n_m * speed
+        inertia = p.rotor_kg_m2 + p.arm_kg_m2
+        needed = inertia * true.acceleration_rad_s2 + p.moment_n_m * np.sin(true.reading_rad) + friction
+        # steady sliding: long since any reversal, and no step of the current
+        sliding = np.convolve(np.abs(speed) > 0.05 * joint.scales.top_rad_s, np.ones(201), mode="same") > 200
+        off = (p.torque_per_a * true.current_a - needed)[sliding]
+
+        assert np.linalg.norm(off) <= 0.03 * p.coulomb_n_m * np.sqrt(len(off))
+
+
+def test_stamps_rise_and_the_encoder_counts():
+    joint = draw_joint(11)
+    for one in record(short(joint)):
+        counts = one.channels["position_rad"] / joint.control.count_rad
+
+        assert (np.diff(one.channels["time_s"]) > 0.0).all()
+        assert counts == pytest.approx(np.round(counts), abs=1e-6)
+
+
+def test_a_measured_supply_hides_nothing_of_the_sag_and_a_nominal_one_all():
+    joint = draw_joint(3, ("sag",), (1.0,))
+    measured = replace(joint, sensors=replace(joint.sensors, effort="duty", supply_measured=True))
+    nominal = replace(joint, sensors=replace(joint.sensors, effort="duty", supply_measured=False))
+
+    assert evidence(nominal, "sag").ratio > 3.0 * evidence(measured, "sag").ratio
+
+
+def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
+    small, large = (evidence(draw_joint(9, ("tooth_loss",), (size,)), "tooth_loss").ratio for size in (0.02, 0.2))
+    winding = draw_joint(9, ("hot_winding",), (1.0,))
+    control = winding.control._replace(voltage_drive=False)
+    by_current = replace(winding, sensors=replace(winding.sensors, effort="current"), control=control)
+
+    assert large > 3.0 * small
+    assert evidence(winding, "hot_winding").detectability > 10.0
+    assert evidence(by_current, "hot_winding").ratio < 0.02
+
+
+def test_an_unknown_mechanism_is_refused_by_name():
+    with pytest.raises(ValueError, match="nonsense"):
+        draw_joint(1, ("nonsense",), (1.0,))

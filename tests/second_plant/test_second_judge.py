@@ -1,0 +1,57 @@
+"""The lab's benchmark on the second plant: items, facts told, one answer."""
+
+import json
+
+import numpy as np
+import pytest
+
+from bench.errors import ParameterError
+from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.second_judge import SECOND_FAMILIES, draw_second, judge_second, second_items_of
+from bench.evaluation.blind.second_plant import ABSORBED, KNOWN, NAMES, OUTSIDE, recordings_of, rig_of, second_joint
+from compensator.lab.effects.catalogue import catalogue, default_effects
+from compensator.lab.recordings.facts import Facts
+from sim_backend.second_plant.joint import MECHANISMS
+
+
+def test_every_effect_of_the_catalogue_is_hidden_by_a_mechanism_but_what_every_model_has():
+    everywhere = {*default_effects(Facts()), "measurement_delay"}
+
+    assert set(NAMES.values()) == set(catalogue()) - everywhere
+    assert {*KNOWN, *ABSORBED, *OUTSIDE} == set(MECHANISMS)
+    assert len(OUTSIDE) >= 8
+
+
+def test_a_longer_run_begins_with_the_items_of_a_shorter_one():
+    assert second_items_of(4, 3)[: len(second_items_of(4, 2))] == second_items_of(4, 2)
+    with pytest.raises(ParameterError, match="no family 'memory'"):
+        second_items_of(4, 1, ["memory"])
+
+
+@pytest.mark.parametrize("name", ["tooth_loss", "worn_sector"])
+def test_a_mechanism_gets_the_r_that_is_asked(name):
+    joint = second_joint(21, (name,), (0.5,), "textbook")
+
+    assert joint.evidences[0].ratio == pytest.approx(0.5, rel=0.35)
+
+
+def test_the_lab_sees_recordings_and_a_rig_without_what_is_hidden():
+    rigs = set()
+    for item in second_items_of(2, 3, ["complete"]):
+        joint = draw_second(item)
+        rig = rig_of(joint)
+        rigs.add((rig.gear.ratio is None, rig.arm.inertia_kg_m2 is None, rig.motor.torque_constant_n_m_a is None))
+        for one in recordings_of(joint):
+            assert np.isfinite(one.channels["position_rad"]).all()
+            assert set(one.conditions) <= {"load_kg", "arm_m", "session_s"}
+    assert len(rigs) > 1
+
+
+def test_one_item_is_judged_and_its_result_survives_a_file():
+    item = second_items_of(71, 1, ["outside"])[0]
+    result = judge_second(item)
+
+    assert result.names == ("",)
+    assert 0.2 < result.standings[0].ratio < 2.0
+    assert Result.from_json(json.loads(json.dumps(result.to_json()))) == result
+    assert SECOND_FAMILIES[item.family].ratios == (0.3, 1.2)
