@@ -47,6 +47,7 @@ def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page):
     said = page.locator("#stop-answer").get_by_text("the drive is powered off")
     said.wait_for()
     page.locator(".badge.idle").wait_for()
+    service.runner.wait(10.0)  # its record is closed a moment before its thread has ended
     start(page)
     said.wait_for(state="detached", timeout=1000)
     page.keyboard.press("Escape")

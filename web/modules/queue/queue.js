@@ -8,7 +8,7 @@ import { conditions, duration } from "../ui/format.js";
 
 const EVERY_MS = 2000;
 
-// whole: also to move, to clear, and what came out of it last; returns {refresh, leave}
+// whole: also to move, to clear, and what came out of it last; returns {first, refresh, leave}; first: its first answer
 export function queuePanel(place, { whole = false } = {}) {
   const [list, answer] = [h("div"), h("div")];
   const [sentence, left] = [h("span", { role: "status" }), h("span")]; // the time left changes all the time: it is not read aloud
@@ -50,9 +50,9 @@ export function queuePanel(place, { whole = false } = {}) {
     { title: "Experiment", cell: (one) => [one.experiment_id ? `${one.experiment_id}: ${one.kind}` : one.kind, h("div", { class: "hint" }, described(one))] },
     { title: "Outcome", cell: (one) => outcome({ outcome: one.state, reason: one.reason }) },
   ], items)];
-  refresh();
+  const first = refresh();
   const timer = setInterval(refresh, EVERY_MS);
-  return { refresh, leave: () => clearInterval(timer) };
+  return { first, refresh, leave: () => clearInterval(timer) };
 }
 
 // what it is done under, as far as it was said, and what is noted with it
