@@ -104,4 +104,5 @@ def _drive(drive: Description) -> dict[str, Value]:
     found = dataclasses.asdict(drive)
     found["modes"] = sorted(mode.value for mode in drive.modes)
     found["measured"] = sorted(drive.measured)
+    del found["tables"]  # long, and for whoever commissions the drive
     return found

@@ -124,6 +124,21 @@ class Inspection:
 
 
 @dataclass(frozen=True, slots=True)
+class FoundTable:
+    """What was found at connect, for a person to look through.
+
+    Attributes:
+        title: what it is about.
+        columns: their headings.
+        rows: one text a column.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Description:
     """Identity and capabilities of a drive, as found at connect.
 
@@ -139,6 +154,7 @@ class Description:
         longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
         watchdog: how sure it is that the drive stops by itself then.
         notes: what the user should know of line and host, and what to do; a sentence each.
+        tables: what was found beside, in the drive's own terms.
     """
 
     device: str
@@ -156,6 +172,7 @@ class Description:
     longest_open_s: float = 0.0
     watchdog: Watchdog = Watchdog.CONFIGURED
     notes: tuple[str, ...] = ()
+    tables: tuple[FoundTable, ...] = ()
 
 
 class Drive(Protocol):

@@ -1,11 +1,9 @@
 """Connect, look, measure the cycle rate. The power stage stays off."""
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.drives.kind import SetupTable
-from bench.config.drives.registry import drive_kind
 from bench.control.clock import Clock, VirtualClock, WallClock
 from bench.control.cycle import OFF
 from bench.control.drive_factory import is_simulated, make_equipment
@@ -27,7 +25,6 @@ class Connection:
         exchange_s: median time of one exchange [s].
         slowest_s: the longest [s].
         lost_cycles: of `CYCLES`, because one before was late.
-        setup: how the drive was set up, by its kind.
     """
 
     description: Description
@@ -37,7 +34,6 @@ class Connection:
     exchange_s: float
     slowest_s: float
     lost_cycles: int
-    setup: tuple[SetupTable, ...] = ()
 
 
 def connect(configuration: BenchConfiguration) -> Connection:
@@ -53,9 +49,7 @@ def connect(configuration: BenchConfiguration) -> Connection:
     try:
         drive.open(period_s)
         check_timing(drive.describe(), period_s)
-        found = _measure(drive, clock, period_s)
-        tell = drive_kind(configuration.drive.kind).setup
-        return found if tell is None else replace(found, setup=tell(drive))
+        return _measure(drive, clock, period_s)
     finally:
         drive.close()
 

@@ -1,13 +1,15 @@
 """What the drive is and can do, in the words of the contract."""
 
-from math import nan
+from collections.abc import Iterator
+from math import isnan, nan
 from typing import Final
 
 from drivers.canopen.cia301.bus_load import cycle_s
 from drivers.canopen.cia402.power_stage import SWITCH_OFF_S
+from drivers.canopen.cia402.state_machine import State
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
-from drivers.contract import Description, Watchdog
+from drivers.contract import Description, FoundTable, Watchdog
 
 _SOME_S: Final = 4.0  # of whatever else a call takes
 _OPEN_S: Final = 12.0  # opening the bus, braking what was left on, the trial cycles
@@ -50,4 +52,37 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
         longest_call_s=longest_call_s(settings),
         longest_open_s=longest_open_s(settings),
         watchdog=Watchdog.PROVEN if session.guard.tried else Watchdog.CONFIGURED,
+        notes=tuple(_notes(session)),
+        tables=(_units(session), _objects(session)),
     )
+
+
+def _notes(session: Session) -> Iterator[str]:
+    """What whoever opens the drive should know."""
+    yield f"Watchdog: {session.guard.words}."
+    if not session.guard.is_told:
+        yield "Its dictionary does not tell that reaction: it is tried each time before the first motion."
+    if session.left in (State.ENABLED, State.QUICK_STOP):
+        yield f"A host before left the drive in state '{session.left.value}'. It was switched off."
+    if isnan(session.found.scale.velocity_unit_rad_s):
+        yield "The velocity counts as not measured: its unit is told by neither drive nor velocity_unit."
+    if not any(row.drive for row in session.found.units):
+        yield "The drive tells no units: watch the move of 'friction-bench doctor --move', and compare its angle."
+
+
+def _units(session: Session) -> FoundTable:
+    rows = ((row.quantity, row.drive or "not told", _number(row.configuration)) for row in session.found.units)
+    return FoundTable("Units", ("quantity", "by the drive", "used"), tuple(rows))
+
+
+def _objects(session: Session) -> FoundTable:
+    """The objects of the drive: those that are required, those that are wished, and what is done without."""
+    rows = (
+        (row.object, row.need.value if row.found else f"{row.need.value}, done without", row.purpose, row.outcome)
+        for row in session.table.rows
+    )
+    return FoundTable("Objects of the drive", ("object", "need", "purpose", "outcome"), tuple(rows))
+
+
+def _number(value: float) -> str:
+    return "unknown" if isnan(value) else f"{value:.6g}"

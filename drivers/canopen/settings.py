@@ -48,6 +48,11 @@ class BusSettings:
         """Whether remote requests reach the bus: python-can 4.6 sends them as data over socketcand."""
         return self.interface != "socketcand"
 
+    @property
+    def echoes(self) -> bool:
+        """Whether the interface hands this host its own frames."""
+        return self.interface == "udp_multicast"
+
     def __str__(self) -> str:
         return f"{self.channel}@{self.host}:{self.port}" if self.interface == "socketcand" else self.channel
 

@@ -86,10 +86,10 @@ def _show(found: "Connection") -> None:
         ("lost cycles", found.lost_cycles),
         ("watchdog", f"is to stop it after {description.watchdog_s:g} s of silence; {description.watchdog}"),
     ])  # fmt: skip
+    for found_table in description.tables:
+        table(found_table.title, list(found_table.columns), list(found_table.rows))
     for note in description.notes:
         say(f"note: {note}")
-    for part in found.setup:
-        table(part.title, part.columns, part.rows)
     table("Measured now, with the power off", ["quantity", "unit", "value#", "smallest step#", "age in ms#"], [
         (name, unit_of(name), _value(found, name), description.resolution.get(name), _age_ms(found, name))
         for name in QUANTITIES

@@ -36,21 +36,6 @@ class ConformanceBench:
     has_link: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class SetupTable:
-    """How an open drive was set up, for a person to read.
-
-    Attributes:
-        title: of the table.
-        columns: their names; one that ends in # holds numbers.
-        rows: one cell for each column.
-    """
-
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str | float, ...], ...]
-
-
 SettingsT = TypeVar("SettingsT", bound=DriveSettings)
 
 
@@ -64,7 +49,6 @@ class DriveKind(Generic[SettingsT]):
         make: makes the drive, not yet open, of the section and the rig. Raises `ConfigurationError`.
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.
         conformance: how the conformance tests run on it.
-        setup: how an open drive of this kind was set up; None where the kind has nothing to tell.
     """
 
     title: str
@@ -72,7 +56,6 @@ class DriveKind(Generic[SettingsT]):
     make: Callable[[SettingsT, Rig], Drive]
     simulate: Callable[[], Simulate] | None = None
     conformance: tuple[ConformanceBench, ...] = ()
-    setup: Callable[[Drive], tuple[SetupTable, ...]] | None = None
 
     @property
     def name(self) -> str:

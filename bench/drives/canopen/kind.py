@@ -1,6 +1,6 @@
 """CiA 402 drives on a CAN bus as a kind."""
 
-from bench.config.drives.kind import ConformanceBench, DriveKind, SetupTable
+from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
@@ -20,8 +20,10 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
 
     values = driver_values(settings)
     bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    constant_n_m_a = rig.motor.torque_constant_n_m_a
     try:
-        return CanopenDrive(CanopenSettings(bus=bus, **values), joint_scale(settings, rig))
+        drive = CanopenSettings(bus=bus, torque_constant_n_m_a=constant_n_m_a, **values)
+        return CanopenDrive(drive, joint_scale(settings, rig))
     except DriveConfigurationError as error:
         raise ConfigurationError(str(error)) from error
 
@@ -33,25 +35,10 @@ def simulate() -> Simulate:
     return simulate
 
 
-def setup(drive: Drive) -> tuple[SetupTable, ...]:
-    """Objects that are required, wished or done without, and units by the drive and by the configuration."""
-    from drivers.canopen import CanopenDrive
-
-    if not isinstance(drive, CanopenDrive):
-        return ()
-    objects = tuple((row.object, row.need.value, row.purpose, row.outcome) for row in drive.objects)
-    units = tuple((row.quantity, row.drive or "not told", row.configuration) for row in drive.units)
-    return (
-        SetupTable("Objects of the drive", ("object", "need", "for", "outcome"), objects),
-        SetupTable("One count of each quantity", ("quantity", "by the drive", "used#"), units),
-    )
-
-
 KIND = DriveKind(
     title="CiA 402 servo drive, CANopen",
     settings=CanopenDriveSettings,
     make=make,
     simulate=simulate,
     conformance=(ConformanceBench("canopen", settings={"watchdog_s": 1.0, "answer_s": 0.6}),),
-    setup=setup,
 )

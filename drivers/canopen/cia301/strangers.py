@@ -1,8 +1,8 @@
 """Other hosts on the bus: a second SYNC, NMT commands, demands or heartbeats that are not this host's own.
 
 One bus has one SYNC producer, and one drive has one host. A second SYNC makes the drive answer at times that this host
-does not know; a second host under the same node ID keeps a drive alive whose own host is gone. No interface of
-python-can hands a host its own frames, so each of these was sent by somebody else.
+does not know; a second host under the same node ID keeps a drive alive whose own host is gone. The link drops what
+comes back of this host's own frames, so each of these was sent by somebody else.
 """
 
 import itertools

@@ -38,7 +38,8 @@ def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilit
         try:
             table.set(item, int(limit_a / found.scale.current_a(item)), _PURPOSE)  # never above what was asked for
         except DriveConfigurationError as error:
-            raise DriveConfigurationError(settings.device, f"current_limit_a is {limit_a:g} A: {error}") from error
+            why = str(error).removeprefix(f"drive '{settings.device}': ")
+            raise DriveConfigurationError(settings.device, f"current_limit_a is {limit_a:g} A: {why}") from error
 
 
 def _set_positions(table: ObjectTable, found: Capabilities, low_rad: float, high_rad: float) -> None:

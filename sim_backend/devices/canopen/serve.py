@@ -57,7 +57,18 @@ class CanOpenSettings:
     conduct: Conduct = GOOD
 
 
-def serve_canopen(settings: CanOpenSettings) -> RunningDevice:
+class RunningDrive(RunningDevice):
+    """A CiA 402 drive in wall-clock time."""
+
+    device: ServoDrive
+
+    @property
+    def node_id(self) -> int:
+        """Its node number."""
+        return self.device.node.node_id
+
+
+def serve_canopen(settings: CanOpenSettings) -> RunningDrive:
     """Start one. It boots when its port does.
 
     Raises:
@@ -68,7 +79,7 @@ def serve_canopen(settings: CanOpenSettings) -> RunningDevice:
     family = _family(settings.family) if settings.eds is None else family_of(read_data_sheet(settings.eds))
     node_id = settings.node_id or family.node_id or DEFAULT_NODE
     drive = ServoDrive(parameters, family, node_id, settings.seed, settings.conduct)
-    return RunningDevice(drive, _port(drive, settings), settings.side_port, settings.patience_s)
+    return RunningDrive(drive, _port(drive, settings), settings.side_port, settings.patience_s)
 
 
 def data_sheet(family: str) -> str:
@@ -92,6 +103,8 @@ def _family(name: str) -> Family:
 
 def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, str | int]]:
     """Interface, channel and whatever else python-can is told."""
+    if settings.interface == "udp_multicast":
+        return settings.interface, settings.channel, {"hop_limit": 0}  # it does not leave this machine
     if settings.interface != "join":
         return settings.interface, settings.channel, {}
     host, _, port = settings.channel.rpartition(":")

@@ -348,3 +348,19 @@ def test_a_drive_that_does_not_answer_sync_is_not_opened(node, drive_of):
     node.drop_answers = 10**6
     with pytest.raises(DriveConnectionError, match=r"none of \d+ SYNC frames was answered"):
         drive_of().open(0.005)
+
+
+def test_a_host_that_is_held_up_again_and_again_is_no_silence_of_the_drive(node, drive_of):
+    drive = _moving(drive_of(watchdog_s=5.0, answer_s=0.05))
+    receive, cycle = drive._link.receive, drive._session.cycle
+
+    def held_up(_timeout_s):
+        time.sleep(0.06)  # longer than the drive may be silent
+        return False
+
+    node.drop_answers = 1
+    drive._link.receive = held_up
+    drive.exchange(PUSH)
+    assert cycle.silence_s < 0.05, "it has listened for one wait of 10 ms, however long that took"
+    drive._link.receive = receive
+    assert drive.exchange(PUSH).status is Status.ENABLED
