@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from bench.errors import ParameterError
-from bench.evaluation.blind import pool
 from bench.evaluation.blind.imperfections import worn
 from bench.evaluation.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
 from bench.evaluation.blind.judge import Result, judge
@@ -40,17 +39,16 @@ def test_every_mechanism_of_a_family_comes_equally_often() -> None:
     assert set(hidden) == set(SINGLE)
 
 
-def test_a_run_that_was_ended_goes_on_and_gives_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_was_ended_goes_on_and_gives_the_same(tmp_path: Path) -> None:
     asked: list[str] = []
 
     def counted(item: Item) -> Result:
         asked.append(item.key)
         return _empty(item)
 
-    monkeypatch.setattr(pool, "judge", counted)
     items, kept, shown = items_of(1, 1), tmp_path / "deep" / "kept.jsonl", []
-    first = run_items(items[:4], kept, lambda *done: shown.append(done), workers=0)
-    again = run_items(items, kept, lambda *done: shown.append(done), workers=0)
+    first = run_items(items[:4], kept, lambda *done: shown.append(done), workers=0, ask=counted)
+    again = run_items(items, kept, lambda *done: shown.append(done), workers=0, ask=counted)
     assert asked == [item.key for item in items]
     assert again[:4] == first
     assert shown[-1] == (len(items), len(items))

@@ -21,7 +21,7 @@ export async function comparison(place, compared, { path, series }) {
     panel("Where the model is wrong", errors(compared), spots, moments),
     panel("Closer", against, h("details", {}, h("summary", {}, "Error of each trial and regime"), trialTable(compared), regimeTable(compared)),
       h("details", {}, h("summary", {}, "In closed loop"), h("div", { role: "group", "aria-label": "In closed loop" }, loop)),
-      compared.notes.length > 0 && h("details", {}, h("summary", {}, `${compared.notes.length} notes`), compared.notes.map((note) => h("p", {}, note)))));
+      compared.notes.length > 0 && h("details", {}, h("summary", {}, compared.notes.length === 1 ? "1 note" : `${compared.notes.length} notes`), compared.notes.map((note) => h("p", {}, note)))));
   closedLoop(loop, path, compared.model_id);
   const ask = (where, words) => attempt(moments, async () => {
     const query = new URLSearchParams([...where.map((one) => ["where", one]), ["model_id", compared.model_id]]);

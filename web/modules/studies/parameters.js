@@ -14,7 +14,7 @@ function restTable({ at_rest: atRest, effort }) {
     { title: "Outside", number: true, cell: (one) => percent(one.outside) },
     { title: `Largest [${effort.unit}]`, number: true, cell: (one) => number(one.largest, 3) },
     { title: "p", number: true, cell: (one) => chanceCell(one.p_value) },
-    { title: "Surest in", cell: (one) => one.trial },
+    { title: "Clearest in", cell: (one) => one.trial },
   ], atRest.sides), h("p", { class: "soft" }, atRest.sentence)];
 }
 
@@ -28,7 +28,12 @@ function parameterTable({ parameters }, title = "Parameters") {
   return table(title, [
     { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
     { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
-    { title: "Unit", cell: (one) => one.unit },
+    { title: "Unit", cell: (one) => unitText(one.unit) },
     { title: "Note", cell: (one) => one.note },
   ], parameters);
+}
+
+// "N m s2/rad" -> "N m s²/rad"
+function unitText(unit) {
+  return unit.replace(/(?<=[a-z])2/g, "²").replace(/^1$/, "");
 }
