@@ -11,20 +11,23 @@ from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Description, FoundTable, Watchdog
 
-_SOME_S: Final = 4.0  # of whatever else a call takes
+_SOME_S: Final = 1.0  # of whatever else a call takes
+_CALL_QUESTIONS: Final = 4  # that are asked in a call, where the drive is slow to answer
 _OPEN_S: Final = 12.0  # opening the bus, braking what was left on, the trial cycles
-_QUESTIONS: Final = 250  # that are asked when a drive is opened
+_OPEN_QUESTIONS: Final = 60  # of those when a drive is opened, which are answered late
 
 
-def longest_call_s(settings: CanopenSettings) -> float:
-    """By then every call has returned [s]: enabling twice, with a trial of the watchdog, is the longest."""
-    enabling_s = settings.enable_s + settings.mode_s + SWITCH_OFF_S
-    return _SOME_S + 2.0 * enabling_s + settings.fault_reset_s + 2.0 * settings.watchdog_s + 4.0 * settings.sdo_answer_s
+def longest_call_s(settings: CanopenSettings, tries_guard: bool) -> float:
+    """By then every call has returned [s]: enabling is the longest, above all with a trial of the watchdog."""
+    questions_s = _CALL_QUESTIONS * settings.sdo_answer_s
+    enabling_s = _SOME_S + questions_s + settings.enable_s + settings.mode_s + SWITCH_OFF_S
+    trial_s = 2.0 * settings.watchdog_s + settings.fault_reset_s + settings.enable_s
+    return enabling_s + (trial_s if tries_guard else 0.0)
 
 
 def longest_open_s(settings: CanopenSettings) -> float:
     """By then opening has returned [s]."""
-    return _OPEN_S + settings.bus.adapter_start_s + settings.listen_s + _QUESTIONS * settings.sdo_answer_s / 4.0
+    return _OPEN_S + settings.bus.adapter_start_s + settings.listen_s + _OPEN_QUESTIONS * settings.sdo_answer_s
 
 
 def describe(settings: CanopenSettings, session: Session | None) -> Description:
@@ -32,7 +35,8 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
     if session is None:
         return Description(
             settings.device, "", "", "", "", simulated=False, modes=frozenset(), measured=frozenset(), resolution={},
-            max_rate_hz=nan, watchdog_s=settings.watchdog_s, longest_call_s=longest_call_s(settings),
+            max_rate_hz=nan, watchdog_s=settings.watchdog_s,
+            longest_call_s=longest_call_s(settings, tries_guard=True),
             longest_open_s=longest_open_s(settings),
         )  # fmt: skip
     identity, measurement = session.found.identity, session.measurement
@@ -49,7 +53,7 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
         resolution=measurement.resolution,
         max_rate_hz=1.0 / max(session.round_trip_s, on_the_bus_s),
         watchdog_s=settings.watchdog_s,
-        longest_call_s=longest_call_s(settings),
+        longest_call_s=longest_call_s(settings, not session.guard.is_told),
         longest_open_s=longest_open_s(settings),
         watchdog=Watchdog.PROVEN if session.guard.tried else Watchdog.CONFIGURED,
         notes=tuple(_notes(session)),

@@ -141,7 +141,9 @@ class CanLink(canopen.Network):
             )
 
     def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
-        what = "the transmit buffer stays full: nobody acknowledges" if _buffer_full(error) else str(error)
+        what = f"the adapter is gone, or broken ({error})"
+        if _buffer_full(error):
+            what = "the transmit buffer stays full: nobody acknowledges"
         return DriveConnectionError(
             self._device, f"{doing} failed: {what}; check cable, adapter and bit rate, then open the drive again"
         )

@@ -5,12 +5,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from sim_backend.devices.plant_tables import behind_a_drive
-
 from sim_backend.devices.canopen.eds import eds_text
 from sim_backend.devices.canopen.objects.entry import Access, Entry, Object
 from sim_backend.devices.canopen.objects.family import Rating
 from sim_backend.devices.canopen.objects.generic import GENERIC
+from sim_backend.devices.joint_tables import behind_a_drive
 
 Place = tuple[int, int]
 RPDO_TIMERS = tuple((0x1400 + number, 5) for number in range(4))
