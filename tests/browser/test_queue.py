@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+from tests.queue.waiting import wait_for
+
 pytestmark = pytest.mark.browser
 
 
@@ -54,7 +56,7 @@ def test_the_queue_is_paused_after_a_trial_gone_on_with_moved_and_cleared(servic
     assert [one["kind"] for one in waiting(service)] == ["chirp", "reversals"]
     page.get_by_role("button", name="Go on: the joint moves").click()
     page.get_by_text("steps runs from the queue; 2 waiting.", exact=True).wait_for()
-    assert service.runner.status().pausing == ""
+    wait_for(lambda: service.runner.status().pausing == "")
     page.get_by_role("button", name="Remove all that waits").click()
     page.get_by_text("steps runs from the queue; nothing waits.", exact=True).wait_for()
     page.keyboard.press("Escape")

@@ -9,7 +9,7 @@ export function tokenForm(place) {
   document.addEventListener("token-needed", () => {
     token.forget();
     place.className = "needed";
-    show();
+    if (!place.querySelector("form")) show(); // what is being typed stays
     place.querySelector("input")?.focus();
   });
   show();

@@ -2,7 +2,7 @@
 // Start button moves the joint; Enter in a field does not.
 
 import { here, note } from "../app/address.js";
-import { get, post } from "../app/api.js";
+import { get, post, token } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
 import { Form } from "../ui/form.js";
@@ -31,6 +31,7 @@ export async function startForm(place, live, queued) {
       replace(motion, "Something is marked above: nothing can be started yet.");
       return null;
     }
+    if (!token.get()) return undefined; // the service says at the start itself that it takes one
     try {
       const found = await post("/experiments/plan", wanted());
       replace(motion, motionWords(found, live.status?.simulated));
@@ -39,7 +40,7 @@ export async function startForm(place, live, queued) {
       const elsewhere = form.showProblems(error.errors ?? [], "parameters");
       const marked = error.errors?.length && !elsewhere.length;
       replace(motion, error.status === 401 ? "" : marked ? "Not possible on this bench: see the marked field." : error.message);
-      return error.status === 401 ? undefined : null; // without a token the service says so at the start itself
+      return error.status === 401 ? undefined : null;
     }
   };
   const soon = () => {

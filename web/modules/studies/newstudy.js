@@ -1,6 +1,6 @@
 // A new study: which experiments, which of their trials, and which conditions are held out of the fit.
 
-import { get, post } from "../app/api.js";
+import { get, post, token } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
 import { nameOf, quantity, when } from "../ui/format.js";
@@ -47,7 +47,7 @@ export async function newStudy(place, wanted = null) {
   // whether these trials can carry a model is said before one is made of them
   const check = async () => {
     const body = { experiment_ids: chosen(), where: using.unlessAll(), hold_out: holding.chosen() };
-    if (!body.experiment_ids.length) {
+    if (!body.experiment_ids.length || !token.get()) {
       replace(carries);
       return;
     }

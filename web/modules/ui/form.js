@@ -3,7 +3,7 @@
 
 import { h, replace } from "./dom.js";
 import { nameOf, number } from "./format.js";
-import { shownUnit, toShown, toSi } from "./units.js";
+import { shownUnit } from "./units.js";
 
 export class Form {
   #fields = new Map();
@@ -42,7 +42,9 @@ export class Form {
   }
 
   #row(name, property, prefix) {
-    const kind = resolve(property, this.schema);
+    const found = resolve(property, this.schema);
+    // as it was when the field was made: a switch of units draws the form anew, and never reads this one otherwise
+    const kind = { ...found, shown: shownUnit(found.unit ?? "") };
     const id = `${prefix}-${name}`;
     const input = control(kind, id);
     const problem = h("div", { id: `${id}-problem` });
@@ -87,7 +89,7 @@ function control(kind, id) {
 
 function shownText(kind, value) {
   if (value === null || value === undefined) return "";
-  return [value].flat().map((one) => (typeof one === "number" ? number(toShown(one, kind.unit, 12), 6) : one)).join(", ");
+  return [value].flat().map((one) => (typeof one === "number" ? number(upscaled(one, kind, 12), 6) : one)).join(", ");
 }
 
 function write(kind, input, value) {
@@ -107,7 +109,7 @@ function read(kind, input) {
   if (kind.enum) return kind.enum.find((value) => String(value) === text);
   // what nobody changed is sent as it came: a conversion there and back would round it
   if (text === shownText(kind, kind.default)) return kind.default;
-  const value = (one) => (typeof one === "number" ? toSi(one, kind.unit) : one);
+  const value = (one) => (typeof one === "number" ? downscaled(one, kind) : one);
   if (kind.type === "array") return text.split(/[,;\s]+/).filter(Boolean).map((one) => value(numberOrText(one)));
   return numeric(kind) ? value(numberOrText(text)) : text;
 }
@@ -121,7 +123,7 @@ export function numberOrText(text) {
 export function problemOf(kind, value) {
   if (value === null) return "";
   if (value === undefined) return numeric(kind) && kind.default === undefined ? "A number is missing." : "";
-  if (kind.type === "array") return [value].flat().map((one) => problemOf({ ...kind.items, unit: kind.unit }, one)).find(Boolean) ?? "";
+  if (kind.type === "array") return [value].flat().map((one) => problemOf({ ...kind.items, unit: kind.unit, shown: kind.shown }, one)).find(Boolean) ?? "";
   if (!numeric(kind)) return "";
   if (typeof value !== "number") return `'${value}' is no number.`;
   if (kind.type === "integer" && !Number.isInteger(value)) return `${number(value)} is no whole number.`;
@@ -131,11 +133,19 @@ export function problemOf(kind, value) {
 }
 
 function shown(value, kind) {
-  return `${number(toShown(value, kind.unit))}${unitText(kind) ? ` ${unitText(kind)}` : ""}`;
+  return `${number(upscaled(value, kind))}${unitText(kind) ? ` ${unitText(kind)}` : ""}`;
+}
+
+function upscaled(value, { shown: { factor } }, digits = 6) {
+  return factor === 1 ? value : Number((value * factor).toPrecision(digits));
+}
+
+function downscaled(value, { shown: { factor } }) {
+  return factor === 1 ? value : Number((value / factor).toPrecision(12));
 }
 
 function unitText(kind) {
-  return kind.unit ? shownUnit(kind.unit).unit : "";
+  return kind.shown.unit;
 }
 
 function bounds(kind) {
@@ -143,7 +153,7 @@ function bounds(kind) {
   const low = source.minimum ?? source.exclusiveMinimum;
   const high = source.maximum ?? source.exclusiveMaximum;
   const each = kind.type === "array" ? "Several, separated by commas. " : "";
-  if (low !== undefined && high !== undefined) return `${each}${number(toShown(low, kind.unit))} to ${shown(high, kind)}.`;
+  if (low !== undefined && high !== undefined) return `${each}${number(upscaled(low, kind))} to ${shown(high, kind)}.`;
   if (low !== undefined) return `${each}${source.minimum === undefined ? "Above" : "At least"} ${shown(low, kind)}.`;
   if (high !== undefined) return `${each}At most ${shown(high, kind)}.`;
   return each.trim();
