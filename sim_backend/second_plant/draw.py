@@ -74,7 +74,7 @@ def sensors_drawn(random: np.random.Generator, needs: set[Need]) -> Sensors:
         supply_measured="nominal" not in needs and bool(random.random() < 0.5),
         rate_hz=rate_hz,
         jitter=float(random.choice([0.0, 0.02, 0.1])),
-        hold_s=float(random.choice([0.0, 0.5, 1.0])) / rate_hz,
+        hold_s=float(random.choice([0.0, 5e-4, 1e-3])),
         skew_s=float(random.uniform(-1e-3, 4e-3)),
         filter_hz=float(np.exp(random.uniform(np.log(50.0), np.log(400.0)))),
         noise=float(np.exp(random.uniform(np.log(0.001), np.log(0.01)))),

@@ -4,8 +4,8 @@ The joint is recorded without noise, with the mechanism and without. Of both eff
 motion takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of
 the difference D. (The joint moves a little otherwise without it, so D alone holds what no model has of either.)
 
-    s = rms that the base model leaves of the noisy joint without the mechanism, in steady motion, near reversals, and
-        where the current is commanded, each for itself
+    s = rms that the base model leaves of the joint without the mechanism, over measured motion and with noise, in
+        steady motion, near reversals, and where the current is commanded, each for itself
     r^2 = mean square of what is left with it, over s, less that without
     lambda = n / v ln(1 + r^2),   v = (1 + rho_1) / (1 - rho_1) of that remainder (rows per independent row)
     d' = sqrt(lambda (1 - rho^2)), rho the largest correlation of D / s with another mechanism's columns
@@ -67,7 +67,7 @@ def floor_of(joint: DrawnJoint, name: str) -> Floor:
         name: of the mechanism.
     """
     without = frozenset({name})
-    noisy = Rows.of(record(joint, without=without), joint.scales)
+    noisy = Rows.of(record(joint, without=without), joint.scales, measured=True)
     quiet = Rows.of(record(joint, quiet=True, without=without), joint.scales)
     left = np.ones(STRATA)
     for _ in range(2):  # least squares, then weighted by what each stratum leaves
