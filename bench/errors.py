@@ -46,6 +46,10 @@ class NotCommissionedError(BenchError, RuntimeError):
     """Raised when a real drive is to be used that has not passed the commissioning move with this configuration."""
 
 
+class FaultChangedError(BenchError, RuntimeError):
+    """Raised when a fault is to be cleared that is not the one that a person has seen."""
+
+
 class PromptError(BenchError, RuntimeError):
     """Raised when a question is answered that is not the one asked now."""
 

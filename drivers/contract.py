@@ -111,16 +111,31 @@ class Inspection:
     """What a drive says of itself while nothing is written to it.
 
     Attributes:
-        status: of the power stage, by the drive's own word; what it was told last where it does not tell.
+        status: of the power stage, by the drive's own word; None where it has none for it.
         fault: in words; "" where it reports none.
         duty: applied PWM duty, -1 .. 1; NaN where it is not measured.
         current_a: motor current [A]; NaN where it is not measured.
     """
 
-    status: Status
+    status: Status | None
     fault: str = ""
     duty: float = nan
     current_a: float = nan
+
+
+@dataclass(frozen=True, slots=True)
+class FoundTable:
+    """What was found at connect, for a person to look through.
+
+    Attributes:
+        title: what it is about.
+        columns: their headings.
+        rows: one text a column.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +154,7 @@ class Description:
         longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
         watchdog: how sure it is that the drive stops by itself then.
         notes: what the user should know of line and host, and what to do; a sentence each.
+        tables: what was found beside, in the drive's own terms.
     """
 
     device: str
@@ -156,6 +172,7 @@ class Description:
     longest_open_s: float = 0.0
     watchdog: Watchdog = Watchdog.CONFIGURED
     notes: tuple[str, ...] = ()
+    tables: tuple[FoundTable, ...] = ()
 
 
 class Drive(Protocol):

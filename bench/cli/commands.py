@@ -52,6 +52,11 @@ COMMANDS = (
         "Connect to the drive and say what it is, what it measures and how fast; with --move, whether it is right.",
     ),
     CommandEntry(
+        "drive",
+        "bench.cli.operation.drive:app",
+        "The drive itself, without an experiment: its state, and the clearing of its fault. Its power stays off.",
+    ),
+    CommandEntry(
         "run",
         "bench.cli.operation.run:app",
         "Run one experiment on the bench: the joint moves. Ctrl-C stops it, and the record says so.",

@@ -68,6 +68,21 @@ class Bench:
         """Stop the joint and power it off, whoever started it. Returns what the service says."""
         return str(self._connection.post("/stop", {"reason": reason})["detail"])
 
+    def drive_state(self) -> Answer:
+        """What each drive says of itself, and `fault`: all their faults in words; nothing may run meanwhile."""
+        return Answer(self._connection.post("/drive/state"))
+
+    def clear_fault(self, fault: str) -> Answer:
+        """Clear a fault; the power stays off.
+
+        Args:
+            fault: as `drive_state()["fault"]` told it: what was seen is cleared, and nothing else.
+
+        Raises:
+            Refused: it is another one by now (409), or its cause is still there (502).
+        """
+        return Answer(self._connection.post("/drive/clear-fault", {"fault": fault}))
+
     def run(self, experiment_id: int) -> Run:
         """One experiment, as `start` returns it."""
         return Run(self._connection, experiment_id)

@@ -2,18 +2,20 @@
 
 import hashlib
 import json
-from typing import Any
 
 from bench.errors import NotCommissionedError
+from bench.provenance import Provenance
 from bench.store import Store
+from drivers.contract import Watchdog
 
 KIND = "commissioning"
+WATCHDOG_FACT = "watchdog_proof"  # in the provenance of a pass that began with the proof
 _IDENTITY = ("device", "vendor", "product", "firmware", "serial")
 _RIG = ("gear", "sensor", "motor")
 _REMEMBERED = 100  # newest passes that are looked through
 
 
-def fingerprint(provenance: dict[str, Any]) -> str:
+def fingerprint(provenance: Provenance) -> str:
     """What a pass holds for: the drive's identity, its section of bench.toml, and gear, sensor and motor of the rig.
 
     Args:
@@ -29,7 +31,7 @@ def fingerprint(provenance: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def is_commissioned(store: Store, provenance: dict[str, Any]) -> bool:
+def is_commissioned(store: Store, provenance: Provenance) -> bool:
     """Whether the store holds a pass for it."""
     wanted = fingerprint(provenance)
     passes = store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED)
@@ -40,7 +42,17 @@ def is_commissioned(store: Store, provenance: dict[str, Any]) -> bool:
     )
 
 
-def require_commissioned(store: Store, provenance: dict[str, Any]) -> None:
+def watchdog_of(store: Store, provenance: Provenance) -> Watchdog | None:
+    """How sure the drive's watchdog was at its newest pass; None where there is none, or nobody tried it then."""
+    wanted = fingerprint(provenance)
+    for found in store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED):
+        kept = found.provenance
+        if {"drive", "configuration", WATCHDOG_FACT} <= kept.keys() and fingerprint(kept) == wanted:
+            return Watchdog(kept[WATCHDOG_FACT]["watchdog"])
+    return None
+
+
+def require_commissioned(store: Store, provenance: Provenance) -> None:
     """Refuse a drive that has not passed.
 
     Raises:

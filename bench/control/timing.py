@@ -19,7 +19,7 @@ def check_timing(drive: Description, period_s: float) -> None:
     if period_s < shortest_s:
         raise ConfigurationError(
             f"control.period_s is {period_s:g} s; drive '{drive.device}' sustains {drive.max_rate_hz:.4g} cycles a "
-            f"second, so at least {shortest_s:.2g} s is wanted. Choose a longer period or a faster line"
+            f"second, so at least {shortest_s:.2g} s is wanted. {_advice(drive)}"
         )
     least_s = _PERIODS_IN_WATCHDOG * period_s
     if not least_s <= drive.watchdog_s <= SLOWEST_WATCHDOG_S:
@@ -27,6 +27,11 @@ def check_timing(drive: Description, period_s: float) -> None:
             f"the watchdog of drive '{drive.device}' stops it after {drive.watchdog_s:g} s; {least_s:g} s (two control "
             f"periods) .. {SLOWEST_WATCHDOG_S:g} s is wanted. Change drive.watchdog_s or control.period_s"
         )
+
+
+def _advice(drive: Description) -> str:
+    """What to do about a slow drive: what was noticed of line and host, or else what helps in general."""
+    return " ".join(drive.notes) or "Choose a longer period or a faster line"
 
 
 def check_pair_timing(drives: Sequence[Description], period_s: float) -> None:

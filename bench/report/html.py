@@ -9,29 +9,55 @@ from plotly.offline import get_plotlyjs
 
 from bench.report.section import Section, Table
 
+_CONTENTS_FROM = 3  # sections; fewer are seen at once
 _STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+:root { color-scheme: light dark; --text: #222; --soft: #555; --line: #ccc; --page: #fff; }
+@media (prefers-color-scheme: dark) { :root { --text: #e6ebf0; --soft: #a3afbc; --line: #36414d; --page: #11161c; } }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem;
+  color: var(--text); background: var(--page); }
+a { color: inherit; }
+.table { overflow-x: auto; }
 table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
-th, td { padding: .15rem .8rem; border-bottom: 1px solid #ccc; text-align: left; }
+th, td { padding: .15rem .8rem; border-bottom: 1px solid var(--line); text-align: left; }
 .number { text-align: right; }
 .figure { width: 100%; height: 26rem; }
+.contents { columns: 2; color: var(--soft); }
+@media (max-width: 40rem) { .contents { columns: 1; } th, td { padding: .15rem .4rem; } }
+@media print {
+  :root { --text: #000; --soft: #333; --line: #999; --page: #fff; }
+  body { max-width: none; margin: 0; font-size: 10pt; }
+  .table { overflow: visible; }
+  h2 { break-after: avoid; }
+  table, .figure { break-inside: avoid; }
+}
 """
 _DRAW = """
-for (const place of document.querySelectorAll(".figure")) {
-  const figure = JSON.parse(document.getElementById(place.dataset.from).textContent);
-  Plotly.newPlot(place, figure.data, figure.layout, { responsive: true, displaylogo: false });
+const dark = matchMedia("(prefers-color-scheme: dark)");
+function draw(printing = false) {
+  const colour = dark.matches && !printing ? "#e6ebf0" : "#222222";
+  for (const place of document.querySelectorAll(".figure")) {
+    const figure = JSON.parse(document.getElementById(place.dataset.from).textContent);
+    const look = { ...figure.layout, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)" };
+    look.font = { ...figure.layout.font, color: colour };
+    Plotly.react(place, figure.data, look, { responsive: true, displaylogo: false });
+  }
 }
+draw();
+dark.addEventListener("change", () => draw());
+addEventListener("beforeprint", () => draw(true));
+addEventListener("afterprint", () => draw());
 """
 
 
 def html_page(title: str, sections: Sequence[Section]) -> str:
     """A report as one HTML page."""
     parts = [part for number, section in enumerate(sections) for part in _section(section, number)]
+    contents = _contents(sections) if len(sections) >= _CONTENTS_FROM else ""
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>\n'
-        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}</style></head>\n'
-        f"<body><h1>{escape(title)}</h1>\n{''.join(parts)}\n"
+        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head>\n'
+        f"<body><h1>{escape(title)}</h1>\n{contents}{''.join(parts)}\n"
         f"<script>{get_plotlyjs()}</script><script>{_DRAW}</script></body></html>\n"
     )
 
@@ -52,8 +78,13 @@ def cell_text(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
+def _contents(sections: Sequence[Section]) -> str:
+    links = [f'<li><a href="#part-{at}">{escape(one.title)}</a></li>' for at, one in enumerate(sections)]
+    return f'<nav aria-label="Contents"><ol class="contents">{"".join(links)}</ol></nav>\n'
+
+
 def _section(section: Section, number: int) -> list[str]:
-    parts = [f"<h2>{escape(section.title)}</h2>\n"]
+    parts = [f'<h2 id="part-{number}">{escape(section.title)}</h2>\n']
     parts += [f"<p>{escape(sentence)}</p>\n" for sentence in section.sentences]
     parts += [_table(table) for table in section.tables]
     for index, figure in enumerate(section.figures):
@@ -73,4 +104,5 @@ def _table(table: Table) -> str:
         "<tr>" + "".join(f"<td{s}>{escape(cell_text(v))}</td>" for v, s in zip(row, sides, strict=True)) + "</tr>"
         for row in table.rows
     )
-    return f"<table><caption>{escape(table.title)}</caption><tr>{head}</tr>{rows}</table>\n"
+    caption = f"<caption>{escape(table.title)}</caption>"
+    return f'<div class="table" tabindex="0"><table>{caption}<tr>{head}</tr>{rows}</table></div>\n'

@@ -7,6 +7,7 @@ from typing import Literal
 from bench.config.configuration import BenchConfiguration
 from bench.config.sections import Limits
 from bench.control.cycle import Reading
+from bench.control.drive_faults import DriveState
 from bench.control.ending import OutcomeName
 from bench.control.prompt import Prompt
 from bench.json_types import Values
@@ -127,6 +128,25 @@ class BenchControl(ABC):
 
         Raises:
             PromptError: nothing is asked, or something else.
+        """
+
+    @abstractmethod
+    def read_drives(self) -> tuple[DriveState, ...]:
+        """What each drive of the bench says of itself; they are opened for it, and closed again.
+
+        Raises:
+            BusyError: an experiment runs, or the runner is closed.
+            DriveError: one cannot be opened, or does not answer.
+        """
+
+    @abstractmethod
+    def clear_faults(self, shown: str) -> tuple[DriveState, ...]:
+        """Clear the faults that a person has been shown (`drive_faults.faults_in_words`); the power stays off.
+
+        Raises:
+            FaultChangedError: they are others by now; nothing was cleared.
+            DriveFault: a cause is still there.
+            BusyError, DriveError: as `read_drives`.
         """
 
     @abstractmethod

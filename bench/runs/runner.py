@@ -3,15 +3,16 @@
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from bench.calibration import with_friction
 from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.config.configuration import BenchConfiguration
-from bench.control import commissioned
+from bench.control import commissioned, drive_faults
 from bench.control.clock import VirtualClock, WallClock
 from bench.control.drive_factory import has_hardware, is_simulated, seed_of
+from bench.control.drive_faults import DriveState
 from bench.control.ending import StopRequest
 from bench.control.prompt import PromptDesk
 from bench.control.station import Station, make_station
@@ -26,7 +27,7 @@ from bench.runs.live import LiveBuffer, LiveRows
 from bench.runs.session import session_of
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
-from drivers.contract import Description
+from drivers.contract import Description, Watchdog
 from drivers.errors import DriveError
 
 
@@ -97,6 +98,18 @@ class Runner(BenchControl):
     def answer(self, prompt_number: int) -> None:
         """See `BenchControl`."""
         self._desk.answer(prompt_number)
+
+    def read_drives(self) -> tuple[DriveState, ...]:
+        """See `BenchControl`."""
+        with self._starting:
+            self._refuse_when_busy()
+            return drive_faults.read_drives(self.configuration)
+
+    def clear_faults(self, shown: str) -> tuple[DriveState, ...]:
+        """See `BenchControl`."""
+        with self._starting:
+            self._refuse_when_busy()
+            return drive_faults.clear_faults(self.configuration, shown)
 
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
         """See `BenchControl`."""
@@ -187,7 +200,10 @@ class Runner(BenchControl):
         self._descriptions = ()
         try:
             loop = station.open()
-            self._descriptions = tuple(drive.describe() for drive in station.drives)
+            self._descriptions = tuple(
+                self._as_proven(bench, drive.describe())
+                for bench, drive in zip(station.benches, station.drives, strict=True)
+            )
             refuse_modes(kind.name, kind.modes(parameters), self._descriptions[0])
             if kind.name != commissioned.KIND:
                 self._require_commissioned(station)
@@ -201,6 +217,13 @@ class Runner(BenchControl):
         for bench, drive in zip(station.benches, station.drives, strict=True):
             if not is_simulated(bench):
                 commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
+
+    def _as_proven(self, bench: BenchConfiguration, found: Description) -> Description:
+        """What the drive says of itself, with what `doctor --move` has seen of its watchdog."""
+        if is_simulated(bench) or found.watchdog is not Watchdog.CONFIGURED:
+            return found
+        seen = commissioned.watchdog_of(self._store, provenance(bench, found))
+        return found if seen is None else replace(found, watchdog=seen)
 
     def _is_real_time(self, pace: Pace | None) -> bool:
         simulated = is_simulated(self.configuration)

@@ -25,6 +25,7 @@ from bench.service.routes import (
     bench_state,
     calibrations,
     challenges,
+    drive,
     effects,
     experiment_plan,
     experiments,
@@ -34,6 +35,7 @@ from bench.service.routes import (
     recording_sets,
     studies,
     study_answers,
+    study_check,
     study_rounds,
     trials,
 )
@@ -85,6 +87,7 @@ A missing effect, found and added:
 
 _ROOMS = (
     bench_state,
+    drive,
     leases,
     experiment_plan,
     experiments,
@@ -93,6 +96,7 @@ _ROOMS = (
     trials,
     recording_sets,
     calibrations,
+    study_check,
     studies,
     study_answers,
     study_rounds,

@@ -43,16 +43,30 @@ def create_study(
     Raises:
         StudyError: no usable trials, a criterion that fits none, different rigs, an unknown effect.
     """
+    definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows)
+    return _create(store, name, definition)
+
+
+def definition_of(
+    store: Store,
+    experiment_ids: Sequence[int],
+    hold_out: Sequence[str] = (),
+    base: Sequence[str] | None = None,
+    where: Sequence[str] = (),
+    cutoff_hz: float | None = None,
+    rows: RowChoice = "sliding",
+) -> Definition:
+    """What a study is made of; arguments and errors as `create_study`."""
     if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
         raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
     trials = keep(_trials(store, experiment_ids), where)
     held = split(trials, hold_out)
     facts = _facts(store, experiment_ids)
     with lab_errors():
-        effects = _base_effects(base, facts)
+        effects = _base_effects(base) if base else base_model(store, experiment_ids, facts)
         recordings = [store.recording(trial.id) for trial in trials]
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
-    definition = Definition(
+    return Definition(
         trial_ids=tuple(trial.id for trial in trials),
         held_out=tuple(held),
         base=effects,
@@ -63,7 +77,6 @@ def create_study(
         hold_out=tuple(hold_out),
         where=tuple(where),
     )
-    return _create(store, name, definition)
 
 
 def describe(store: Store, study_id: int) -> Study:
@@ -104,9 +117,7 @@ def _describe(store: Store, material: Material) -> Study:
     )
 
 
-def _base_effects(base: Sequence[str] | None, facts: Facts) -> tuple[str, ...]:
-    if not base:
-        return default_effects(facts)
+def _base_effects(base: Sequence[str]) -> tuple[str, ...]:
     for effect in base:
         if base.count(effect) > 1:
             raise StudyError(f"{effect} stands twice in the base model {', '.join(base)}; name each effect once")
@@ -135,3 +146,25 @@ def _facts(store: Store, experiment_ids: Sequence[int]) -> Facts:
             "make one study for each"
         )
     return next(iter(found.values()))
+
+
+SAMPLING_DELAY = "measurement_delay"
+CONTROL_LOOP = "recorded_by_control_loop"
+"""Parameter of an imported experiment whose rows our own control loop recorded."""
+OWN_SOURCES = ("simulated", "real")
+
+
+def base_model(store: Store, experiment_ids: Sequence[int], facts: Facts) -> tuple[str, ...]:
+    """Rigid joint with General Kinetic Friction; of our own control loop, with its sampling delay.
+
+    The loop samples the position at the end of the cycle whose effort stands in the same row: on average the effort
+    is half a period older. That is how the rows are made, no property of the joint that a diagnosis should name.
+
+    Args:
+        store: with the experiments.
+        experiment_ids: whose trials are used.
+        facts: of their rig.
+    """
+    experiments = [store.experiment(number) for number in experiment_ids]
+    own = all(one.source in OWN_SOURCES or CONTROL_LOOP in one.parameters for one in experiments)
+    return (*default_effects(facts), SAMPLING_DELAY) if own else default_effects(facts)

@@ -3,28 +3,26 @@
 from dataclasses import dataclass
 from math import nan
 
-from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import (
-    ENCODER_INCREMENTS,
-    ENCODER_REVOLUTIONS,
-    SUPPORTED_MODES,
+    RATED_TORQUE,
     TORQUE,
     TORQUE_OFFSET,
     VELOCITY,
-    VELOCITY_UNIT,
+    VELOCITY_OFFSET,
     DriveObject,
 )
+from drivers.canopen.cia402.drive_units import UnitRow, read_units
+from drivers.canopen.cia402.modes import ModeChoice
 from drivers.canopen.cia402.profiles import ObjectProfile, choose_profile
 from drivers.canopen.cia402.scale import DriveScale
-from drivers.canopen.cia402.units import velocity_unit_code, velocity_unit_name, velocity_unit_rad_s
 from drivers.canopen.identity import Identity
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Mode
-from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
 
-CYCLIC_TORQUE, CYCLIC_POSITION, PROFILE_POSITION = 10, 8, 1  # 0x6060
-_BITS = {PROFILE_POSITION: 0, CYCLIC_POSITION: 7, CYCLIC_TORQUE: 9}  # 0x6502
+_MEASURED = "measured"
+_RATED = "what 1000 permille of torque are in A"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +36,7 @@ class Capabilities:
         current: the object that tells the motor current; None where there is none.
         modes: the code of 0x6060 for each mode.
         scale: of drive and joint.
+        units: by the drive and by the configuration.
     """
 
     identity: Identity
@@ -46,78 +45,52 @@ class Capabilities:
     current: DriveObject | None
     modes: dict[Mode, int]
     scale: DriveScale
+    units: tuple[UnitRow, ...]
 
 
-def probe(access: ObjectAccess, settings: CanopenSettings, joint: JointScale, identity: Identity) -> Capabilities:
+def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, identity: Identity) -> Capabilities:
     """Ask for every optional object.
 
     Raises:
-        DriveConfigurationError: units or rated current contradict the settings, or are told by neither.
+        DriveConfigurationError: the drive's units contradict rig or settings.
     """
     profile = choose_profile(settings.device, settings.profile, identity.vendor_id)
-    asked = (profile.current, profile.duty, profile.supply, profile.temperature, TORQUE, TORQUE_OFFSET, VELOCITY)
-    present = frozenset(item for item in asked if item is not None and access.read_if_present(item) is not None)
-    current = next((item for item in (profile.current, TORQUE) if item in present), None)
-    rated_current_a = _rated_current_a(access, settings, profile)
-    scale = DriveScale(joint, rated_current_a, _velocity_unit(access, settings, joint))
-    _check_encoder(access, settings, joint)
-    return Capabilities(identity, profile, present, current, _modes(access, settings), scale)
+    units = read_units(table, settings, joint.counts_per_turn)
+    rated_a = _rated_current_a(table, settings, profile)
+    scale = DriveScale(joint, rated_a, units.velocity_rad_s)
+    measured = (profile.current, profile.duty, profile.supply, profile.temperature, TORQUE, VELOCITY)
+    asked = [*(item for item in measured if item is not None), TORQUE_OFFSET, VELOCITY_OFFSET]
+    present = frozenset(item for item in asked if table.has(item, _MEASURED))
+    current = next((item for item in (profile.current, TORQUE) if item in present and scale.tells(item)), None)
+    rows = (*units.rows, UnitRow("motor current of 1000 permille torque in A", _told(table, profile), rated_a))
+    return Capabilities(identity, profile, present, current, ModeChoice(table, settings, scale).choose(), scale, rows)
 
 
-def _modes(access: ObjectAccess, settings: CanopenSettings) -> dict[Mode, int]:
-    position = CYCLIC_POSITION if settings.position_mode == "cyclic" else PROFILE_POSITION
-    supported = access.read_if_present(SUPPORTED_MODES)
-    wanted = {Mode.CURRENT: CYCLIC_TORQUE, Mode.POSITION: position}
-    # a drive that does not list its modes is asked when one is switched to
-    return {mode: code for mode, code in wanted.items() if supported is None or supported >> _BITS[code] & 1}
-
-
-def _rated_current_a(access: ObjectAccess, settings: CanopenSettings, profile: ObjectProfile) -> float:
-    """Motor current of 1000 permille torque [A]."""
+def _rated_current_a(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> float:
+    """Motor current of 1000 permille torque [A]; NaN where neither drive nor settings tell."""
     if settings.rated_current_a is not None:
         return settings.rated_current_a
-    objects = tuple(
+    told_a = _rated_by_drive_a(table, profile)
+    if told_a is not None:
+        return told_a
+    torque = table.ask(profile.rated_torque or RATED_TORQUE, _RATED)
+    if torque and settings.torque_constant_n_m_a is not None:
+        return torque * (profile.rated_torque or RATED_TORQUE).scale / settings.torque_constant_n_m_a
+    table.note(_RATED, Need.WISHED, "current", False, "told by neither the drive nor rated_current_a [A]")
+    return nan
+
+
+def _rated_by_drive_a(table: ObjectTable, profile: ObjectProfile) -> float | None:
+    """As the drive's own objects have it [A]; None where they do not."""
+    objects = [
         item for item in (profile.rated_current, profile.rated_torque, profile.torque_constant) if item is not None
-    )
-    values = [(access.read_if_present(item) or 0) * item.scale for item in objects]
-    if not all(values):
-        names = " and ".join(map(str, objects))
-        raise DriveConfigurationError(
-            settings.device,
-            f"the drive does not tell its rated current: {names} is absent or 0. Set rated_current_a [A]",
-        )
+    ]
+    values = [(table.ask(item, _RATED) or 0) * item.scale for item in objects]
+    if not values or not all(values):
+        return None
     return values[0] if profile.rated_current is not None else values[0] / values[1]
 
 
-def _velocity_unit(access: ObjectAccess, settings: CanopenSettings, joint: JointScale) -> float:
-    """One count of velocity at the motor [rad/s]; NaN where neither drive nor settings tell."""
-    code = access.read_if_present(VELOCITY_UNIT)
-    if settings.velocity_unit is not None:
-        wanted = velocity_unit_code(settings.velocity_unit)
-        if code not in (None, 0, wanted):
-            raise DriveConfigurationError(
-                settings.device,
-                f"{VELOCITY_UNIT} is {velocity_unit_name(code or 0)}; the settings say {settings.velocity_unit}. "
-                "Correct velocity_unit, or leave it out to use the drive's",
-            )
-        code = wanted
-    if not code:
-        return nan
-    unit_rad_s = velocity_unit_rad_s(code, joint.counts_per_turn)
-    if unit_rad_s is None:
-        raise DriveConfigurationError(
-            settings.device,
-            f"{VELOCITY_UNIT} is 0x{code:08X}: no angle per time that is known. Set it to rpm in the drive",
-        )
-    return unit_rad_s
-
-
-def _check_encoder(access: ObjectAccess, settings: CanopenSettings, joint: JointScale) -> None:
-    increments = access.read_if_present(ENCODER_INCREMENTS)
-    turns = access.read_if_present(ENCODER_REVOLUTIONS)
-    if increments and turns and increments != joint.counts_per_turn * turns:
-        raise DriveConfigurationError(
-            settings.device,
-            f"counts per motor turn are {increments / turns:g} by {ENCODER_INCREMENTS}; the rig says "
-            f"{joint.counts_per_turn:g}. Correct sensor.counts_per_turn of the rig",
-        )
+def _told(table: ObjectTable, profile: ObjectProfile) -> str:
+    told_a = _rated_by_drive_a(table, profile)
+    return "" if told_a is None else f"{told_a:.6g}"

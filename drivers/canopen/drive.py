@@ -1,12 +1,15 @@
 """A CANopen drive with the CiA 402 profile, as the drive contract wants it."""
 
 from contextlib import suppress
+from math import nan
 
 from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.object_table import ObjectUse
 from drivers.canopen.cia301.objects import STATUSWORD
 from drivers.canopen.cia301.period import check_bus_load, check_period
 from drivers.canopen.cia301.sync_cycle import CycleCounts
 from drivers.canopen.cia402.demand import Demand
+from drivers.canopen.cia402.drive_units import UnitRow
 from drivers.canopen.cia402.power_stage import PowerStage
 from drivers.canopen.cia402.state_machine import State, state_of, status_of, towards_standstill
 from drivers.canopen.description import describe
@@ -126,6 +129,33 @@ class CanopenDrive:
         self._mode, self._stopping = Mode.OFF, True
         self._exchange_off()
 
+    @property
+    def objects(self) -> tuple[ObjectUse, ...]:
+        """Which objects of the drive are used, and what became of each.
+
+        Raises:
+            DriveStateError: it is not open.
+        """
+        return self._opened("objects")[0].table.rows
+
+    @property
+    def units(self) -> tuple[UnitRow, ...]:
+        """Units by the drive and by the configuration, side by side.
+
+        Raises:
+            DriveStateError: it is not open.
+        """
+        return self._opened("units")[0].found.units
+
+    @property
+    def watchdog(self) -> str:
+        """How the drive notices that this host is gone, and what it does then.
+
+        Raises:
+            DriveStateError: it is not open.
+        """
+        return self._opened("watchdog")[0].guard.words
+
     def inspect(self) -> Inspection:
         """State and fault, by SDO alone: no SYNC, no PDO, no heartbeat is sent.
 
@@ -134,8 +164,14 @@ class CanopenDrive:
             DriveConnectionError: it does not answer.
         """
         session, _ = self._opened("inspect")
-        status = status_of(state_of(int(session.access.read(STATUSWORD))))
-        return Inspection(status, session.fault_name() if status is Status.FAULT else "")
+        status = status_of(state_of(session.access.read(STATUSWORD)))
+        current = session.found.current
+        counts = None if current is None else session.access.read_if_present(current)
+        scale = session.found.scale
+        current_a = nan
+        if current is not None and counts is not None:
+            current_a = scale.joint.motor_sign * counts * scale.current_a(current)
+        return Inspection(status, session.fault_name() if status is Status.FAULT else "", current_a=current_a)
 
     def clear_fault(self) -> None:
         """Reset a fault. The drive is left disabled.
@@ -162,7 +198,8 @@ class CanopenDrive:
             return self._exchange_off()
         session, power = self._opened("exchange")
         demand = self._check_enabled(session, power, command.mode)
-        session.run(demand.pdo.cob_id, demand.payload(command, power.statusword))
+        payload = demand.payload(command, session.statusword, session.position_counts)
+        session.run(demand.pdo.cob_id, payload)
         if power.state is not State.ENABLED:
             raise self._switched_off(session, power)
         return session.sample(status_of(power.state))
@@ -171,12 +208,13 @@ class CanopenDrive:
         session, power = self._opened("exchange")
         self._mode = Mode.OFF
         word = towards_standstill(power.state) if self._stopping else 0
-        answered = session.run(session.data.torque.cob_id, session.data.nothing(word))
+        answered = session.run(session.speaking.cob_id, session.nothing(word))
         sample = session.sample(status_of(power.state))
         if answered and sample.status is not Status.QUICK_STOP:
             self._stopping = self._stopping and power.state is State.ENABLED
-            if session.watchdog.armed and sample.status is Status.DISABLED:
-                session.watchdog.disarm()
+            if session.guard.armed and sample.status is Status.DISABLED:
+                session.guard.disarm()
+                session.speaking = session.data.idle
         return sample
 
     def _opened(self, call: str) -> tuple[Session, PowerStage]:

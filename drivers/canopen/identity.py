@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.object_table import ObjectTable
 from drivers.canopen.cia301.objects import DEVICE_TYPE, PRODUCT, REVISION, SERIAL, VENDOR
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
@@ -11,6 +12,7 @@ from drivers.errors import DriveConfigurationError
 _DRIVE_PROFILE: Final = 402
 _VENDORS: Final = {0xFB: "maxon"}
 _NAME, _FIRMWARE = 0x1008, 0x100A
+_PURPOSE: Final = "identity"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,27 +37,31 @@ class Identity:
         return f"{self.name} 0x{self.product_code:X}".strip()
 
 
-def identify(access: ObjectAccess, settings: CanopenSettings) -> Identity:
+def identify(table: ObjectTable, access: ObjectAccess, settings: CanopenSettings) -> Identity:
     """Read the identity, and compare it with the settings.
 
     Raises:
         DriveConfigurationError: it is no CiA 402 drive, or another one than the settings name.
     """
-    profile = access.read(DEVICE_TYPE) & 0xFFFF
+    profile = table.read(DEVICE_TYPE, _PURPOSE) & 0xFFFF
     if profile != _DRIVE_PROFILE:
         raise DriveConfigurationError(
             settings.device, f"device profile is {profile}; {_DRIVE_PROFILE}, a drive, is wanted. Correct node_id"
         )
     found = Identity(
-        vendor_id=access.read(VENDOR),
-        product_code=access.read_if_present(PRODUCT) or 0,
-        revision=access.read_if_present(REVISION) or 0,
-        serial_number=access.read_if_present(SERIAL) or 0,
+        vendor_id=table.ask(VENDOR, _PURPOSE) or 0,
+        product_code=table.ask(PRODUCT, _PURPOSE) or 0,
+        revision=table.ask(REVISION, _PURPOSE) or 0,
+        serial_number=table.ask(SERIAL, _PURPOSE) or 0,
         name=access.read_text(_NAME),
         firmware=access.read_text(_FIRMWARE),
     )
-    for name in ("vendor_id", "product_code", "serial_number"):
-        wanted, value = getattr(settings, name), getattr(found, name)
+    wanted_and_found = {
+        "vendor_id": (settings.vendor_id, found.vendor_id),
+        "product_code": (settings.product_code, found.product_code),
+        "serial_number": (settings.serial_number, found.serial_number),
+    }
+    for name, (wanted, value) in wanted_and_found.items():
         if wanted not in (None, value):
             raise DriveConfigurationError(
                 settings.device,

@@ -1,41 +1,40 @@
 """A connected drive: from the open bus to OPERATIONAL with the power off, in the order that keeps it safe."""
 
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from time import perf_counter
 from typing import Final
 
 from drivers.canopen.capabilities import Capabilities, probe
-from drivers.canopen.cia301.emergency import HEARTBEAT_LOST, Emergency, error_name
-from drivers.canopen.cia301.heartbeat import DriveMonitor, HostHeartbeat, NmtState
+from drivers.canopen.cia301.emergency import Emergency
+from drivers.canopen.cia301.error_codes import HOST_LOST, error_codes
+from drivers.canopen.cia301.heartbeat import DriveMonitor, NmtState
 from drivers.canopen.cia301.link import CanLink
-from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
-from drivers.canopen.cia301.objects import (
-    CONTROLWORD,
-    ERROR_CODE,
-    INTERPOLATION_EXPONENT,
-    INTERPOLATION_PERIOD,
-    SYNC_COB_ID,
-)
-from drivers.canopen.cia301.pdo_setup import ProcessData, choose_pdos, configure_pdos
+from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.object_table import ObjectTable
+from drivers.canopen.cia301.objects import ERROR_CODE, ERROR_FIELD, POSITION, PRODUCER_HEARTBEAT, STATUSWORD
 from drivers.canopen.cia301.presence import check_presence
+from drivers.canopen.cia301.strangers import Strangers
 from drivers.canopen.cia301.sync_cycle import SyncCycle, answer_wait_s
-from drivers.canopen.cia402.limits import set_current_limit
+from drivers.canopen.cia402.limits import set_limits
 from drivers.canopen.cia402.measurement import Measurement
 from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE
-from drivers.canopen.cia402.units import interpolation_period
-from drivers.canopen.identity import identify
+from drivers.canopen.guard import Guard, heartbeat_ms
+from drivers.canopen.meeting import meet
+from drivers.canopen.process_setup import set_interpolation, set_up_pdos
 from drivers.canopen.settings import CanopenSettings
 from drivers.canopen.slow_poll import SlowPoll
-from drivers.canopen.watchdog import Watchdog, heartbeat_ms
 from drivers.contract import Sample, Status
-from drivers.errors import DriveConnectionError
+from drivers.errors import DriveConnectionError, DriveError
 from drivers.joint import JointScale
 
 _START, _PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
 _NMT_S: Final = 1.0  # longest wait for an NMT state, on top of a heartbeat
 _TRIAL_CYCLES: Final = 15
+_TRIAL_S: Final = 0.5  # a host that is held up tries for longer: the quickest cycle counts
 _MISSED_HEARTBEATS: Final = 3
+_QUIET_S: Final = 0.1  # after that long without a cycle, the bus is listened to again before anything is sent
 
 
 class Session:
@@ -55,23 +54,38 @@ class Session:
         self.link = link
         self.settings = settings
         node_id = settings.node_id
-        self.access = ObjectAccess(link, node_id, settings.device)
-        self.heartbeat = HostHeartbeat(settings.watchdog_s)
+        self.access = ObjectAccess(link, node_id, settings.device, settings.sdo_answer_s)
+        self.table = ObjectTable(self.access, settings.device)
         self.monitor = DriveMonitor(_MISSED_HEARTBEATS * heartbeat_ms(settings) * 1e-3)
-        self.watchdog = Watchdog(self.access, settings)
+        self.strangers = Strangers(link, settings.device, node_id)
         self.emergency: Emergency | None = None
-        self.poll = SlowPoll((), 1.0)
+        self.poll = SlowPoll((), 1.0, settings.sdo_answer_s)
         self._subscribe(node_id)
+        self._listen(settings.listen_s)
+        self.host_id = self.strangers.choose_host_id(settings.host_node_id)
 
         # SDO only, until everything that keeps the drive safe is set
-        self.found: Capabilities = self._meet(joint)
-        self.watchdog.prepare()
-        set_current_limit(self.access, settings, self.found)
-        self.data: ProcessData = self._configure(period_s)
-        self.measurement = Measurement(self.found, self.data.state.layout, self.data.motion.layout)
-        self.poll = SlowPoll(self.measurement.slow, 1.0 / settings.poll_hz)
+        self.left, identity = meet(self.table, self.access, settings, lambda: self._nmt(_PRE_OPERATIONAL))
+        self.monitor.restarted = False  # it may have been switched on just now; from here on it must stay so
+        self._codes = error_codes(identity.vendor_id)
+        self.found: Capabilities = probe(self.table, settings, joint, identity)
+        self.guard = Guard(self.table, link, settings, self.host_id)
+        self.guard.prepare()
+        self._sends_heartbeats = not self.guard.silences_heartbeat and self.table.try_set(
+            PRODUCER_HEARTBEAT, heartbeat_ms(settings), "the drive's own sign of life"
+        )
+        set_limits(self.table, settings, self.found)
+        set_interpolation(self.table, period_s)
+        self.data = set_up_pdos(self.table, self.access, settings, self.found)
+        self.monitor.state = None
+
+        places = [self.data.place(item) for item in (STATUSWORD, POSITION)]
+        self.status_place, self.position_place = (place for place in places if place is not None)
+        self.measurement = Measurement(self.found, self.data.place)
+        self.poll = SlowPoll(self.measurement.slow, 1.0 / settings.poll_hz, settings.sdo_answer_s)
         self._read_slow_once()
-        self.cycle = SyncCycle(link, (self.data.state, self.data.motion), answer_wait_s(period_s))
+        self.cycle = SyncCycle(link, self.data.tpdos, answer_wait_s(period_s))
+        self.speaking = self.data.idle
         self.start()
         self.round_trip_s = self._try_cycles(period_s)
 
@@ -82,7 +96,8 @@ class Session:
             DriveConnectionError: the drive does not say so.
         """
         self._nmt(_START)
-        self.await_until(lambda: self.monitor.state is NmtState.OPERATIONAL, "NMT state OPERATIONAL")
+        if self._sends_heartbeats:
+            self.await_until(lambda: self.monitor.state is NmtState.OPERATIONAL, "NMT state OPERATIONAL")
 
     def run(self, cob_id: int, payload: bytes) -> bool:
         """One cycle, with all that has to be looked after in it; tell whether it was answered in time.
@@ -92,15 +107,40 @@ class Session:
             payload: of the RPDO.
 
         Raises:
-            DriveConnectionError: the drive does not answer for too long, its heartbeat is gone, or it has restarted.
+            DriveConnectionError: the drive does not answer for too long, its heartbeat is gone, it has restarted, or
+                another host is on the bus.
             DriveFault: it has left OPERATIONAL.
         """
+        self.strangers.check()
         self.keep_alive()
         answered = self.cycle.run(cob_id, payload)
         now_s = perf_counter()
         self.ask_slow(now_s)
-        check_presence(self.settings, self.cycle, self.monitor, self.fault_name, now_s)
+        watched = self._sends_heartbeats or (self.guard.silences_heartbeat and self.guard.armed)
+        check_presence(self.settings, self.cycle, self.monitor if watched else None, self.fault_name, now_s)
         return answered
+
+    def idle(self, controlword: int) -> bool:
+        """One cycle that demands nothing; tell whether it was answered. Nobody is looked after.
+
+        Args:
+            controlword: of the cycle.
+        """
+        return self.cycle.run(self.speaking.cob_id, self.nothing(controlword))
+
+    def nothing(self, controlword: int) -> bytes:
+        """Payload of the RPDO in use that demands nothing."""
+        return self.data.nothing(self.speaking, controlword, self.position_counts)
+
+    @property
+    def statusword(self) -> int:
+        """As last received."""
+        return self.cycle.value(self.status_place) if self.cycle.number else 0
+
+    @property
+    def position_counts(self) -> int:
+        """As last received; 0 before the first."""
+        return self.cycle.value(self.position_place) if self.cycle.number else 0
 
     def sample(self, status: Status) -> Sample:
         """The sample of the last SYNC that was answered.
@@ -108,23 +148,35 @@ class Session:
         Args:
             status: of the power stage.
         """
-        state, motion = self.cycle.values
+        cycle = self.cycle
         return self.measurement.sample(
-            state, motion, self.poll.readings, status, self.cycle.sync_s, perf_counter(), self.cycle.number
+            cycle.values, self.poll.readings, status, cycle.sync_s, perf_counter(), cycle.number
         )
+
+    def look_round(self) -> None:
+        """Before the power comes: is anybody else on the bus? Old news do not count.
+
+        Raises:
+            DriveConnectionError: another host is; with what it sends.
+        """
+        if self.cycle.idle_s > _QUIET_S:
+            self.link.drain()
+            self.strangers.forget()
+            self._listen(min(self.settings.listen_s, _QUIET_S))
+        self.link.drain()
+        self.strangers.check()
 
     def leave(self) -> None:
         """Give the drive back: PRE-OPERATIONAL, nobody watches. With the power off only. Never raises."""
         with suppress(Exception):
-            if self.watchdog.armed:
-                self.watchdog.disarm()
+            if self.guard.armed:
+                self.guard.disarm()
         with suppress(Exception):
             self._nmt(_PRE_OPERATIONAL)
 
     def keep_alive(self, now_s: float | None = None) -> None:
-        """Send the host's heartbeat if it is due."""
-        if self.heartbeat.due(perf_counter() if now_s is None else now_s):
-            self.link.send_message(0x700 + self.settings.host_node_id, HostHeartbeat.PAYLOAD)
+        """Give the host's sign of life if it is due."""
+        self.guard.sign(perf_counter() if now_s is None else now_s)
 
     def ask_slow(self, now_s: float) -> None:
         """Send the request of the slow poll, if one is due."""
@@ -133,38 +185,53 @@ class Session:
             self.link.send_message(0x600 + self.settings.node_id, request)
 
     def fault_name(self) -> str:
-        """The fault in words, by the last EMCY since it was switched on or cleared, or else by 0x603F."""
+        """The fault in words: by the last EMCY since it was switched on or cleared, by 0x603F, or by 0x1003."""
         if self.emergency is not None:
-            return str(self.emergency)
+            return self._codes.name(self.emergency.code)
         try:
-            return error_name(self.access.read(ERROR_CODE))
-        except (ObjectRefusedError, DriveConnectionError):
-            return "a fault that it does not name"
+            code = self._error_code()
+        except DriveError:
+            code = None
+        return self._codes.name(code) if code else "the drive names no error"
 
     def lost_its_host(self) -> bool:
-        """Whether the fault is the watchdog's, and nothing else."""
-        return self.access.read_if_present(ERROR_CODE) == HEARTBEAT_LOST
+        """Whether the fault says only that a host was silent."""
+        return self._error_code() in HOST_LOST
 
     def await_until(self, condition: Callable[[], bool], what: str) -> None:
         """Take in frames until a condition holds.
 
         Raises:
-            DriveConnectionError: it does not, in time.
+            DriveConnectionError: it does not hold in time.
         """
-        deadline_s = perf_counter() + _NMT_S + self.monitor.timeout_s
+        limit_s = _NMT_S + heartbeat_ms(self.settings) * 1e-3
+        deadline_s = perf_counter() + limit_s
         while not condition():
             remaining_s = deadline_s - perf_counter()
             if remaining_s <= 0.0:
+                state = "nothing" if self.monitor.state is None else self.monitor.state.name
                 raise DriveConnectionError(
-                    self.settings.device, f"{what} is not heard of within {_NMT_S:g} s; switch the drive off and on"
+                    self.settings.device,
+                    f"{what} is not reached within {limit_s:.3g} s; its heartbeat says {state}. Check the cable, then "
+                    "open it again",
                 )
-            self.link.receive(min(remaining_s, 0.01))
+            self.link.receive(min(remaining_s, 0.05))
 
     def _subscribe(self, node_id: int) -> None:
-        link = self.link
-        link.subscribe(0x80 + node_id, lambda _id, data, _time: self._take_emergency(bytes(data)))
-        link.subscribe(0x580 + node_id, lambda _id, data, _time: self._take_sdo(bytes(data)))
-        link.subscribe(0x700 + node_id, lambda _id, data, _time: self.monitor.hear(bytes(data), perf_counter()))
+        self.link.subscribe(0x580 + node_id, lambda _id, data, _time: self._take_sdo(bytes(data)))
+        self.link.subscribe(0x700 + node_id, lambda _id, data, _time: self.monitor.hear(bytes(data), perf_counter()))
+        self.link.subscribe(0x080 + node_id, lambda _id, data, _time: self._take_emergency(bytes(data)))
+
+    def _listen(self, duration_s: float) -> None:
+        """Hear who else is on the bus.
+
+        Raises:
+            DriveConnectionError: another host is.
+        """
+        deadline_s = perf_counter() + duration_s
+        while (remaining_s := deadline_s - perf_counter()) > 0.0:
+            self.link.receive(remaining_s)
+        self.strangers.check()
 
     def _take_emergency(self, data: bytes) -> None:
         emergency = Emergency.decode(data)
@@ -175,32 +242,19 @@ class Session:
         if not self.poll.take(data, perf_counter()):
             self.access.take(data)
 
+    def _error_code(self) -> int | None:
+        code = self.access.read_if_present(ERROR_CODE)
+        newest = self.access.read_if_present(ERROR_FIELD) if code is None else None
+        return newest & 0xFFFF if newest is not None else code
+
     def _nmt(self, command: int) -> None:
         self.link.send_message(0x000, bytes([command, self.settings.node_id]))
 
-    def _meet(self, joint: JointScale) -> Capabilities:
-        """PRE-OPERATIONAL, identity, power off, capabilities."""
-        self._nmt(_PRE_OPERATIONAL)
-        identity = identify(self.access, self.settings)
-        self.monitor.restarted = False  # it may have been switched on just now; from here on it must stay so
-        self.access.write(CONTROLWORD, DISABLE_VOLTAGE)
-        return probe(self.access, self.settings, joint, identity)
-
-    def _configure(self, period_s: float) -> ProcessData:
-        access = self.access
-        access.write(SYNC_COB_ID, 0x80)
-        period = interpolation_period(period_s)
-        if period is not None and access.read_if_present(INTERPOLATION_PERIOD) is not None:
-            access.write(INTERPOLATION_PERIOD, period[0])
-            access.write(INTERPOLATION_EXPONENT, period[1])
-        data = choose_pdos(self.settings.node_id, self.found, self.settings.duty_sign_from_current)
-        configure_pdos(access, self.settings.device, data)
-        self.monitor.state = None
-        return data
-
     def _read_slow_once(self) -> None:
         for item in self.measurement.slow:
-            self.poll.put(item, self.access.read(item), perf_counter())
+            value = self.access.read_if_present(item)
+            if value is not None:
+                self.poll.put(item, value, perf_counter())
 
     def _try_cycles(self, period_s: float) -> float:
         """Exchange with the power off; the shortest time of a cycle [s]: what drive and line need, not a busy host.
@@ -208,15 +262,19 @@ class Session:
         Raises:
             DriveConnectionError: the drive does not answer SYNC.
         """
-        off = self.data.nothing(DISABLE_VOLTAGE)
-        times_s = []
-        for _ in range(_TRIAL_CYCLES):
+        times_s: list[float] = []
+        deadline_s = perf_counter() + _TRIAL_S
+        cycles = 0
+        while cycles < _TRIAL_CYCLES or (min(times_s, default=period_s) >= period_s and perf_counter() < deadline_s):
             start_s = perf_counter()
-            if self.cycle.run(self.data.torque.cob_id, off):
+            if self.idle(DISABLE_VOLTAGE):
                 times_s.append(perf_counter() - start_s)
+            else:
+                time.sleep(period_s)  # whoever holds up this host may need the processor
+            cycles += 1
         if not self.cycle.number:
             raise DriveConnectionError(
                 self.settings.device,
-                f"none of {_TRIAL_CYCLES} SYNC frames was answered by TPDOs. Check cable, termination and bit rate",
+                f"none of {cycles} SYNC frames was answered by TPDOs. Check cable, termination and bit rate",
             )
         return min(times_s, default=answer_wait_s(period_s))

@@ -1,13 +1,19 @@
 """Settings of a CANopen drive, checked when they are made."""
 
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+import can
 
 from drivers.canopen.cia402.profiles import PROFILES
 from drivers.canopen.cia402.units import VELOCITY_UNITS
 from drivers.errors import DriveConfigurationError
 
-Interface = Literal["socketcan", "slcan", "socketcand", "virtual"]
+_WITHOUT_BITRATE = ("socketcan", "virtual", "udp_multicast")  # the bus has it already, or has none
+_NAMED_CHANNELS = ("virtual", "socketcan", "socketcand", "slcan")
+
+PositionMode = Literal["auto", "cyclic", "profile", "velocity"]
 
 BITRATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000)
 """Bit rates of CiA 301 that every interface here knows [bit/s]."""
@@ -18,29 +24,43 @@ class BusSettings:
     """How the CAN bus is reached.
 
     Attributes:
-        interface: "socketcan" (Linux network interface), "slcan" (serial adapter), "socketcand" (TCP server),
-            "virtual" (inside one process).
-        channel: "can0"; "/dev/ttyACM0"; the server's name of the bus; any name.
+        interface: of python-can, by its name: "socketcan" (Linux network interface), "slcan" (serial adapter),
+            "socketcand" (TCP server), "pcan", "kvaser", "gs_usb", "udp_multicast", "virtual" (inside one process) ...
+        channel: as the interface has it: "can0"; "/dev/ttyACM0"; the server's name of the bus; "PCAN_USBBUS1"; "0".
         bitrate: of the bus [bit/s]. With socketcan and socketcand the interface has it already: it must be the same.
         host, port: of the socketcand server.
         tty_baudrate: of the serial line of an slcan adapter [bit/s].
         adapter_start_s: how long an slcan adapter needs after its port is opened [s].
+        options: what else the interface takes, as python-can's documentation of it says.
     """
 
-    interface: Interface
+    interface: str
     channel: str
     bitrate: int = 1_000_000
     host: str = "localhost"
     port: int = 29536
     tty_baudrate: int = 115200
     adapter_start_s: float = 0.0
+    options: Mapping[str, str | int | float | bool] = field(default_factory=dict)
+
+    @property
+    def sends_remote_frames(self) -> bool:
+        """Whether remote requests reach the bus: python-can 4.6 sends them as data over socketcand."""
+        return self.interface != "socketcand"
+
+    @property
+    def echoes(self) -> bool:
+        """Whether the interface hands this host its own frames."""
+        return self.interface == "udp_multicast"
 
     def __str__(self) -> str:
         return f"{self.channel}@{self.host}:{self.port}" if self.interface == "socketcand" else self.channel
 
     def arguments(self) -> dict[str, Any]:
         """Arguments of `can.Bus`, by name. Nothing comes from configuration files of python-can."""
-        common: dict[str, Any] = {"interface": self.interface, "channel": self.channel, "ignore_config": True}
+        common: dict[str, Any] = {
+            "interface": self.interface, "channel": self._channel(), "ignore_config": True, **self.options,
+        }  # fmt: skip
         if self.interface == "slcan":
             return {
                 **common, "bitrate": self.bitrate, "tty_baudrate": self.tty_baudrate,
@@ -48,7 +68,11 @@ class BusSettings:
             }  # fmt: skip
         if self.interface == "socketcand":
             return {**common, "host": self.host, "port": self.port, "tcp_tune": True}
-        return common
+        return common if self.interface in _WITHOUT_BITRATE else {"bitrate": self.bitrate, **common}
+
+    def _channel(self) -> str | int:
+        """Kvaser and others number their channels."""
+        return int(self.channel) if self.channel.isdigit() and self.interface not in _NAMED_CHANNELS else self.channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,31 +83,54 @@ class CanopenSettings:
         bus: how the bus is reached.
         node_id: of the drive, 1 .. 127.
         profile: object profile, or "auto" to choose by vendor ID.
-        position_mode: how Mode.POSITION is done: "cyclic" (CSP) or "profile" (PP).
-        velocity_unit: one of `VELOCITY_UNITS`; None to read 0x60A9.
+        position_mode: how Mode.POSITION is done: "cyclic" (CSP), "profile" (PP), "velocity" (this host closes the
+            position over the drive's speed: CSV or PV), or "auto": the first of these that the drive offers.
+        velocity_unit: one of `VELOCITY_UNITS`; None to read it.
+        units_from_configuration: believe rig and settings where the drive's unit objects contradict them.
         rated_current_a: motor current of 1000 permille torque [A]; None to read it.
+        torque_constant_n_m_a: of the motor [N m/A]: rated current, where the drive tells only its rated torque.
         current_limit_a: highest motor current, set in the drive [A]; None to leave the drive's own.
+        position_min_rad, position_max_rad: joint angles that the drive itself keeps to [rad]; None to leave its own.
+        profile_speed_rad_s, profile_acceleration_rad_s2: of the joint, in profile position; None to leave the drive's.
         duty_sign_from_current: the profile's duty has no sign: take the current's. Else the duty counts as not
             measured.
-        watchdog_s: time after the host's last heartbeat at which the drive stops by itself [s].
+        watchdog_s: time after the host's last sign of life at which the drive stops by itself [s].
+        watchdog_is_set_in_drive: the drive's own tool has set a watchdog; it is tried before the first motion.
         answer_s: longest silence of the drive in a row of cycles [s].
+        sdo_answer_s: longest wait for one answer to a read or write of an object [s].
+        enable_s: longest time from switching on to operation enabled [s]; brakes and finding the phase take some.
+        fault_reset_s: how long a fault reset is repeated [s].
+        mode_s: longest time until the drive shows the mode [s].
         poll_hz: how often supply and temperature are each asked for [Hz].
-        host_node_id: node ID under which the host's heartbeat is sent.
+        host_node_id: node ID under which the host's heartbeat is sent; None for one that nobody on the bus uses.
+        listen_s: how long the bus is listened to for other hosts before anything is sent [s].
         vendor_id, product_code, serial_number: what 0x1018 has to say; None for anything.
     """
 
     bus: BusSettings
     node_id: int
     profile: str = "auto"
-    position_mode: Literal["cyclic", "profile"] = "cyclic"
+    position_mode: PositionMode = "auto"
     velocity_unit: str | None = None
+    units_from_configuration: bool = False
     rated_current_a: float | None = None
+    torque_constant_n_m_a: float | None = None
     current_limit_a: float | None = None
+    position_min_rad: float | None = None
+    position_max_rad: float | None = None
+    profile_speed_rad_s: float | None = None
+    profile_acceleration_rad_s2: float | None = None
     duty_sign_from_current: bool = False
     watchdog_s: float = 0.1
+    watchdog_is_set_in_drive: bool = False
     answer_s: float = 0.05
+    sdo_answer_s: float = 0.5
+    enable_s: float = 3.0
+    fault_reset_s: float = 2.0
+    mode_s: float = 0.5
     poll_hz: float = 4.0
-    host_node_id: int = 127
+    host_node_id: int | None = None
+    listen_s: float = 0.25
     vendor_id: int | None = None
     product_code: int | None = None
     serial_number: int | None = None
@@ -103,24 +150,31 @@ class CanopenSettings:
                 )
 
     def _checks(self) -> list[tuple[str, str, bool]]:
-        bus = self.bus
+        bus, host_id = self.bus, self.host_node_id
+        low, high = self.position_min_rad, self.position_max_rad
+        positive = ("rated_current_a", "torque_constant_n_m_a", "current_limit_a", "profile_speed_rad_s",
+                    "profile_acceleration_rad_s2")  # fmt: skip
+        times = ("sdo_answer_s", "enable_s", "fault_reset_s", "mode_s")
+        modes = get_args(PositionMode)
         return [
-            ("interface", "socketcan, slcan, socketcand or virtual", bus.interface in Interface.__args__),  # type: ignore[attr-defined]
+            ("interface", f"one of {', '.join(sorted(can.VALID_INTERFACES))}", bus.interface in can.VALID_INTERFACES),
             ("channel", "a name", bool(bus.channel)),
             ("bitrate", f"one of {', '.join(map(str, BITRATES))} [bit/s]", bus.bitrate in BITRATES),
             ("node_id", "1 .. 127", 1 <= self.node_id <= 127),
             (
                 "host_node_id",
                 "1 .. 127, not the drive's",
-                1 <= self.host_node_id <= 127 and self.host_node_id != self.node_id,
+                host_id is None or (1 <= host_id <= 127 and host_id != self.node_id),
             ),
             ("profile", f"auto or {' or '.join(PROFILES)}", self.profile in ("auto", *PROFILES)),
-            ("position_mode", "cyclic or profile", self.position_mode in ("cyclic", "profile")),
+            ("position_mode", " or ".join(modes), self.position_mode in modes),
             ("velocity_unit", f"one of {', '.join(VELOCITY_UNITS)}", self.velocity_unit in (None, *VELOCITY_UNITS)),
-            ("rated_current_a", "more than 0 A", self.rated_current_a is None or self.rated_current_a > 0),
-            ("current_limit_a", "more than 0 A", self.current_limit_a is None or self.current_limit_a > 0),
+            *((name, "more than 0", _is_positive(getattr(self, name))) for name in positive),
+            ("position_min_rad", "less than position_max_rad, and both or neither", _are_limits(low, high)),
             ("watchdog_s", "0.01 .. 10 s", 0.01 <= self.watchdog_s <= 10.0),
             ("answer_s", "more than 0 s and less than the watchdog", 0 < self.answer_s < self.watchdog_s),
+            *((name, "0.01 .. 60 s", 0.01 <= getattr(self, name) <= 60.0) for name in times),
+            ("listen_s", "0 .. 10 s", 0.0 <= self.listen_s <= 10.0),
             ("poll_hz", "more than 0 and at most 20 Hz", 0 < self.poll_hz <= 20),
         ]
 
@@ -128,3 +182,11 @@ class CanopenSettings:
     def device(self) -> str:
         """Name in messages."""
         return f"{self.bus} node {self.node_id}"
+
+
+def _is_positive(value: float | None) -> bool:
+    return value is None or value > 0.0
+
+
+def _are_limits(low: float | None, high: float | None) -> bool:
+    return (low is None) == (high is None) and (low is None or high is None or low < high)

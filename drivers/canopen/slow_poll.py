@@ -14,7 +14,6 @@ _ANSWER: Final = struct.Struct("<BHB4s")
 _UPLOAD: Final = 0x40
 _EXPEDITED: Final = 0x42
 _ABORT: Final = 0x80
-_LOST_S: Final = 0.2  # an answer that takes longer does not come
 
 
 class Reading(NamedTuple):
@@ -30,11 +29,13 @@ class SlowPoll:
     Args:
         items: what to ask for.
         interval_s: how often for each [s].
+        lost_s: an answer that takes longer does not come [s].
     """
 
-    def __init__(self, items: tuple[DriveObject, ...], interval_s: float) -> None:
+    def __init__(self, items: tuple[DriveObject, ...], interval_s: float, lost_s: float = 0.2) -> None:
         self.readings: dict[DriveObject, Reading] = {}
         self._items = items
+        self._lost_s = lost_s
         self._interval_s = interval_s / max(len(items), 1)
         self._next = 0
         self._asked: DriveObject | None = None
@@ -47,7 +48,7 @@ class SlowPoll:
     def request(self, now_s: float) -> bytes | None:
         """The request to send now, if one is due and none is under way."""
         since_s = now_s - self._asked_s
-        if not self._items or since_s < self._interval_s or (self._asked is not None and since_s < _LOST_S):
+        if not self._items or since_s < self._interval_s or (self._asked is not None and since_s < self._lost_s):
             return None
         item = self._items[self._next]
         self._next = (self._next + 1) % len(self._items)

@@ -127,7 +127,8 @@ class Session:
             values |= block.decode(self.link.read(block))
         self._follow(values)
         is_fault = self.state is Status.FAULT
-        return Inspection(self.state, self.fault_text() if is_fault else "", *self._sampling.output(values))
+        told = self.state if is_fault or self._map.status is not None else None
+        return Inspection(told, self.fault_text() if is_fault else "", *self._sampling.output(values))
 
     def fault_text(self) -> str:
         """The fault in words."""

@@ -110,10 +110,10 @@ class Session:
         return self._cycle(0)
 
     def inspect(self) -> Inspection:
-        """State, fault and applied output, by questions alone."""
+        """Fault and applied output, by questions alone; of its state it tells nothing else."""
         faults = self.telemetry.read_status()
         duty, current_a = self.telemetry.read_output()
-        return Inspection(Status.FAULT if faults else self.state, ", ".join(faults), duty, current_a)
+        return Inspection(Status.FAULT if faults else None, ", ".join(faults), duty, current_a)
 
     def fault_text(self) -> str:
         """The faults of the last status, by name."""

@@ -198,15 +198,18 @@ def _signed(speed: int, direction: int) -> int:
 
 
 def _status_layout(link: Link) -> tuple[Read, tuple[Flag, ...]]:
-    """The layout of the status word: four bytes, or two from older firmware."""
-    try:
-        link.begin()
-        link.read(commands.STATUS_32_BIT)
-    except DriveConnectionError:
-        link.begin()
-        link.read(commands.STATUS_16_BIT)
-        return commands.STATUS_16_BIT, FLAGS_16_BIT
-    return commands.STATUS_32_BIT, FLAGS_32_BIT
+    """The layout of the status word: four bytes, or two from older firmware. Each is tried twice, for a line may fail.
+
+    Raises:
+        DriveConnectionError: neither is answered.
+    """
+    layouts = ((commands.STATUS_32_BIT, FLAGS_32_BIT), (commands.STATUS_16_BIT, FLAGS_16_BIT))
+    for layout in (*layouts, *layouts[:1]):
+        if _answers(link, layout[0]):
+            return layout
+    link.begin()
+    link.read(commands.STATUS_16_BIT)
+    return layouts[1]
 
 
 def _answers(link: Link, command: Read) -> bool:

@@ -55,6 +55,7 @@ def _hidden_effect(page: Any, service: RunningService, picture: Path) -> None:
     page.get_by_label("Name").fill("what is hidden?")
     page.get_by_role("button", name="Create study").click()
     page.locator("table.heat button.cell").first.wait_for()
+    page.get_by_role("link", name="3 Diagnose").click()
     page.get_by_role("button", name="Diagnose").click()
     page.locator("article .js-plotly-plot").first.wait_for()
     page.wait_for_timeout(DRAWN_MS)

@@ -18,7 +18,7 @@ def excited(service) -> int:
 
 
 def held_out_errors(page) -> list[float]:
-    cells = page.locator("[aria-label='Ladder'] tbody tr td:nth-child(3)").all_inner_texts()
+    cells = page.locator("[aria-label='Ladder'] tbody tr td:nth-child(3)").all_text_contents()
     return [float(cell.split(" ")[0]) for cell in cells]
 
 
@@ -29,7 +29,7 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
     page.get_by_text("all; leave some out").click()
     used = page.get_by_role("group", name="Trials that are used")
     used.get_by_text("load", exact=True).click()
-    used.get_by_label("0.1 kg").uncheck()
+    used.get_by_label("100 g").uncheck()
     held = page.get_by_role("group", name="Held out of the fit")
     held.get_by_label("2", exact=True).check()
     page.get_by_role("button", name="Create study").click()
@@ -42,10 +42,12 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
     page.get_by_label("Name").fill("simulated")
     page.get_by_role("button", name="Create study").click()
     page.get_by_text("3 training trials, 3 held out").wait_for()
+    page.get_by_role("link", name="3 Diagnose").click()
     page.get_by_role("button", name="Diagnose").click()
     named = page.locator("article").filter(has_text="candidate")
     named.filter(has_text=LOADED).first.wait_for()
 
+    page.get_by_role("link", name="1 Record").click()
     page.get_by_role("button", name="Suggest trials").click()
     page.get_by_role("button", name="Queue all of them").click()
     page.get_by_text(re.compile(r"\d+ in the queue")).wait_for()
@@ -58,10 +60,12 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
     page.get_by_role("button", name="Add the recorded trials to the study").click()
     page.get_by_text(re.compile(r"^([4-9]|\d\d) training trials, \d+ held out")).wait_for()
 
+    page.get_by_role("link", name="1 Record").click()
     page.get_by_role("button", name="Record the next round").click()
     page.get_by_text(re.compile(r"\d in the queue\. When they have ended|Nothing is queued")).wait_for()
     service.client.delete("/queue").raise_for_status()
 
+    page.get_by_role("link", name="3 Diagnose").click()
     page.get_by_role("button", name="Diagnose").click()
     named.filter(has_text=LOADED).first.get_by_role("button", name="Add").click()
     page.get_by_role("button", name="Undo this change").wait_for()

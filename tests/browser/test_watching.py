@@ -40,7 +40,7 @@ def shift(page) -> tuple[float, list]:
 
 def time_at(page, share: float) -> float:
     """Time [s] of the reading under the pointer, at a share of the live plot's width."""
-    chart = page.get_by_label("Live", exact=True).get_by_role("img")
+    chart = page.get_by_label("Live", exact=True).locator("canvas.chart")
     box = chart.bounding_box()
     chart.hover(position={"x": LEFT_PX + share * (box["width"] - LEFT_PX - RIGHT_PX), "y": box["height"] / 2})
     values = page.get_by_label("Live", exact=True).locator(".values")

@@ -27,6 +27,14 @@ def test_too_fast_for_the_drive():
         check_timing(DRIVE, 0.002)
 
 
+def test_what_was_noticed_of_line_and_host_stands_in_place_of_general_advice():
+    with pytest.raises(ConfigurationError, match=r"is wanted\. Choose a longer period or a faster line"):
+        check_timing(DRIVE, 0.002)
+    noted = replace(DRIVE, notes=("the USB adapter holds each answer back. Set it to 1 ms",))
+    with pytest.raises(ConfigurationError, match=r"is wanted\. the USB adapter holds .* back\. Set it to 1 ms"):
+        check_timing(noted, 0.002)
+
+
 @pytest.mark.parametrize("watchdog_s", [0.015, 10.0, inf, nan])
 def test_a_watchdog_that_does_not_fit(watchdog_s):
     with pytest.raises(ConfigurationError, match=rf"after {watchdog_s:g} s; 0.02 s .* 2 s is wanted"):

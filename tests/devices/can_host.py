@@ -6,7 +6,7 @@ from typing import Any
 from sim_backend.devices.canopen.drive import ServoDrive
 from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.objects.generic import GENERIC
-from sim_backend.devices.plant_tables import behind_a_drive
+from sim_backend.devices.joint_tables import behind_a_drive
 
 NODE = 5
 SIZES = {1: 0x2F, 2: 0x2B, 4: 0x23}

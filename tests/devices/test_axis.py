@@ -4,7 +4,7 @@ import pytest
 
 from drivers.contract import Command, Mode, Sample
 from sim_backend.devices.axis import CURRENT, OFF, VOLTAGE, Axis, Demand
-from sim_backend.devices.plant_tables import behind_a_drive
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.drive.simulated_drive import SimulatedDrive
 from sim_backend.errors import ParameterError
 from sim_backend.faults.script import OverCurrent, TorqueDisabled

@@ -46,7 +46,7 @@ def _map(host: CanHost, link: int, mapping: int, can_id: int, kind: int, *entrie
         ("23 17 10 00 01 00 00 00", "80 17 10 00 12 00 07 06"),  # too long
         ("2b 07 60 00 09 00 00 00", "80 07 60 00 31 00 09 06"),  # above 3
         ("2b 07 60 00 ff ff 00 00", "80 07 60 00 32 00 09 06"),  # below 0
-        ("2f 60 60 00 03 00 00 00", "80 60 60 00 30 00 09 06"),  # profile velocity: not a mode of it
+        ("2f 60 60 00 06 00 00 00", "80 60 60 00 30 00 09 06"),  # homing: not a mode of it
         ("a0 00 10 00 00 00 00 00", "80 00 10 00 01 00 04 05"),  # block upload
         ("2f 03 10 00 01 00 00 00", "80 03 10 00 30 00 09 06"),  # only 0 clears the history
     ],

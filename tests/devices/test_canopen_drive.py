@@ -238,9 +238,9 @@ def test_mode_changes_under_power_without_a_jump() -> None:
 
 
 def test_modes_are_told_and_others_are_refused() -> None:
-    assert CanHost().read(0x6502, 0, "I") == 0b10_1000_1001
+    assert CanHost().read(0x6502, 0, "I") == 0b11_1000_1101
     assert CanHost(EPOS4).read(0x6502, 0, "I") == 0b10_1000_0001
-    for family, mode in ((GENERIC, 3), (GENERIC, 9), (EPOS4, 4), (EPOS4, 6)):
+    for family, mode in ((GENERIC, 2), (GENERIC, 6), (EPOS4, 4), (EPOS4, 6)):
         host = CanHost(family)
         assert host.write(0x6060, 0, mode, 1) == 0x06090030
         assert host.read(0x6061, 0, "b") == 0

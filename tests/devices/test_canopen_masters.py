@@ -136,7 +136,7 @@ def test_master_enables_moves_and_disables(bench: Bench) -> None:
 
 
 def test_modes_that_the_drive_has_not_are_refused(bench: Bench) -> None:
-    assert not bench.node.is_op_mode_supported("PROFILED VELOCITY")
+    assert not bench.node.is_op_mode_supported("HOMING")
     assert bench.node.is_op_mode_supported("CYCLIC SYNCHRONOUS TORQUE")
 
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.modbus.own_drive import OwnDrive
-from sim_backend.devices.modbus.refusal import Refused, Unanswered
+from sim_backend.devices.modbus.register_file import Refused, Unanswered
 from sim_backend.devices.modbus.registers import Kind, from_words, to_words
 from sim_backend.devices.modbus.roboteq import Roboteq
-from sim_backend.devices.plant_tables import behind_a_drive
 from sim_backend.faults.script import DriveFailed, OverCurrent, OverTemperature, SupplyLost, TorqueDisabled
 
 READ_HOLDING, READ_INPUT, WRITE_ONE, WRITE_SEVERAL, READ_WRITE = 3, 4, 6, 16, 23

@@ -184,6 +184,22 @@ def test_older_firmware_answers_the_status_in_two_bytes(answers):
         drive.enable(Mode.DUTY)
 
 
+def test_a_line_that_fails_while_the_layout_of_the_status_is_found_out(answers):
+    answer, failed = answers._answer, []
+
+    def fails_at_first(packet):
+        if packet[1] == 90 and len(failed) < 2:
+            failed.append(packet)
+            return b""
+        return answer(packet)
+
+    answers._answer = fails_at_first
+    drive = opened()
+    answers.data[90] = (0x0000_1000).to_bytes(4, "big")  # M1 current error, in the layout of four bytes
+    with pytest.raises(DriveStateError, match="M1 current error"):
+        drive.enable(Mode.DUTY)
+
+
 def test_what_it_says_of_itself(answers):
     found = opened().describe()
     assert (found.vendor, found.product, found.firmware) == ("Basicmicro", "USB Roboclaw 2x15a", "4.1.34")

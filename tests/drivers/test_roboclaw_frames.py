@@ -1,12 +1,12 @@
 """Packets of RoboClaw packet serial against bytes worked out by hand from the manual."""
 
 import pytest
-from drivers.roboclaw.encoder import EncoderCount
-from drivers.roboclaw.identity import Identity, parse_version
 
 from drivers.roboclaw import commands
 from drivers.roboclaw.flags import FLAGS_16_BIT, FLAGS_32_BIT, faults
 from drivers.roboclaw.frames import crc16, is_intact, read_packet, version_packet, write_packet
+from drivers.roboclaw.opening import Identity, parse_version
+from drivers.roboclaw.telemetry import EncoderCount
 from tests.drivers.roboclaw_answers import crc
 
 M1 = commands.CHANNELS[1]

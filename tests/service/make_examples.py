@@ -62,6 +62,8 @@ def bench(asking: Asking, service: RunningService) -> None:
     ask("PUT /lease", {"duration_s": 60})
     ask("GET /lease")
     service.client.delete("/lease")
+    ask("POST /drive/state")
+    ask("POST /drive/clear-fault", {"fault": ""})
     ask("GET /experiment-kinds")
     ask("GET /channels")
     ask("POST /experiments/plan", STEPS)
@@ -116,6 +118,7 @@ def studies(asking: Asking, service: RunningService) -> None:
     imported = service.client.post("/recording-sets?name=bench+3", **body).json()
     asking.kept["POST /api/v1/recording-sets"] = imported
     new = {"name": "arm, winter", "experiment_ids": [imported["experiment_id"]], "hold_out": ["amplitude_rad=0.9"]}
+    ask("POST /studies/check", {"experiment_ids": new["experiment_ids"]})
     number = ask("POST /studies", new)["study_id"]
     ask("GET /studies")
     for route in ("", "/compare", "/closed-loop", "/diagnose", "/error-map"):

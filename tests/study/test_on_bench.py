@@ -8,8 +8,7 @@ from bench.study.changes import add_effect
 from bench.study.create import create_study
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
-from bench.study.on_bench import bench_configurations, keep_bench_error
-from bench.study.use import studied_model, use
+from bench.study.use import bench_configurations, keep_bench_error, studied_model, use
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.online import works_online
 from tests.experiments.calibrated import CURVES, REST, calibrated_configuration

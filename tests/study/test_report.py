@@ -30,6 +30,7 @@ def sections(store, number):
 def test_everything_that_a_lab_files_is_in_it(store, number, sections):
     first, newest = store.models(number)
     assert list(sections) == [
+        "In short",
         "What was measured",
         "The ladder",
         f"Model {newest.id}",
@@ -44,8 +45,23 @@ def test_everything_that_a_lab_files_is_in_it(store, number, sections):
     (table,) = sections["The ladder"].tables
     rungs = ladder(store, number).rungs
     assert [row[3] for row in table.rows] == [f"{rung.held_out:.2%}" for rung in rungs]
-    assert table.rows[1][1] == "+ viscous_asymmetry"
+    assert table.rows[1][1] == "+ viscous asymmetry"
     assert "no model of the motion can beat that floor" in sections["The ladder"].sentences[0]
+
+
+def test_who_files_it_finds_when_who_on_what_and_what_came_out(store, number, sections):
+    short = sections["In short"]
+    facts = dict(short.tables[0].rows)
+    assert set(facts) == {"date", "recorded", "operator", "rig", "drive", "source", "version", "commit"}
+    assert facts["source"] == "imported"
+    assert re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d", facts["date"])
+    before, after = (f"{rung.held_out:.2%}" for rung in ladder(store, number).rungs)
+    assert f"With viscous asymmetry the error goes from {before} to {after}" in short.sentences[1]
+    page = report_html(store, number)
+    assert page.count('href="#part-') == page.count("<h2 id=")
+    assert "@media print" in page
+    assert "prefers-color-scheme: dark" in page
+    assert ">viscous_asymmetry<" not in page
 
 
 def test_evidence_stands_in_words_and_pictures(store, number, sections):
@@ -68,5 +84,5 @@ def test_the_page_is_whole_and_escaped(store, number):
     assert page.rstrip().endswith("</html>")
     assert "arm &lt;1&gt;" in page
     assert "Trials to record next" not in page
-    outside = re.findall(r'(?:src|href)="([^"]*)"', page.split("<script>")[0])
+    outside = re.findall(r'(?:src|href)="([^#"][^"]*)"', page.split("<script>")[0])
     assert outside == []

@@ -38,7 +38,7 @@ def simulate_models(session: BenchSession, study_id: int, quiet: bool) -> None:
 
 def measure_models(session: BenchSession, study_id: int, quiet: bool) -> None:
     """Move the joint once with each model of a study that has not been tried on the bench, and keep the error."""
-    from bench.study.on_bench import bench_configurations, keep_bench_error
+    from bench.study.use import bench_configurations, keep_bench_error
 
     with session.open_store() as store:
         for model_id, configuration in bench_configurations(store, study_id, session.configuration()):

@@ -15,6 +15,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.doctor.connection import Connection
     from bench.store import Experiment
 
+_VERDICTS = {"proven": "proven", "configured, not proven": "NOT PROVEN", "none": "DOES NOT STOP IT"}
 QUANTITIES = ("position_rad", "velocity_rad_s", "duty", "current_a", "supply_v", "temperature_c")
 
 
@@ -48,21 +49,23 @@ def doctor(
 
 
 def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet: bool) -> bool:
-    """The silence and the commissioning move. Returns whether both are as wanted."""
+    """The proof of the watchdog and the commissioning move. Returns whether both are as wanted."""
     from bench.cli.operation.run import carry_out
-    from bench.control.commissioned import KIND
+    from bench.control.commissioned import KIND, WATCHDOG_FACT
     from bench.control.drive_factory import is_simulated
-    from bench.doctor.silence import keep_silent
+    from bench.doctor.watchdog_proof import prove_watchdog
+    from drivers.contract import Watchdog
 
     configuration = session.configuration()
+    facts: dict[str, object] = {}
     if not is_simulated(configuration):  # nobody is silent in virtual time
-        silence = keep_silent(configuration)
-        answer["silence"] = asdict(silence)
+        proof = prove_watchdog(configuration)
+        answer["watchdog_proof"] = facts[WATCHDOG_FACT] = asdict(proof)
         if not quiet:
-            say(f"watchdog: {'noticed' if silence.noticed else 'NOT NOTICED'}: {silence.sentence}")
-        if not silence.noticed:
+            say(f"watchdog: {_VERDICTS[proof.watchdog]}: {proof.sentence}")
+        if proof.watchdog is Watchdog.NONE:
             return False
-    ended, _ = carry_out(session, KIND, {}, operator, "friction-bench doctor --move", None, quiet)
+    ended, _ = carry_out(session, KIND, {}, operator, "friction-bench doctor --move", None, quiet, facts)
     answer["commissioning"] = {"outcome": ended.outcome, "reason": ended.reason, "results": ended.results}
     if not quiet:
         _show_move(ended)
@@ -81,8 +84,12 @@ def _show(found: "Connection") -> None:
         ("rate now", f"{found.rate_hz:.1f} cycles/s at a period of {1e3 * found.period_s:g} ms"),
         ("one exchange", f"{1e3 * found.exchange_s:.2f} ms, the slowest {1e3 * found.slowest_s:.2f} ms"),
         ("lost cycles", found.lost_cycles),
-        ("watchdog", f"stops after {description.watchdog_s:g} s of silence; set and read back"),
+        ("watchdog", f"is to stop it after {description.watchdog_s:g} s of silence; {description.watchdog}"),
     ])  # fmt: skip
+    for found_table in description.tables:
+        table(found_table.title, list(found_table.columns), list(found_table.rows))
+    for note in description.notes:
+        say(f"note: {note}")
     table("Measured now, with the power off", ["quantity", "unit", "value#", "smallest step#", "age in ms#"], [
         (name, unit_of(name), _value(found, name), description.resolution.get(name), _age_ms(found, name))
         for name in QUANTITIES

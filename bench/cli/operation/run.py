@@ -1,5 +1,6 @@
 """`friction-bench run KIND`: one experiment, in this process; the options come from the kind's parameters."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any
@@ -102,16 +103,20 @@ def carry_out(
     note: str,
     pace: Pace | None,
     quiet: bool,
+    facts: Mapping[str, object] | None = None,
 ) -> "tuple[Experiment, int | None]":
-    """Run it to its end, whatever that is. Returns its record, and the exit code where a signal ended it."""
+    """Run it to its end, whatever that is; `facts` are kept with its record.
+
+    Returns its record, and the exit code where a signal ended it.
+    """
     from bench.control import scheduling
     from bench.control.drive_factory import is_simulated
     from bench.runs.runner import HostProcess, Runner
 
     configuration = session.configuration()
     wanted = pace or (Pace.FAST if is_simulated(configuration) else Pace.REAL_TIME)
-    facts = {"control_loop": {"process": "that of the command", "scheduling": scheduling.describe()}}
-    host = HostProcess(during_run=scheduling.undisturbed, facts=facts)
+    loop = {"process": "that of the command", "scheduling": scheduling.describe()}
+    host = HostProcess(during_run=scheduling.undisturbed, facts={"control_loop": loop, **(facts or {})})
     with session.open_store() as store:
         runner = Runner(configuration, store, host)
         try:

@@ -20,8 +20,10 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
 
     values = driver_values(settings)
     bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    constant_n_m_a = rig.motor.torque_constant_n_m_a
     try:
-        return CanopenDrive(CanopenSettings(bus=bus, **values), joint_scale(settings, rig))
+        drive = CanopenSettings(bus=bus, torque_constant_n_m_a=constant_n_m_a, **values)
+        return CanopenDrive(drive, joint_scale(settings, rig))
     except DriveConfigurationError as error:
         raise ConfigurationError(str(error)) from error
 

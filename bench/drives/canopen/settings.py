@@ -13,10 +13,14 @@ class CanopenDriveSettings(RealDriveSettings):
     """One drive on a CAN bus, over CANopen with the CiA 402 profile."""
 
     kind: Literal["canopen"]
-    interface: Literal["socketcan", "slcan", "socketcand", "virtual"] = quantity(
-        ..., "", "How the bus is reached: Linux network interface, serial adapter, TCP server, inside one process"
+    interface: str = quantity(
+        ...,
+        "",
+        "How the bus is reached, by python-can's name: socketcan (Linux network interface), slcan (serial adapter), "
+        "socketcand (TCP server), pcan, kvaser, gs_usb, udp_multicast ..., virtual (inside one process)",
+        min_length=1,
     )
-    channel: str = quantity(..., "", "can0, /dev/ttyACM0, or the bus's name at the server", min_length=1)
+    channel: str = quantity(..., "", "can0, /dev/ttyACM0, PCAN_USBBUS1, or the bus's name at the server", min_length=1)
     bitrate: Bitrate = quantity(1_000_000, "bit/s", "Bit rate of the bus")
     host: str = quantity("localhost", "", "Host of the socketcand server")
     port: int = quantity(29536, "", "Port of the socketcand server", ge=1, le=65535)
@@ -24,13 +28,22 @@ class CanopenDriveSettings(RealDriveSettings):
         115200, "bit/s", "Baud rate of the serial line of an slcan adapter; ignored on USB", ge=9600
     )
     adapter_start_s: float = quantity(0.0, "s", "What an slcan adapter needs after its port is opened", ge=0, le=10)
+    options: dict[str, str | int | float | bool] = quantity(
+        {}, "", "What else the interface takes, as python-can's documentation of it says"
+    )
     node_id: int = quantity(..., "", "Node ID of the drive", ge=1, le=127)
     profile: Literal["auto", "cia402", "epos4"] = quantity("auto", "", "Object profile; 'auto': by the vendor ID")
-    position_mode: Literal["cyclic", "profile"] = quantity(
-        "cyclic", "", "How the drive closes a position: 'cyclic' (CSP) or 'profile' (PP)"
+    position_mode: Literal["auto", "cyclic", "profile", "velocity"] = quantity(
+        "auto",
+        "",
+        "How a position is closed: 'cyclic' (CSP), 'profile' (PP), 'velocity' (by this host over CSV or PV); "
+        "'auto': the first of these that the drive offers",
     )
     velocity_unit: VelocityUnit | None = quantity(
-        None, "", "Unit of the drive's velocities; left out: what 0x60A9 says"
+        None, "", "Unit of the drive's velocities; left out: what 0x60A9 or 0x6096 says"
+    )
+    units_from_configuration: bool = quantity(
+        False, "", "Believe rig and settings where the drive's unit objects contradict them"
     )
     rated_current_a: float | None = quantity(
         None, "A", "Motor current of 1000 permille torque; left out: what the drive says", gt=0
@@ -38,15 +51,37 @@ class CanopenDriveSettings(RealDriveSettings):
     current_limit_a: float | None = quantity(
         None, "A", "Highest motor current, set in the drive; left out: the drive's own", gt=0
     )
+    position_min_rad: float | None = quantity(None, "rad", "Lowest joint angle that the drive itself keeps to (0x607D)")
+    position_max_rad: float | None = quantity(
+        None, "rad", "Highest joint angle that the drive itself keeps to (0x607D)"
+    )
+    profile_speed_rad_s: float | None = quantity(
+        None, "rad/s", "Joint speed in profile position; left out: the drive's own", gt=0
+    )
+    profile_acceleration_rad_s2: float | None = quantity(
+        None, "rad/s2", "Joint acceleration in profile position; left out: the drive's own", gt=0
+    )
     duty_sign_from_current: bool = quantity(
         False, "", "The drive tells the duty without sign: take the current's; otherwise the duty is not measured"
     )
     watchdog_s: float = quantity(
-        0.1, "s", "Time after the host's last heartbeat at which the drive stops by itself", ge=0.01, le=10
+        0.1, "s", "Time after the host's last sign of life at which the drive stops by itself", ge=0.01, le=10
+    )
+    watchdog_is_set_in_drive: bool = quantity(
+        False, "", "The drive's own tool has set a watchdog; it is tried before the first motion"
     )
     answer_s: float = quantity(0.05, "s", "Longest silence of the drive; less than the watchdog", gt=0, le=5)
+    sdo_answer_s: float = quantity(0.5, "s", "Longest wait for one answer to a read or write", ge=0.01, le=60)
+    enable_s: float = quantity(
+        3.0, "s", "Longest time from switching on to operation enabled: brake, finding the phase", ge=0.01, le=60
+    )
+    fault_reset_s: float = quantity(2.0, "s", "How long a fault reset is repeated", ge=0.01, le=60)
+    mode_s: float = quantity(0.5, "s", "Longest time until the drive shows the mode", ge=0.01, le=60)
     poll_hz: float = quantity(4.0, "Hz", "How often supply and temperature are each asked for", gt=0, le=20)
-    host_node_id: int = quantity(127, "", "Node ID under which the host's heartbeat is sent", ge=1, le=127)
+    host_node_id: int | None = quantity(
+        None, "", "Node ID under which the host's heartbeat is sent; left out: one that nobody uses", ge=1, le=127
+    )
+    listen_s: float = quantity(0.25, "s", "How long the bus is listened to for other hosts when opened", ge=0, le=10)
     vendor_id: int | None = quantity(None, "", "What 0x1018:01 has to say; left out: anything", ge=0)
     product_code: int | None = quantity(None, "", "What 0x1018:02 has to say; left out: anything", ge=0)
     serial_number: int | None = quantity(None, "", "What 0x1018:04 has to say; left out: anything", ge=0)

@@ -34,7 +34,7 @@ ACCEPTED: dict[str, tuple[str, ...]] = {
 }
 """Mechanism -> names that are right."""
 
-ABSORBED: dict[str, str] = {"coulomb_asymmetry": "offset"}
+ABSORBED: dict[str, str] = {"coulomb_asymmetry": "offset", "latency": "measurement_delay"}
 """Mechanism -> effect of every model that does the same while the joint moves: no recording of motion can tell."""
 
 RECORDED: dict[str, str] = {"measurement_delay": "a sample is taken at the end of the cycle whose effort it holds"}

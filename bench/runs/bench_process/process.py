@@ -54,6 +54,8 @@ class BenchProcess:
             "answer": runner.answer,
             "pause": runner.pause,
             "resume": runner.resume,
+            "read_drives": runner.read_drives,
+            "clear_faults": runner.clear_faults,
         }
         self._publisher = Publisher(self._runner, connection)
         self._slow_calls: queue.Queue[Call] = queue.Queue()

@@ -5,6 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 from bench.config.configuration import BenchConfiguration
+from bench.control.drive_faults import DriveState
 from bench.runs.bench_control import BenchControl, Request, RunnerStatus
 from bench.runs.bench_process.calls import Calls
 from bench.runs.bench_process.child import MODULE, Child
@@ -55,6 +56,16 @@ class RemoteRunner(BenchControl):
     def answer(self, prompt_number: int) -> None:
         """See `BenchControl`."""
         self._call("answer", prompt_number)
+
+    def read_drives(self) -> tuple[DriveState, ...]:
+        """See `BenchControl`."""
+        found: tuple[DriveState, ...] = self._call("read_drives")
+        return found
+
+    def clear_faults(self, shown: str) -> tuple[DriveState, ...]:
+        """See `BenchControl`."""
+        found: tuple[DriveState, ...] = self._call("clear_faults", shown)
+        return found
 
     def live(self, after_row: int = -1, limit: int = 2000) -> LiveRows:
         """See `BenchControl`."""

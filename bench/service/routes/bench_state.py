@@ -44,6 +44,8 @@ class DriveDescription(BaseModel):
     resolution: dict[str, float] = Field(description="smallest step of a quantity, in its unit")
     max_rate_hz: float
     watchdog_s: float = Field(description="time without a command after which the drive stops by itself")
+    watchdog: str = Field(description="how sure that is: 'proven', 'configured, not proven' or 'none'")
+    notes: list[str] = Field(description="what was noticed of line and host, and what to do about it")
 
 
 class Limit(BaseModel):
@@ -210,6 +212,8 @@ def _drive(found: Description) -> DriveDescription:
         resolution=dict(found.resolution),
         max_rate_hz=found.max_rate_hz,
         watchdog_s=found.watchdog_s,
+        watchdog=found.watchdog.value,
+        notes=list(found.notes),
     )
 
 

@@ -35,7 +35,7 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
             percent(one.held_out_after),
             f"{one.gain:.1%} ({one.gain_low:.1%} .. {one.gain_high:.1%})",
             number(one.d_prime),
-            ", ".join(one.confused_with) or "-",
+            ", ".join(one.confused_with).replace("_", " ") or "-",
         )
         for one in found.ranking
     ]

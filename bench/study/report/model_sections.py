@@ -114,9 +114,9 @@ def ladder_section(found: Ladder) -> Section:
 def change_of(rung: Rung) -> str:
     """What a rung changed, in words."""
     if rung.parent_id is None:
-        return "base: " + ", ".join(rung.effects)
+        return "base: " + ", ".join(rung.effects).replace("_", " ")
     signs = [f"+ {rung.added}" if rung.added else "", f"- {rung.removed}" if rung.removed else ""]
-    return ", ".join(filter(None, signs)) or f"the same, {rung.trials} trials"
+    return ", ".join(filter(None, signs)).replace("_", " ") or f"the same, {rung.trials} trials"
 
 
 def model_section(found: Comparison) -> Section:
@@ -128,7 +128,7 @@ def model_section(found: Comparison) -> Section:
     return Section(
         f"Model {found.model_id}",
         [
-            f"Effects: {', '.join(found.effects)}.",
+            f"Effects: {', '.join(found.effects).replace('_', ' ')}.",
             *found.notes,
             *([found.at_rest.sentence] if found.at_rest else []),
         ],
@@ -185,7 +185,9 @@ def _moved(trial: TrialInLoop, unit: str) -> Figure:
 
 
 def _parameters(title: str, found: Sequence[FittedParameter]) -> Table:
-    rows = [(one.effect, one.name, number(one.value), _interval(one), one.unit, one.note) for one in found]
+    rows = [
+        (one.effect.replace("_", " "), one.name, number(one.value), _interval(one), one.unit, one.note) for one in found
+    ]
     return Table(title, ["effect", "parameter", "value#", "95 % interval", "unit", "note"], rows)
 
 

@@ -10,6 +10,7 @@ from bench.study.create import describe
 from bench.study.diagnose import diagnose
 from bench.study.ladder import ladder
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section, suggestion_section
+from bench.study.report.head_section import head_section
 from bench.study.report.model_sections import (
     closed_loop_section,
     ladder_section,
@@ -51,9 +52,9 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
     if first != newest:
         title = f"What was missing from the first model, {first}"
         sections.append(diagnosis_section(title, diagnose(store, study_id, first), before))
-    sections.append(
-        diagnosis_section(f"What is missing from the newest model, {newest}", diagnose(store, study_id), now)
-    )
+    last = diagnose(store, study_id)
+    sections.insert(0, head_section(study, rungs, last.sentence, store))
+    sections.append(diagnosis_section(f"What is missing from the newest model, {newest}", last, now))
     if configuration is not None:
         sections.append(_next(store, study_id, configuration))
     return f"Study {study_id}: {study.name}", [*sections, provenance_section(study, store)]

@@ -20,6 +20,12 @@ _NEXT_STEP = {
     "socketcand": "does socketcand run at {host}:{port}, and does it offer {channel}?",
     "virtual": "it exists inside one process only",
 }
+_WITHOUT_DRIVER = (
+    ImportError,
+    NameError,
+    AttributeError,
+)  # what interfaces raise where the vendor's library is missing
+_ANY_STEP = "is the adapter plugged in, its driver installed, and `channel` as python-can's documentation has it?"
 
 
 def open_bus(settings: BusSettings, device: str) -> can.BusABC:
@@ -38,9 +44,12 @@ def open_bus(settings: BusSettings, device: str) -> can.BusABC:
             return bounded(lambda: can.Bus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
         del arguments["interface"], arguments["ignore_config"]
         return bounded(lambda: SlcanBus(**arguments), timeout_s, undo=lambda bus: bus.shutdown())
-    except (can.CanError, OSError, ValueError) as error:
-        step = _NEXT_STEP[settings.interface].format(
-            channel=settings.channel, bitrate=settings.bitrate, host=settings.host, port=settings.port
+    except (can.CanError, OSError, ValueError, TypeError, *_WITHOUT_DRIVER) as error:
+        step = _NEXT_STEP.get(settings.interface, _ANY_STEP).format(
+            channel=settings.channel,
+            bitrate=settings.bitrate,
+            host=settings.host,
+            port=settings.port,
         )
         raise DriveConnectionError(
             device, f"the bus {settings.interface} {settings} does not open: {error}; {step}"

@@ -1,4 +1,4 @@
-"""Heartbeats both ways (CiA 301, 7.2.8.2.2). Pure: who calls knows the time."""
+"""What the drive's heartbeats, or its answers to node guarding, tell (CiA 301, 7.2.8.2). Pure."""
 
 from enum import IntEnum
 
@@ -10,31 +10,6 @@ class NmtState(IntEnum):
     STOPPED = 0x04
     OPERATIONAL = 0x05
     PRE_OPERATIONAL = 0x7F
-
-
-class HostHeartbeat:
-    """When the next heartbeat of the host is due. It is sent by the control loop alone: a loop that hangs is silent.
-
-    Args:
-        watchdog_s: time after which the drive misses it [s]; it is sent four times as often.
-    """
-
-    PAYLOAD = bytes([NmtState.OPERATIONAL])
-
-    def __init__(self, watchdog_s: float) -> None:
-        self._interval_s = watchdog_s / 4
-        self._last_s = float("-inf")
-
-    def due(self, now_s: float) -> bool:
-        """Whether it is to be sent now; if so, it counts as sent."""
-        if now_s - self._last_s < self._interval_s:
-            return False
-        self._last_s = now_s
-        return True
-
-    def hurry(self) -> None:
-        """The next one is due at once: a drive counts only from the first that it hears after it was told to."""
-        self._last_s = float("-inf")
 
 
 class DriveMonitor:
@@ -63,6 +38,10 @@ class DriveMonitor:
         self.state = NmtState(data[0] & 0x7F)
         self.restarted = self.restarted or self.state is NmtState.BOOT_UP
         self._heard_s = now_s
+
+    def begin(self, now_s: float) -> None:
+        """Expect it from now on."""
+        self._heard_s = self._watched_s = now_s
 
     def silence_s(self, now_s: float) -> float:
         """How long it has been silent while somebody listened [s]."""

@@ -7,6 +7,7 @@ thread: no frame waits for a thread switch, and what a handler raises is raised 
 import errno
 import struct
 import time
+from collections import Counter
 from time import perf_counter
 
 import can
@@ -40,6 +41,7 @@ class CanLink(canopen.Network):
         self._device = device
         self.garbled = 0
         self.waited = 0
+        self._echoes: Counter[tuple[int, bytes]] | None = Counter() if settings.echoes else None
 
     def open(self) -> None:
         """Open the bus.
@@ -71,6 +73,8 @@ class CanLink(canopen.Network):
         while True:
             try:
                 self.bus.send(message, _SEND_S)
+                if self._echoes is not None:
+                    self._echoes[message.arbitration_id, bytes(message.data)] += 1
                 return
             except (can.CanError, OSError) as error:
                 deadline_s = deadline_s or perf_counter() + _SEND_S
@@ -104,7 +108,7 @@ class CanLink(canopen.Network):
             return False
         if message.is_error_frame:
             self._check(message)
-        elif not message.is_remote_frame:
+        elif not message.is_remote_frame and message.is_rx and not self._is_echo(message):
             self._hand_out(message)
         return True
 
@@ -113,6 +117,14 @@ class CanLink(canopen.Network):
         for _ in range(_MOST_WAITING):
             if not self.receive(0.0):
                 return
+
+    def _is_echo(self, message: can.Message) -> bool:
+        """Whether a frame is one of this host's own, come back: it is no word of another host."""
+        key = (message.arbitration_id, bytes(message.data))
+        if self._echoes is None or not self._echoes[key]:
+            return False
+        self._echoes[key] -= 1
+        return True
 
     def _hand_out(self, message: can.Message) -> None:
         try:
@@ -129,7 +141,9 @@ class CanLink(canopen.Network):
             )
 
     def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
-        what = "the transmit buffer stays full: nobody acknowledges" if _buffer_full(error) else str(error)
+        what = f"the adapter is gone, or broken ({error})"
+        if _buffer_full(error):
+            what = "the transmit buffer stays full: nobody acknowledges"
         return DriveConnectionError(
             self._device, f"{doing} failed: {what}; check cable, adapter and bit rate, then open the drive again"
         )

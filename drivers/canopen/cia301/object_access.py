@@ -12,12 +12,12 @@ from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.objects import DataType, DriveObject
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 
-ANSWER_S: Final = 0.2  # longest wait for one answer
 _ATTEMPTS: Final = 2
 _BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (CiA 301, 7.2.4.3)
 _NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
 _NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
 _ABSENT: Final = (0x0602_0000, 0x0609_0011)  # no such object, no such subindex
+_WRITE_ONLY: Final = 0x0601_0001
 
 
 class ObjectRefusedError(DriveConfigurationError):
@@ -25,11 +25,23 @@ class ObjectRefusedError(DriveConfigurationError):
 
     Attributes:
         code: abort code of CiA 301, 7.2.4.3.17.
+        why: the code in words.
     """
 
-    def __init__(self, device: str, message: str, code: int) -> None:
+    def __init__(self, device: str, message: str, code: int, why: str = "") -> None:
         super().__init__(device, message)
         self.code = code
+        self.why = why or message
+
+    @property
+    def write_only(self) -> bool:
+        """Whether the object is there and may not be read."""
+        return self.code == _WRITE_ONLY
+
+    @property
+    def absent(self) -> bool:
+        """Whether the drive says that it has no such object."""
+        return self.code in _ABSENT
 
 
 class ObjectAccess:
@@ -39,11 +51,13 @@ class ObjectAccess:
         link: open.
         node_id: of the drive.
         device: named in errors.
+        answer_s: longest wait for one answer [s].
     """
 
-    def __init__(self, link: CanLink, node_id: int, device: str) -> None:
+    def __init__(self, link: CanLink, node_id: int, device: str, answer_s: float) -> None:
         self._device = device
-        self._client = _Client(link, node_id)
+        self._answer_s = answer_s
+        self._client = _Client(link, node_id, answer_s)
 
     def take(self, data: bytes) -> None:
         """Receive an answer of the drive's SDO server."""
@@ -64,13 +78,11 @@ class ObjectAccess:
             ) from error
 
     def read_if_present(self, item: DriveObject) -> int | None:
-        """Value of an object [counts], None where the drive does not have it."""
+        """Value of an object [counts], None where the drive does not tell it, for whatever reason."""
         try:
             return self.read(item)
-        except ObjectRefusedError as refusal:
-            if refusal.code in _ABSENT:
-                return None
-            raise
+        except ObjectRefusedError:
+            return None
 
     def read_text(self, index: int) -> str:
         """A visible string; empty where the drive does not have it."""
@@ -100,12 +112,14 @@ class ObjectAccess:
                 self._client.download(item.index, item.subindex, data)
                 return b""
             except SdoAbortedError as error:
-                raise ObjectRefusedError(self._device, f"{what} {item}: refused, {error}", error.code) from error
+                raise ObjectRefusedError(
+                    self._device, f"{what} {item}: refused, {error}", error.code, str(error)
+                ) from error
             except SdoCommunicationError as error:
                 problem = error
         raise DriveConnectionError(
             self._device,
-            f"{what} {item}: {problem} (SDO, {_ATTEMPTS} times {ANSWER_S:g} s); is the drive on, the cable in, "
+            f"{what} {item}: {problem} (SDO, {_ATTEMPTS} times {self._answer_s:g} s); is the drive on, the cable in, "
             "node ID and bit rate right?",
         )
 
@@ -117,12 +131,12 @@ class _Client(SdoClient):
     by this host or by the one before it: it is let go.
     """
 
-    RESPONSE_TIMEOUT = ANSWER_S
     RETRY_DELAY = 0.0
 
-    def __init__(self, link: CanLink, node_id: int) -> None:
+    def __init__(self, link: CanLink, node_id: int, answer_s: float) -> None:
         super().__init__(0x600 + node_id, 0x580 + node_id, canopen.ObjectDictionary())  # type: ignore[no-untyped-call]
         self.network = link
+        self.RESPONSE_TIMEOUT = answer_s
         self._link = link
         self._asked = b""  # index and subindex of the transfer
 

@@ -60,21 +60,21 @@ class Pdo:
         return communication(self.number, self.transmit, subindex, kind, name)
 
     def _entry(self, subindex: int) -> DriveObject:
-        kind = DataType.U32 if subindex else DataType.U8
-        index = (0x1A00 if self.transmit else 0x1600) + self.number - 1
-        return DriveObject(index, subindex, kind, f"mapping of {self}")
+        return mapping_entry(self.number, self.transmit, subindex)
 
-    def writes(self) -> list[Write]:
-        """How it is configured: off, transmission type, no entries, the entries, their number, on."""
+    def writes(self, with_mapping: bool = True) -> list[Write]:
+        """How it is configured: off, transmission type, no entries, the entries, their number, on.
+
+        Args:
+            with_mapping: False where the mapping is as wanted already; it may be one that cannot be written.
+        """
         cob_id = self._communication(1, DataType.U32, "COB-ID")
         flags = NO_RTR if self.transmit else 0
         entries = [Write(self._entry(place), entry.mapping) for place, entry in enumerate(self.layout.entries, 1)]
         return [
             Write(cob_id, INVALID | flags | self.cob_id),
             Write(self._communication(2, DataType.U8, "transmission type"), SYNCHRONOUS),
-            Write(self._entry(0), 0),
-            *entries,
-            Write(self._entry(0), len(entries)),
+            *([Write(self._entry(0), 0), *entries, Write(self._entry(0), len(entries))] if with_mapping else []),
             Write(cob_id, flags | self.cob_id),
         ]
 
@@ -90,6 +90,13 @@ def communication(number: int, transmit: bool, subindex: int, kind: DataType, na
     """An entry of a PDO's communication record."""
     index = (0x1800 if transmit else 0x1400) + number - 1
     return DriveObject(index, subindex, kind, f"{name} of {'TPDO' if transmit else 'RPDO'}{number}")
+
+
+def mapping_entry(number: int, transmit: bool, subindex: int) -> DriveObject:
+    """An entry of a PDO's mapping record."""
+    kind = DataType.U32 if subindex else DataType.U8
+    index = (0x1A00 if transmit else 0x1600) + number - 1
+    return DriveObject(index, subindex, kind, f"mapping of {'TPDO' if transmit else 'RPDO'}{number}")
 
 
 def same(item: DriveObject, found: int, wanted: int) -> bool:

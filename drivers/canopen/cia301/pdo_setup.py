@@ -1,87 +1,88 @@
-"""Which PDOs the driver uses, and putting them into the drive: written, read back, compared."""
+"""Finding room for PDOs in a drive, and configuring them: read first, written where they differ, read back."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
-from drivers.canopen.capabilities import Capabilities
 from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
-from drivers.canopen.cia301.objects import (
-    CONTROLWORD,
-    POSITION,
-    STATUSWORD,
-    TARGET_POSITION,
-    TARGET_TORQUE,
-    TORQUE_OFFSET,
-    VELOCITY,
-    DataType,
-    DriveObject,
-)
-from drivers.canopen.cia301.pdo import INVALID, Pdo, PdoLayout, communication, same
+from drivers.canopen.cia301.objects import DataType, DriveObject
+from drivers.canopen.cia301.pdo import INVALID, Pdo, communication, mapping_entry, same
 from drivers.errors import DriveConfigurationError
 
-_MOST_PDOS = 4  # of each kind that a drive has enabled by default (CiA 402)
+MOST_PDOS: Final = 4  # of each kind that a drive has enabled by default (CiA 402)
+_INHIBIT_TIME, _EVENT_TIMER = 3, 5  # subindices of a TPDO's communication record
 
 
 @dataclass(frozen=True, slots=True)
-class ProcessData:
-    """The PDOs in use. Each demand travels with the controlword in one RPDO, so that neither comes before the other.
+class Slot:
+    """One PDO of the drive as it was found.
 
     Attributes:
-        torque: RPDO for Mode.CURRENT.
-        position: RPDO for Mode.POSITION.
-        state: TPDO with statusword and what is measured of the motor.
-        motion: TPDO with position and velocity.
+        number: from 1.
+        transmit: True where the drive sends it.
+        cob_id: as it reads.
+        mapped: the mapping as it reads.
     """
 
-    torque: Pdo
-    position: Pdo
-    state: Pdo
-    motion: Pdo
-
-    def nothing(self, controlword: int) -> bytes:
-        """Payload of `torque` that demands nothing."""
-        return self.torque.layout.pack(controlword, *[0] * (len(self.torque.layout.entries) - 1))
-
-    @property
-    def sizes(self) -> tuple[int, ...]:
-        """Bytes of the frames of a cycle: SYNC, the longer RPDO, both TPDOs."""
-        demand = max(self.torque.layout.size, self.position.layout.size)
-        return (0, demand, self.state.layout.size, self.motion.layout.size)
+    number: int
+    transmit: bool
+    cob_id: int
+    mapped: tuple[int, ...]
 
 
-def choose_pdos(node_id: int, found: Capabilities, with_duty: bool) -> ProcessData:
-    """The PDOs for what the drive has. Pure."""
-    duty = found.profile.duty if with_duty else None
-    state = [STATUSWORD, *(item for item in (found.current, duty) if item in found.present and item is not None)]
-    motion = [POSITION, *(item for item in (VELOCITY,) if item in found.present)]
-    # in both: a drive adds the offset in cyclic torque mode too, and keeps the last one it was given
-    offset = [TORQUE_OFFSET] if TORQUE_OFFSET in found.present else []
-    return ProcessData(
-        torque=Pdo(1, False, 0x200 + node_id, PdoLayout([CONTROLWORD, TARGET_TORQUE, *offset])),
-        position=Pdo(2, False, 0x300 + node_id, PdoLayout([CONTROLWORD, TARGET_POSITION, *offset])),
-        state=Pdo(1, True, 0x180 + node_id, PdoLayout(state)),
-        motion=Pdo(2, True, 0x280 + node_id, PdoLayout(motion)),
-    )
+def read_slots(access: ObjectAccess, transmit: bool) -> list[Slot]:
+    """The PDOs that the drive has, of one direction."""
+    found = (_read_slot(access, number, transmit) for number in range(1, MOST_PDOS + 1))
+    return [slot for slot in found if slot is not None]
 
 
-def configure_pdos(access: ObjectAccess, device: str, data: ProcessData) -> None:
-    """Configure the PDOs in use, and switch the others off: they would only load the bus.
+def _read_slot(access: ObjectAccess, number: int, transmit: bool) -> Slot | None:
+    cob_id = access.read_if_present(communication(number, transmit, 1, DataType.U32, "COB-ID"))
+    count = access.read_if_present(mapping_entry(number, transmit, 0))
+    if cob_id is None or count is None:
+        return None
+    words = (access.read_if_present(mapping_entry(number, transmit, place)) for place in range(1, count + 1))
+    return Slot(number, transmit, cob_id, tuple(word or 0 for word in words))
+
+
+def configure(access: ObjectAccess, device: str, pdo: Pdo, slot: Slot) -> None:
+    """Have one PDO as it is wanted.
 
     Raises:
         DriveConfigurationError: the drive refuses, or reads back something else.
     """
-    for pdo in (data.torque, data.position, data.state, data.motion):
-        for item, value in pdo.writes():
-            access.write(item, value)
-        for item, value in pdo.expected():
-            found = access.read(item)
-            if not same(item, found, value):
-                raise DriveConfigurationError(
-                    device,
-                    f"{item} reads back as 0x{found:X}; 0x{value:X} is wanted. Is the mapping locked in the drive?",
-                )
-    for number in range(3, _MOST_PDOS + 1):
+    wanted = pdo.expected()
+    if all(same(item, access.read(item), value) for item, value in wanted):
+        return
+    mapped = slot.mapped == tuple(entry.mapping for entry in pdo.layout.entries)
+    for item, value in pdo.writes(with_mapping=not mapped):
+        access.write(item, value)
+    for item, value in wanted:
+        found = access.read(item)
+        if not same(item, found, value):
+            raise DriveConfigurationError(
+                device, f"{item} reads back as 0x{found:X}; 0x{value:X} is wanted. Is the mapping locked in the drive?"
+            )
+
+
+def release(access: ObjectAccess, pdos: Sequence[Pdo]) -> None:
+    """Take timers off the TPDOs in use, and switch every other PDO off: it would only load the bus."""
+    used = {(pdo.number, pdo.transmit) for pdo in pdos}
+    for pdo in pdos:
+        for subindex in (_INHIBIT_TIME, _EVENT_TIMER) if pdo.transmit else ():
+            _zero(access, communication(pdo.number, True, subindex, DataType.U16, "timer"))
+    for number in range(1, MOST_PDOS + 1):
         for transmit in (False, True):
-            _switch_off(access, communication(number, transmit, 1, DataType.U32, "COB-ID"))
+            if (number, transmit) not in used:
+                _switch_off(access, communication(number, transmit, 1, DataType.U32, "COB-ID"))
+
+
+def _zero(access: ObjectAccess, item: DriveObject) -> None:
+    try:
+        if access.read_if_present(item):
+            access.write(item, 0)
+    except ObjectRefusedError:
+        return  # the drive minds it for events alone; at SYNC it is not to matter
 
 
 def _switch_off(access: ObjectAccess, cob_id: DriveObject) -> None:

@@ -61,7 +61,7 @@ class SyncCycle:
         self._in_doubt = False  # the last SYNC has been given up: its answer may still come
         self._arrived: dict[int, tuple[int, ...]] = {}
         self._sent_s = 0.0
-        self._unanswered_s: float | None = None
+        self._listened_s = 0.0
         for place, pdo in enumerate(tpdos):
             link.subscribe(pdo.cob_id, self._receiver(place, pdo))
 
@@ -83,7 +83,6 @@ class SyncCycle:
         link.send_message(cob_id, payload)
         link.send_prepared(_SYNC)
         self._sent_s = perf_counter()
-        self._unanswered_s = self._unanswered_s or self._sent_s
         counts.sent += 1
         if self._await_answer():
             counts.answered += 1
@@ -92,8 +91,11 @@ class SyncCycle:
 
     @property
     def silence_s(self) -> float:
-        """Time since the first SYNC that was not answered [s]; 0 where the last one was."""
-        return 0.0 if self._unanswered_s is None else perf_counter() - self._unanswered_s
+        """How long answers have been listened for in vain [s]; 0 where the last SYNC was answered.
+
+        Time in which the host was held up does not count: it is no silence of the drive.
+        """
+        return self._listened_s
 
     def _settle(self) -> None:
         """Give the previous SYNC a second chance to be answered."""
@@ -110,7 +112,10 @@ class SyncCycle:
             if remaining_s <= 0.0:
                 self._link.drain()  # a host that was held up is no drive that is silent
                 return not self._missing
+            began_s = perf_counter()
             self._link.receive(remaining_s)
+            if self._missing:
+                self._listened_s += min(perf_counter() - began_s, remaining_s)
         return True
 
     def _receiver(self, place: int, pdo: Pdo) -> Any:
@@ -136,7 +141,20 @@ class SyncCycle:
         self.received_s = perf_counter()
         self.sync_s = self._sent_s
         self.number = self.counts.sent
-        self._unanswered_s = None
+        self._listened_s = 0.0
+
+    @property
+    def idle_s(self) -> float:
+        """Time since the last SYNC was sent [s]."""
+        return perf_counter() - self._sent_s
+
+    def value(self, place: tuple[int, int]) -> int:
+        """What a TPDO told last.
+
+        Args:
+            place: number of the TPDO, place in it.
+        """
+        return self.values[place[0]][place[1]]
 
 
 def answer_wait_s(period_s: float) -> float:

@@ -1,27 +1,50 @@
-"""The limit that the drive itself keeps."""
+"""The limits that the drive itself keeps: motor current (0x6073, 0x6072 or the vendor's own), position (0x607D)."""
+
+from math import ceil, floor
 
 from drivers.canopen.capabilities import Capabilities
-from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.object_table import ObjectTable
+from drivers.canopen.cia301.objects import HIGHEST_POSITION, LOWEST_POSITION, MAX_TORQUE
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
 
+_PURPOSE = "limit in the drive"
 
-def set_current_limit(access: ObjectAccess, settings: CanopenSettings, found: Capabilities) -> None:
-    """Set the highest motor current in the drive, where the settings name one, and read it back.
+
+def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilities) -> None:
+    """Set each limit that the settings name, and read it back.
 
     Raises:
-        DriveConfigurationError: the drive refuses, or keeps another one.
+        DriveConfigurationError: the drive has no such limit, refuses it, or keeps another one.
     """
-    if settings.current_limit_a is None:
-        return
-    item = found.profile.current_limit
-    per_count_a = found.scale.current_a(item)
-    counts = int(settings.current_limit_a / per_count_a)  # never above what was asked for
-    access.write(item, counts)
-    kept = access.read(item)
-    if kept != counts:
+    if settings.current_limit_a is not None:
+        _set_current(table, settings, found, settings.current_limit_a)
+    if settings.position_min_rad is not None and settings.position_max_rad is not None:
+        _set_positions(table, found, settings.position_min_rad, settings.position_max_rad)
+
+
+def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilities, limit_a: float) -> None:
+    """Set the highest current in every object that limits it."""
+    candidates = dict.fromkeys((found.profile.current_limit, MAX_TORQUE))
+    items = [item for item in candidates if found.scale.tells(item) and table.has(item, _PURPOSE)]
+    if not items:
+        names = " nor ".join(map(str, candidates))
         raise DriveConfigurationError(
             settings.device,
-            f"{item} reads back as {kept * per_count_a:g} A; {counts * per_count_a:g} A is wanted. "
-            "Correct current_limit_a",
+            f"current_limit_a is {limit_a:g} A, and the drive has neither {names} in units that are known; leave it "
+            "out, and set the limit in the drive's own tool",
         )
+    for item in items:
+        try:
+            table.set(item, int(limit_a / found.scale.current_a(item)), _PURPOSE)  # never above what was asked for
+        except DriveConfigurationError as error:
+            why = str(error).removeprefix(f"drive '{settings.device}': ")
+            raise DriveConfigurationError(settings.device, f"current_limit_a is {limit_a:g} A: {why}") from error
+
+
+def _set_positions(table: ObjectTable, found: Capabilities, low_rad: float, high_rad: float) -> None:
+    joint = found.scale.joint
+    ends = sorted(joint.encoder_sign * (rad + joint.zero_rad) / joint.count_rad for rad in (low_rad, high_rad))
+    # within what was asked for
+    table.set(LOWEST_POSITION, ceil(ends[0]), _PURPOSE)
+    table.set(HIGHEST_POSITION, floor(ends[1]), _PURPOSE)

@@ -1,12 +1,15 @@
 """From what the TPDOs and the slow poll tell to a sample, in SI, at the joint. Pure."""
 
+from collections.abc import Callable, Sequence
 from math import copysign, isnan, nan
 
 from drivers.canopen.capabilities import Capabilities
-from drivers.canopen.cia301.objects import VELOCITY, DriveObject
-from drivers.canopen.cia301.pdo import PdoLayout
+from drivers.canopen.cia301.objects import POSITION, VELOCITY, DriveObject
 from drivers.canopen.slow_poll import Reading
 from drivers.contract import Ages, Sample, Status
+
+Place = tuple[int, int]
+"""Number of the TPDO, place in it."""
 
 
 class Measurement:
@@ -14,16 +17,20 @@ class Measurement:
 
     Args:
         found: scales and objects of the drive.
-        state, motion: layouts of the two TPDOs: statusword first, position first.
+        place: where each object is in the TPDOs; None for one that is in none.
     """
 
-    def __init__(self, found: Capabilities, state: PdoLayout, motion: PdoLayout) -> None:
+    def __init__(self, found: Capabilities, place: Callable[[DriveObject], Place | None]) -> None:
         scale, profile = found.scale, found.profile
+        position = place(POSITION)
+        assert position is not None  # no drive is opened without
         self._joint = scale.joint
-        self._velocity_rad_s = scale.velocity_rad_s if VELOCITY in motion.entries else nan
-        self._current_place = _place(state, found.current)
+        self._position_place = position
+        self._velocity_place = place(VELOCITY)
+        self._velocity_rad_s = nan if self._velocity_place is None else scale.velocity_rad_s
+        self._current_place = None if found.current is None else place(found.current)
         self._current_a = nan if found.current is None else scale.joint.motor_sign * scale.current_a(found.current)
-        self._duty_place = _place(state, profile.duty)
+        self._duty_place = None if profile.duty is None else place(profile.duty)
         self._duty_scale = nan if profile.duty is None else profile.duty.scale
         self._supply = _polled(profile.supply, found)
         self._temperature = _polled(profile.temperature, found)
@@ -39,8 +46,8 @@ class Measurement:
         there = {
             "position_rad": True,
             "velocity_rad_s": not isnan(self._velocity_rad_s),
-            "current_a": self._current_place > 0,
-            "duty": self._duty_place > 0,
+            "current_a": self._current_place is not None,
+            "duty": self._duty_place is not None,
             "supply_v": self._supply is not None,
             "temperature_c": self._temperature is not None,
         }
@@ -60,31 +67,30 @@ class Measurement:
         return {name: steps[name] for name in sorted(self.measured)}
 
     def sample(
-        self, state: tuple[int, ...], motion: tuple[int, ...], slow: dict[DriveObject, Reading], status: Status,
-        sync_s: float, now_s: float, number: int,
+        self, values: Sequence[tuple[int, ...]], slow: dict[DriveObject, Reading], status: Status, sync_s: float,
+        now_s: float, number: int,
     ) -> Sample:  # fmt: skip
         """The sample of a cycle.
 
         Args:
-            state: values of the TPDO with the statusword.
-            motion: values of the TPDO with the position.
+            values: of each TPDO.
             slow: what the poll has.
             status: state of the power stage.
             sync_s: when the SYNC was sent at which the drive measured [s].
             now_s: the time now [s].
             number: of the SYNC.
         """
-        current_a = state[self._current_place] * self._current_a if self._current_place else nan
+        current_a = _value(values, self._current_place) * self._current_a
         # the magnitude is all that the drive tells
-        duty = copysign(state[self._duty_place] * self._duty_scale, current_a) if self._duty_place else nan
+        duty = copysign(_value(values, self._duty_place) * self._duty_scale, current_a)
         supply_v, supply_age_s = _slow(slow, self._supply, now_s)
         temperature_c, temperature_age_s = _slow(slow, self._temperature, now_s)
         age_s = now_s - sync_s
         return Sample(
             sync_s,
             age_s,
-            self._joint.position_rad(motion[0]),
-            motion[1] * self._velocity_rad_s if len(motion) > 1 else nan,
+            self._joint.position_rad(_value(values, self._position_place)),
+            _value(values, self._velocity_place) * self._velocity_rad_s,
             duty,
             current_a,
             supply_v,
@@ -95,17 +101,19 @@ class Measurement:
         )
 
 
+def _value(values: Sequence[tuple[int, ...]], place: Place | None) -> float:
+    """What the TPDOs tell; NaN of what none does."""
+    return nan if place is None else values[place[0]][place[1]]
+
+
 def _slow(readings: dict[DriveObject, Reading], item: DriveObject | None, now_s: float) -> tuple[float, float]:
     """Value and age of what is polled; NaN and 0 where it is not measured."""
     if item is None:
         return nan, 0.0
-    value, time_s = readings[item]  # each was read when the drive was opened
-    return value * item.scale, now_s - time_s
-
-
-def _place(layout: PdoLayout, item: DriveObject | None) -> int:
-    """Where an object is in a TPDO; 0 where it is not (the first place is taken)."""
-    return layout.entries.index(item) if item in layout.entries and item is not None else 0
+    reading = readings.get(item)
+    if reading is None:  # it was there when the drive was asked, and has not been told since
+        return nan, 0.0
+    return reading.value * item.scale, now_s - reading.time_s
 
 
 def _polled(item: DriveObject | None, found: Capabilities) -> DriveObject | None:

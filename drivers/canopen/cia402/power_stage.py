@@ -7,9 +7,9 @@ from time import perf_counter
 from typing import Final
 
 from drivers.canopen.cia301.heartbeat import NmtState
-from drivers.canopen.cia301.object_access import ObjectRefusedError
-from drivers.canopen.cia301.objects import CONTROLWORD, MODE, MODE_DISPLAY
+from drivers.canopen.cia301.objects import CONTROLWORD
 from drivers.canopen.cia402.demand import Demand
+from drivers.canopen.cia402.mode_switch import ModeSwitch
 from drivers.canopen.cia402.state_machine import (
     DISABLE_VOLTAGE,
     FAULT_RESET,
@@ -18,15 +18,16 @@ from drivers.canopen.cia402.state_machine import (
     status_of,
     towards_enabled,
 )
+from drivers.canopen.guard_trial import stops_when_silent
 from drivers.canopen.session import Session
 from drivers.contract import Mode, Status
-from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault, DriveStateError
+from drivers.errors import DriveConnectionError, DriveError, DriveFault, DriveStateError, WatchdogError
 
-_SWITCH_ON_S: Final = 1.0
-_SWITCH_OFF_S: Final = 0.25
-_RESET_S: Final = 0.5
-_MODE_S: Final = 0.3
+SWITCH_OFF_S: Final = 0.5
+_HOLD_S: Final = 0.03  # of each level of the reset bit at first: a drive looks at it every 1 .. 20 ms
+_LONGEST_HOLD_S: Final = 0.5
 _PAUSE_S: Final = 0.001  # between SYNCs: a drive needs a moment for a transition
+_POWERED: Final = (State.ENABLED, State.QUICK_STOP, State.FAULT_REACTION)
 
 
 class PowerStage:
@@ -41,17 +42,14 @@ class PowerStage:
         self._device = session.settings.device
 
     @property
-    def statusword(self) -> int:
-        """As last received."""
-        return self._session.cycle.values[0][0]
-
-    @property
     def state(self) -> State:
         """As last received."""
-        return state_of(self.statusword)
+        return state_of(self._session.statusword)
 
     def switch_on(self, mode: Mode) -> Demand:
-        """Arm the watchdog, switch the mode, and power the stage with nothing demanded.
+        """Switch the mode, arm the watchdog, and power the stage with nothing demanded.
+
+        A watchdog whose reaction the drive does not tell is tried now, before anything can move.
 
         Returns:
             The demand that goes on from there.
@@ -60,123 +58,159 @@ class PowerStage:
             DriveStateError: the drive has a fault, or does not switch on in time.
             DriveFault: it trips while it switches on.
             DriveConfigurationError: it does not take the mode.
-            WatchdogError: its watchdog cannot be set.
+            DriveConnectionError: another host is on the bus.
+            WatchdogError: its watchdog cannot be set, or does not stop it.
         """
         session = self._session
-        self._refresh()
-        if status_of(self.state) is Status.FAULT:
-            raise DriveStateError(
-                self._device,
-                f"cannot be enabled in state 'fault' ({session.fault_name()}); find the cause, then clear it",
-            )
-        if self.state in (State.ENABLED, State.QUICK_STOP):
-            self.switch_off()
-        session.emergency = None
-        session.watchdog.arm()
-        self._select(session.found.modes[mode])
-        demand = Demand(self._device, session.found, session.data, mode, self._position_counts)
-
-        def step() -> bool:
-            # a drive counts from the first heartbeat that it hears: it has heard some before the power comes
-            session.heartbeat.hurry()
-            session.keep_alive()
-            payload = demand.at_rest(towards_enabled(self.state), self._position_counts)
-            answered = session.cycle.run(demand.pdo.cob_id, payload)
-            if status_of(self.state) is Status.FAULT:
-                raise DriveFault(self._device, f"tripped while it was enabled: {session.fault_name()}; find the cause")
-            return answered and self.state is State.ENABLED
-
-        if not _repeat(step, _SWITCH_ON_S):
-            raise DriveStateError(
-                self._device,
-                f"state is '{self.state.value}' {_SWITCH_ON_S:g} s after enabling began; '{State.ENABLED.value}' is "
-                "wanted. Check supply and enable input (safe torque off)",
-            )
+        session.look_round()
+        demand = self._power(mode)
+        if not session.guard.is_told and not session.guard.tried:
+            self._try_guard()
+            demand = self._power(mode)
         return demand
 
     def switch_off(self) -> None:
-        """Take the power away, and see that it is gone. The host's heartbeat is not sent meanwhile.
+        """Take the power away, and see that it is gone. The host gives no sign of life meanwhile.
 
         Raises:
             DriveConnectionError: the drive does not confirm it. Its watchdog stops it.
         """
         session = self._session
         try:
-            confirmed = _repeat(self._off_once, _SWITCH_OFF_S)
+            confirmed = _repeat(self._off_once, SWITCH_OFF_S)
             if not confirmed:
                 session.access.write(CONTROLWORD, DISABLE_VOLTAGE)  # another way, should SYNC or PDOs be at fault
         except DriveConnectionError as error:
             raise DriveConnectionError(
                 self._device,
                 f"power-off is not confirmed ({error}); its watchdog stops it {session.settings.watchdog_s:g} s after "
-                "the last heartbeat",
+                "the last sign of life of this host",
             ) from error
-        if session.watchdog.armed:
+        if session.guard.armed:
             with suppress(DriveError):
-                session.watchdog.disarm()
+                session.guard.disarm()
+        session.speaking = session.data.idle
 
     def clear_fault(self) -> None:
-        """Reset a fault by the rising edge of bit 7, and stop at SWITCH ON DISABLED.
+        """Reset a fault by the rising edge of bit 7, held and repeated, and stop at SWITCH ON DISABLED.
 
         Raises:
             DriveFault: the fault is still there.
         """
         session = self._session
-        if session.watchdog.armed:
-            session.watchdog.disarm()  # nobody has sent heartbeats lately: that alone would be the next fault
+        if session.guard.armed:
+            session.guard.disarm()  # nobody has given signs of life lately: that alone would be the next fault
+        session.speaking = session.data.idle
         self._refresh()
         if status_of(self.state) is not Status.FAULT:
             return
         name = session.fault_name()
-        _repeat(lambda: self._send(DISABLE_VOLTAGE) and self.state is State.FAULT, _RESET_S)
-        self._send(FAULT_RESET)
-        if not _repeat(lambda: self._send(DISABLE_VOLTAGE) and self.state is State.SWITCH_ON_DISABLED, _RESET_S):
-            raise DriveFault(self._device, f"cannot be cleared: {name}; remove the cause, then clear it")
+        if not self._reset(session.settings.fault_reset_s):
+            raise DriveFault(
+                self._device,
+                f"cannot be cleared within {session.settings.fault_reset_s:g} s: {name}; remove the cause, then "
+                "clear it",
+            )
         session.emergency = None
 
     def forgive_lost_host(self) -> None:
         """Clear the fault that says only that the last host went away: this one is here, and the power is off."""
-        if self.state is State.FAULT and self._session.lost_its_host():
+        if status_of(self.state) is Status.FAULT and self._session.lost_its_host():
             self.clear_fault()
 
-    @property
-    def _position_counts(self) -> int:
-        return self._session.cycle.values[1][0]
+    def _power(self, mode: Mode) -> Demand:
+        session = self._session
+        self._refresh()
+        if status_of(self.state) is Status.FAULT:
+            raise DriveStateError(
+                self._device,
+                f"cannot be enabled in state '{self.state.value}' ({session.fault_name()}); find the cause, then "
+                "clear it",
+            )
+        if self.state in (State.ENABLED, State.QUICK_STOP):
+            self.switch_off()
+        session.emergency = None
+        demand = Demand(session.settings, session.found, session.data, mode, session.position_counts)
+        switch = ModeSwitch(session, demand.code)
+        shown = switch.select()
+        if not shown:
+            switch.rest_every_target()
+        session.speaking = demand.pdo
+        session.guard.watch_demands((demand.pdo.number,))
+        session.monitor.begin(perf_counter())
+        session.guard.arm()
+        self._enable(demand)
+        if not shown:
+            switch.await_shown(lambda: self._step(demand))
+        return demand
+
+    def _enable(self, demand: Demand) -> None:
+        limit_s = self._session.settings.enable_s
+        if not _repeat(lambda: self._step(demand) and self.state is State.ENABLED, limit_s):
+            raise DriveStateError(
+                self._device,
+                f"state is '{self.state.value}' {limit_s:g} s after enabling began; '{State.ENABLED.value}' is wanted. "
+                "Check supply, enable input (safe torque off) and brake; a drive that needs longer gets enable_s",
+            )
+
+    def _step(self, demand: Demand) -> bool:
+        """One cycle towards operation enabled, nothing demanded; tell whether it was answered."""
+        session = self._session
+        # a drive counts from the first sign of life that it hears: it has heard some before the power comes
+        session.guard.hurry()
+        session.keep_alive()
+        payload = demand.at_rest(towards_enabled(self.state), session.position_counts)
+        answered = session.cycle.run(demand.pdo.cob_id, payload)
+        session.strangers.check()
+        if status_of(self.state) is Status.FAULT:
+            raise DriveFault(self._device, f"tripped while it was enabled: {session.fault_name()}; find the cause")
+        return answered
+
+    def _try_guard(self) -> None:
+        session = self._session
+        session.guard.tried = stops_when_silent(session)
+        if not session.guard.tried:
+            raise WatchdogError(
+                self._device,
+                f"its watchdog does not stop it: {session.guard.words}. It was left enabled with no demand and without "
+                "a sign of this host for longer than that, and is enabled still. It must not move: it would go on when "
+                "this host dies. Set a watchdog with the drive's own tool",
+            )
+        self.clear_fault()
+
+    def _reset(self, limit_s: float) -> bool:
+        """Raise bit 7 again and again, for longer each time; tell whether the fault is gone."""
+        deadline_s = perf_counter() + limit_s
+        hold_s = _HOLD_S
+        while perf_counter() < deadline_s:
+            self._hold(DISABLE_VOLTAGE, hold_s)
+            if self._hold(FAULT_RESET, hold_s):
+                left_s = max(deadline_s - perf_counter(), _LONGEST_HOLD_S)
+                return _repeat(lambda: self._answers(DISABLE_VOLTAGE) and not self._faulty(), left_s)
+            hold_s = min(2.0 * hold_s, _LONGEST_HOLD_S)
+        return False
+
+    def _hold(self, controlword: int, duration_s: float) -> bool:
+        """Send a controlword until the fault is gone; tell whether it went."""
+        return _repeat(lambda: self._answers(controlword) and not self._faulty(), duration_s)
+
+    def _faulty(self) -> bool:
+        return status_of(self.state) is Status.FAULT
 
     def _refresh(self) -> None:
         """Hear of the state now; long may have passed."""
         session = self._session
         session.link.drain()
-        if session.monitor.state is not NmtState.OPERATIONAL:
-            session.start()
-        if not _repeat(lambda: self._send(DISABLE_VOLTAGE), session.settings.answer_s):
+        if session.monitor.state is not NmtState.OPERATIONAL or not self._answers(DISABLE_VOLTAGE):
+            session.start()  # one that sends no heartbeats does not tell that it has left OPERATIONAL
+        if not _repeat(lambda: self._answers(DISABLE_VOLTAGE), session.settings.answer_s):
             raise DriveConnectionError(self._device, "does not answer SYNC; check the cable, then open it again")
 
-    def _send(self, controlword: int) -> bool:
-        data = self._session.data
-        return self._session.cycle.run(data.torque.cob_id, data.nothing(controlword))
+    def _answers(self, controlword: int) -> bool:
+        return self._session.idle(controlword)
 
     def _off_once(self) -> bool:
-        answered = self._send(DISABLE_VOLTAGE)
-        return answered and self.state not in (State.ENABLED, State.QUICK_STOP, State.FAULT_REACTION)
-
-    def _select(self, code: int) -> None:
-        session, problem = self._session, ""
-
-        def shown() -> bool:
-            session.keep_alive()
-            return session.access.read(MODE_DISPLAY) == code
-
-        try:
-            session.access.write(MODE, code)
-            if _repeat(shown, _MODE_S):
-                return
-            problem = f"{MODE_DISPLAY} stays {session.access.read(MODE_DISPLAY)}"
-        except ObjectRefusedError as refusal:
-            problem = str(refusal)
-        raise DriveConfigurationError(
-            self._device, f"mode {code} is refused: {problem}; {code} is wanted. Does the drive's own tool allow it?"
-        )
+        return self._answers(DISABLE_VOLTAGE) and self.state not in _POWERED
 
 
 def _repeat(step: Callable[[], bool], timeout_s: float) -> bool:

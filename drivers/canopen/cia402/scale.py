@@ -1,6 +1,7 @@
 """Between what the drive counts at the motor and what the bench sees of the joint. Pure."""
 
 from dataclasses import dataclass
+from math import isnan
 
 from drivers.canopen.cia301.objects import DriveObject
 from drivers.joint import JointScale
@@ -14,7 +15,7 @@ class DriveScale:
 
     Attributes:
         joint: counts, gear ratio, signs, zero.
-        rated_current_a: motor current of 1000 permille [A].
+        rated_current_a: motor current of 1000 permille [A]; NaN where unknown.
         velocity_unit_rad_s: one count of velocity at the motor [rad/s]; NaN where unknown.
     """
 
@@ -31,6 +32,10 @@ class DriveScale:
         """One count of an object that tells a motor current [A], without sign."""
         return item.scale * (self.rated_current_a if item.unit == "rated current" else 1.0)
 
+    def tells(self, item: DriveObject) -> bool:
+        """Whether a current is known from an object: one that is relative needs what it is relative to."""
+        return not isnan(self.current_a(item))
+
     @property
     def highest_current_a(self) -> float:
         """The most that a torque demand can say [A]."""
@@ -42,5 +47,11 @@ class DriveScale:
         return _I32 * self.joint.count_rad - abs(self.joint.zero_rad)
 
     def torque_permille(self, current_a: float) -> int:
-        """A motor current within `highest_current_a` as torque demand."""
+        """A motor current within `highest_current_a` as torque demand; 0 is 0 whatever the rated current."""
+        if current_a == 0.0:
+            return 0
         return round(self.joint.motor_sign * current_a / self.rated_current_a * 1000.0)
+
+    def velocity_counts(self, velocity_rad_s: float) -> int:
+        """A joint speed as velocity demand, kept within its object."""
+        return max(-_I32, min(_I32, round(velocity_rad_s / self.velocity_rad_s)))

@@ -1,4 +1,4 @@
-"""Units of CiA 402 objects: 0x60A9 (codes of CiA 303-2) and 0x60C2. Pure."""
+"""Units of CiA 402 objects: 0x60A8 and 0x60A9 (codes of CiA 303-2), 0x60C2. Pure."""
 
 from math import pi
 
@@ -19,8 +19,19 @@ _CODES = {
 }
 
 
+def angle_rad(code: int) -> float | None:
+    """What one count of position is worth by 0x60A8, as an angle of the shaft [rad]; None where it is no angle."""
+    unit_rad = {_REVOLUTION: 2 * pi, _RADIAN: 1.0, _DEGREE: pi / 180}.get(code >> 16 & 0xFF)
+    return None if unit_rad is None else float(10.0 ** _exponent(code) * unit_rad)
+
+
+def is_increments(code: int) -> bool:
+    """Whether a code of 0x60A8 or 0x60A9 counts increments."""
+    return code >> 16 & 0xFF == _INCREMENT
+
+
 def velocity_unit_rad_s(code: int, counts_per_turn: float) -> float | None:
-    """What one count of velocity is worth at the motor [rad/s].
+    """What one count of velocity is worth [rad/s], of the shaft; of increments, at the motor.
 
     Args:
         code: as in 0x60A9: power of ten (signed), numerator, denominator, 0.
@@ -29,14 +40,14 @@ def velocity_unit_rad_s(code: int, counts_per_turn: float) -> float | None:
     Returns:
         None where the unit is no angle, or no time that is known.
     """
-    angles_rad = {_REVOLUTION: 2 * pi, _INCREMENT: 2 * pi / counts_per_turn, _RADIAN: 1.0, _DEGREE: pi / 180}
-    exponent = code >> 24
-    exponent -= 256 if exponent > 127 else 0
-    angle_rad = angles_rad.get(code >> 16 & 0xFF)
     time_s = _TIMES_S.get(code >> 8 & 0xFF)
-    if angle_rad is None or time_s is None:
-        return None
-    return float(10.0**exponent * angle_rad / time_s)
+    unit_rad = 10.0 ** _exponent(code) * 2 * pi / counts_per_turn if is_increments(code) else angle_rad(code)
+    return None if unit_rad is None or time_s is None else float(unit_rad / time_s)
+
+
+def _exponent(code: int) -> int:
+    exponent = code >> 24 & 0xFF
+    return exponent - 256 if exponent > 127 else exponent
 
 
 def velocity_unit_code(name: str) -> int:
@@ -49,10 +60,16 @@ def velocity_unit_name(code: int) -> str:
     return next((name for name, known in _CODES.items() if known == code), f"0x{code:08X}")
 
 
-def interpolation_period(period_s: float) -> tuple[int, int] | None:
-    """A period as 0x60C2 has it: a whole number up to 255, and the power of ten [s]; None where it has no such form."""
-    for exponent in (-3, -4, -5, -6):
-        number = period_s * 10.0**-exponent
+def interpolation_periods(period_s: float, exponent: int | None) -> list[tuple[int, int]]:
+    """A period in each form that 0x60C2 has for it: a whole number up to 255, and the power of ten [s].
+
+    Args:
+        period_s: the period [s].
+        exponent: the one that stands in the drive already: its form comes first.
+    """
+    forms = []
+    for power in (-3, -4, -5, -6):
+        number = period_s * 10.0**-power
         if abs(number - round(number)) < 1e-6 and 1 <= round(number) <= 255:
-            return round(number), exponent
-    return None
+            forms.append((round(number), power))
+    return sorted(forms, key=lambda form: form[1] != exponent)

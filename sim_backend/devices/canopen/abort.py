@@ -27,6 +27,6 @@ class AbortCode(IntEnum):
 class Abort(Exception):
     """Raised where an access to the dictionary is refused. The SDO server turns it into an abort transfer."""
 
-    def __init__(self, code: AbortCode) -> None:
-        super().__init__(f"SDO abort 0x{code:08X} ({code.name})")
+    def __init__(self, code: int) -> None:
+        super().__init__(f"SDO abort 0x{code:08X}")
         self.code = code

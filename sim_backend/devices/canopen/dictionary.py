@@ -16,6 +16,8 @@ class Dictionary:
     Args:
         objects: the tables.
         node_id: added to the defaults that ask for it.
+        absent_code: abort code where an object is not there; None: what CiA 301 names.
+        refused_code: abort code where an object may not be written; None: what CiA 301 names.
 
     Attributes:
         live: where a value comes from when it is read; for what the drive measures.
@@ -23,8 +25,12 @@ class Dictionary:
         reactions: called after a value was written, however.
     """
 
-    def __init__(self, objects: Iterable[Object], node_id: int) -> None:
+    def __init__(
+        self, objects: Iterable[Object], node_id: int, absent_code: int | None = None, refused_code: int | None = None
+    ) -> None:
         self.objects = {one.index: one for one in objects}
+        self._absent_code = absent_code
+        self._refused_code = refused_code
         self.node_id = node_id
         self._entries = {(one.index, entry.subindex): entry for one in self.objects.values() for entry in one.entries}
         self._values: dict[Place, Value] = {}
@@ -50,9 +56,18 @@ class Dictionary:
             Abort: there is no such object, or it has no such subindex.
         """
         entry = self._entries.get((index, subindex))
-        if entry is None:
-            raise Abort(AbortCode.NO_SUBINDEX if index in self.objects else AbortCode.NO_OBJECT)
+        if entry is None or entry.hidden:
+            known = index in self.objects and not self.is_hidden(index)
+            raise Abort(self._absent_code or (AbortCode.NO_SUBINDEX if known else AbortCode.NO_OBJECT))
         return entry
+
+    def is_hidden(self, index: int) -> bool:
+        """Tell whether no host can reach an object that the drive works with."""
+        return all(entry.hidden for entry in self.objects[index].entries)
+
+    def subindices(self, index: int) -> list[int]:
+        """Return the subindices of an object but 0, hidden ones too."""
+        return sorted(sub for (one, sub) in self._entries if one == index and sub)
 
     def number(self, index: int, subindex: int = 0) -> int:
         """Return an integer; of a live one, what it is now."""
@@ -71,9 +86,14 @@ class Dictionary:
         Raises:
             Abort: it is not there.
         """
-        entry = self.entry(index, subindex)
+        if self.entry(index, subindex).access is Access.WO:
+            raise Abort(AbortCode.WRITE_ONLY)
+        return self.content(index, subindex)
+
+    def content(self, index: int, subindex: int) -> bytes:
+        """Return the bytes of a value as a PDO carries them, whoever may read it."""
         live = self.live.get((index, subindex))
-        return entry.kind.encode(live() if live else self._values[index, subindex])
+        return self._entries[index, subindex].kind.encode(live() if live else self._values[index, subindex])
 
     def write(self, index: int, subindex: int, data: bytes) -> None:
         """Write by SDO.
@@ -82,9 +102,11 @@ class Dictionary:
             Abort: it is not there, may not be written, or not with this value.
         """
         entry = self.entry(index, subindex)
-        if entry.access is not Access.RW:
-            raise Abort(AbortCode.READ_ONLY)
-        length = entry.kind.length or 0
+        if not entry.access.writable:
+            raise Abort(self._refused_code or AbortCode.READ_ONLY)
+        length = entry.kind.length
+        if length is None:
+            raise Abort(AbortCode.UNSUPPORTED_ACCESS)
         if len(data) != length:
             raise Abort(AbortCode.LENGTH_TOO_HIGH if len(data) > length else AbortCode.LENGTH_TOO_LOW)
         value = entry.kind.decode(data)

@@ -5,20 +5,28 @@ from threading import RLock
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
 from sim_backend.devices.canopen.abort import Abort, AbortCode
+from sim_backend.devices.canopen.conduct import GOOD, REACTIONS, Conduct
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.emergency import ErrorCode
 from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.measured import Measured
 from sim_backend.devices.canopen.modes.braking import Braking
 from sim_backend.devices.canopen.modes.cyclic_position import CyclicPosition
-from sim_backend.devices.canopen.modes.mode import Mode, Seen
+from sim_backend.devices.canopen.modes.mode import Mode, Seen, Units
 from sim_backend.devices.canopen.modes.modes import make_modes
 from sim_backend.devices.canopen.modes.position_loop import Gains, PositionLoop
 from sim_backend.devices.canopen.modes.profile_position import ProfilePosition
 from sim_backend.devices.canopen.node import Node
 from sim_backend.devices.canopen.objects.drive_profile import NO_WINDOW
 from sim_backend.devices.canopen.objects.family import Family, Rating
-from sim_backend.devices.canopen.state_machine import Ending, State, StateMachine, is_quick_stop_code
+from sim_backend.devices.canopen.state_machine import (
+    Command,
+    Ending,
+    State,
+    StateMachine,
+    command_of,
+    is_quick_stop_code,
+)
 from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
 from sim_backend.plant.parameters import PlantParameters
 
@@ -40,21 +48,27 @@ class ServoDrive:
         family: which objects it has.
         node_id: 1 .. 127.
         seed: of the plant.
+        conduct: its manners.
     """
 
-    def __init__(self, parameters: PlantParameters, family: Family, node_id: int, seed: int = 0) -> None:
+    def __init__(
+        self, parameters: PlantParameters, family: Family, node_id: int, seed: int = 0, conduct: Conduct = GOOD
+    ) -> None:
         rating = Rating.of(parameters)
         self.family = family
         self.lock = RLock()
-        self.dictionary = Dictionary(family.objects(rating), node_id)
-        self.node = Node(self.dictionary)
+        objects = family.objects(rating)
+        self.dictionary = Dictionary(objects, node_id, conduct.absent_code, conduct.refused_code)
+        self.node = Node(self.dictionary, conduct)
+        self._conduct = conduct
         self.axis = Axis(parameters, self, seed)
         self._rating = rating
         self._measured = Measured(self.axis, self.dictionary, family, rating)
         self._loop = PositionLoop(Gains.tuned(parameters, rating.torque_n_m))
         self._braking = Braking(self._loop)
-        self._modes = make_modes(family.modes, self.dictionary, self._loop, self._measured.counts_per_s)
-        self._machine = StateMachine(self.dictionary.number)
+        units = Units(self._measured.counts, self._measured.counts_per_s)
+        self._modes = make_modes(family.modes, self.dictionary, self._loop, units)
+        self._machine = StateMachine(self._option)
         self._wire()
         self._begin()
 
@@ -63,6 +77,8 @@ class ServoDrive:
         self._mode: Mode | None = None
         self._mode_number = 0
         self._controlwords: list[int] = []
+        self._look_s = 0.0
+        self._enabling_s: float | None = None
         self._enabled = False
         self._ending: Ending | None = None
         self._limited = False
@@ -72,9 +88,9 @@ class ServoDrive:
         book = self.dictionary
         live = self._measured.live() | {
             (0x6041, 0): self._statusword,
-            (0x6061, 0): lambda: self._mode_number,
-            (0x6062, 0): lambda: round(self._position_demand()),
-            (0x60F4, 0): lambda: round(self._position_demand()) - self.axis.counts(),
+            (0x6061, 0): self._mode_shown,
+            (0x6062, 0): lambda: self._measured.position(self._position_demand()),
+            (0x60F4, 0): lambda: self._measured.position(self._position_demand() - self.axis.counts()),
         }
         book.live = {place: source for place, source in live.items() if place in book}
         book.checks[0x6060, 0] = self._check_mode
@@ -102,7 +118,7 @@ class ServoDrive:
             "state": self._machine.state.name,
             "mode": self._mode_number,
             "error_code": self.dictionary.number(0x603F),
-            "watchdog_trips": self.node.heartbeat_losses,
+            "watchdog_trips": self.node.losses,
         }
 
     # the real-time half ---------------------------------------------------------------------------------
@@ -152,9 +168,33 @@ class ServoDrive:
         self._measured.demand_a = self._measured.current_of_torque(applied)
         return OFF if permille is None else Demand(CURRENT, self._measured.demand_a)
 
-    def _obey(self) -> None:
+    def _words(self) -> list[int]:
+        """Return the controlwords that the drive sees now: each, or the last one when it looks."""
+        if self._conduct.look_s and self.axis.time_s < self._look_s:
+            return []
         words, self._controlwords = self._controlwords, []
-        for word in words:
+        if not self._conduct.look_s:
+            return words
+        self._look_s = self.axis.time_s + self._conduct.look_s
+        return words[-1:]
+
+    def _waits(self, word: int) -> bool:
+        """Tell whether the brake, or whatever takes time, still holds up enabling; the word is looked at again."""
+        ready = self._machine.state in (State.READY_TO_SWITCH_ON, State.SWITCHED_ON)
+        if not self._conduct.enable_s or not ready or command_of(word) is not Command.ENABLE_OPERATION:
+            self._enabling_s = None
+            return False
+        if self._enabling_s is None:
+            self._enabling_s = self.axis.time_s
+        return self.axis.time_s - self._enabling_s < self._conduct.enable_s
+
+    def _obey(self) -> None:
+        words = self._words()
+        for place, word in enumerate(words, 1):
+            if self._waits(word):
+                if place == len(words):
+                    self._controlwords.insert(0, word)
+                continue
             was_enabled = self._enabled
             if self._machine.obey(word, fault_is_over=self.axis.trip() is None):
                 self.dictionary.put(0x603F, 0, 0)
@@ -193,18 +233,34 @@ class ServoDrive:
         return self.axis.time_s - self._astray_since_s >= self.dictionary.number(0x6066) * 1e-3
 
     def _is_astray(self) -> bool:
-        window = self.dictionary.number(0x6065)
-        if window == NO_WINDOW or not self._enabled or self._mode is None or self._mode.position() is None:
+        window = self.dictionary.number(0x6065)  # 0 where nobody has set it
+        if (
+            not window
+            or window == NO_WINDOW
+            or not self._enabled
+            or self._mode is None
+            or self._mode.position() is None
+        ):
             return False
-        return abs(self._position_demand() - self.axis.counts()) > window
+        return abs(self._position_demand() - self.axis.counts()) > self._measured.counts(window)
 
-    def _lose_master(self) -> None:
+    def _lose_master(self, code: ErrorCode) -> None:
         before = self._machine.state
         self._machine.lose_master()
         if self._machine.state is not before and self._machine.state in (State.FAULT, State.FAULT_REACTION_ACTIVE):
-            self.dictionary.put(0x603F, 0, ErrorCode.HEARTBEAT)
+            self.dictionary.put(0x603F, 0, code)
 
     # what objects ask -----------------------------------------------------------------------------------
+
+    def _option(self, index: int) -> int:
+        """Return an option code; that of a lost host by the drive's manners where it has no object for it."""
+        if index == 0x6007 and self.dictionary.is_hidden(index):
+            return REACTIONS[self._conduct.reaction]
+        return self.dictionary.number(index)
+
+    def _mode_shown(self) -> int:
+        hides = self._conduct.mode_shown_enabled and self._machine.state is not State.OPERATION_ENABLED
+        return 0 if hides else self._mode_number
 
     def _seen(self) -> Seen:
         return Seen(self.axis.time_s, self.axis.counts(), self.axis.counts_per_s())

@@ -5,7 +5,6 @@ from struct import pack
 
 from sim_backend.devices.canopen.abort import Abort, AbortCode
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.objects.communication import ERRORS_KEPT
 
 NO_ERROR = 0x0000
 
@@ -20,6 +19,7 @@ class ErrorCode(IntEnum):
     HEARTBEAT = 0x8130
     PDO_TOO_SHORT = 0x8210
     PDO_TOO_LONG = 0x8220
+    RPDO_TIMEOUT = 0x8250
     FOLLOWING_ERROR = 0x8611
 
 
@@ -41,6 +41,7 @@ class Emergency:
 
     def __init__(self, dictionary: Dictionary) -> None:
         self._dictionary = dictionary
+        self._places = dictionary.subindices(0x1003)
         self._present: set[int] = set()
         dictionary.checks[0x1003, 0] = _only_zero
         dictionary.reactions[0x1003, 0] = self._clear_history
@@ -79,14 +80,14 @@ class Emergency:
 
     def _keep(self, code: int) -> None:
         book = self._dictionary
-        count = min(book.number(0x1003, 0) + 1, ERRORS_KEPT)
+        count = min(book.number(0x1003, 0) + 1, len(self._places))
         for place in range(count, 1, -1):
             book.put(0x1003, place, book.number(0x1003, place - 1))
         book.put(0x1003, 1, code)
         book.put(0x1003, 0, count)
 
     def _clear_history(self) -> None:
-        for place in range(1, ERRORS_KEPT + 1):
+        for place in self._places:
             self._dictionary.put(0x1003, place, 0)
 
 

@@ -4,7 +4,6 @@ from functools import partial
 
 from sim_backend.devices.canopen.abort import Abort, AbortCode
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.objects.communication import CONSUMERS
 
 
 class HeartbeatProducer:
@@ -28,13 +27,20 @@ class HeartbeatProducer:
 
 
 class HeartbeatConsumer:
-    """Watches other nodes (0x1016: node << 16 | ms). The watch over a node begins with its first heartbeat."""
+    """Watches other nodes (0x1016: node << 16 | ms). The watch over a node begins with its first heartbeat.
 
-    def __init__(self, dictionary: Dictionary) -> None:
+    Args:
+        dictionary: the node's.
+        deaf: it takes what is written to 0x1016, and never watches.
+    """
+
+    def __init__(self, dictionary: Dictionary, deaf: bool = False) -> None:
         self._dictionary = dictionary
+        self._deaf = deaf
+        self._numbers = dictionary.subindices(0x1016)
         self._heard_s: dict[int, float] = {}  # by node
         self._lost: set[int] = set()
-        for number in range(1, CONSUMERS + 1):
+        for number in self._numbers:
             dictionary.checks[0x1016, number] = partial(self._check, number)
             dictionary.reactions[0x1016, number] = self.reset
 
@@ -69,7 +75,7 @@ class HeartbeatConsumer:
         return bool(gone)
 
     def _watched(self, without: int = 0) -> dict[int, float]:
-        numbers = (number for number in range(1, CONSUMERS + 1) if number != without)
+        numbers = [] if self._deaf else [number for number in self._numbers if number != without]
         entries = [self._dictionary.number(0x1016, number) for number in numbers]
         return {_node_id(entry): (entry & 0xFFFF) * 1e-3 for entry in entries if _watches(entry)}
 

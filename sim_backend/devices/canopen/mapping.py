@@ -5,7 +5,6 @@ from collections.abc import Callable
 from sim_backend.devices.canopen.abort import Abort, AbortCode
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.objects.communication import PDO_DOES_NOT_EXIST
-from sim_backend.devices.canopen.objects.entry import Access
 
 _PLACES = 8
 _LONGEST_BITS = 64
@@ -63,8 +62,11 @@ class PdoParameters:
     def mapped(self) -> Mapped:
         """Return what is in it."""
         count = self._dictionary.number(self._mapping, 0)
-        entries = (self._dictionary.number(self._mapping, place) for place in range(1, count + 1))
-        return tuple((entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries)
+        places = [place for place in self._dictionary.subindices(self._mapping) if place <= count]
+        entries = (self._dictionary.number(self._mapping, place) for place in places)
+        mapped = ((entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries)
+        # a data sheet may map by default what is not there
+        return tuple((index, sub, size) for index, sub, size in mapped if (index, sub) in self._dictionary)
 
     def _check_cob_id(self, value: int) -> None:
         if value & _EXTENDED:
@@ -98,6 +100,5 @@ class PdoParameters:
 
     def _check_mappable(self, value: int) -> None:
         entry = self._dictionary.entry(value >> 16, value >> 8 & 0xFF)
-        writable = entry.access is Access.RW or not self._received
-        if not entry.mappable or not writable or 8 * (entry.kind.length or 0) != value & 0xFF:
+        if not entry.fits(self._received) or 8 * (entry.kind.length or 0) != value & 0xFF:
             raise Abort(AbortCode.NOT_MAPPABLE)

@@ -27,7 +27,10 @@ class Measured:
         self._dictionary = dictionary
         self._torque_unit_n_m = family.torque_unit_n_m
         self._constant_n_m_a = rating.torque_constant_n_m_a
-        self._unit_counts_per_s = family.velocity_rad_s(rating.counts_per_turn) * rating.counts_per_turn / (2.0 * pi)
+        counts_per_rad = rating.counts_per_turn / (2.0 * pi)
+        self._unit_counts_per_s = family.velocity_rad_s(rating.counts_per_turn) * counts_per_rad
+        self._unit_counts = family.position_rad(rating.counts_per_turn) * counts_per_rad
+        self._own = family.own_objects
         self._current_a = 0.0  # averaged
         self._counts_per_s = 0.0  # averaged
         self.demand_a = 0.0
@@ -38,9 +41,17 @@ class Measured:
         self._current_a += share * (self.current_a() - self._current_a)
         self._counts_per_s += share * (self._axis.counts_per_s() - self._counts_per_s)
 
-    def counts_per_s(self, velocity: int) -> float:
+    def counts_per_s(self, velocity: float) -> float:
         """Return the speed of a number in the drive's unit of velocity."""
         return velocity * self._unit_counts_per_s
+
+    def counts(self, position: float) -> float:
+        """Return the encoder's counts of a number in the drive's unit of position."""
+        return position * self._unit_counts
+
+    def position(self, counts: float) -> int:
+        """Return counts of the encoder in the drive's unit of position."""
+        return round(counts / self._unit_counts)
 
     def current_a(self) -> float:
         """Return the motor's current [A]; 0 without a sensor."""
@@ -61,13 +72,13 @@ class Measured:
         return _DEFAULT_TEMPERATURE_C if isnan(temperature_c) else temperature_c
 
     def live(self) -> dict[Place, Callable[[], int]]:
-        """Return how each object comes by its value; those that a family has not do no harm."""
+        """Return how each object comes by its value; standard ones that a family has not do no harm."""
         axis = self._axis
 
         def seen() -> Sample:
             return axis.seen
 
-        return {
+        own = {
             (0x2001, 0): lambda: round(seen().duty * 1e3),
             (0x2002, 0): lambda: round(self.temperature_c() * 10.0),
             (0x2200, 1): lambda: round(seen().supply_v * 10.0),
@@ -78,13 +89,16 @@ class Measured:
             (0x30D3, 1): lambda: self._velocity(self._counts_per_s),
             (0x3201, 1): lambda: round(self.temperature_c() * 10.0),
             (0x3203, 1): lambda: round(abs(seen().duty) * 1e3),
-            (0x6064, 0): axis.counts,
+        }
+        standard = {
+            (0x6064, 0): lambda: self.position(axis.counts()),
             (0x606C, 0): lambda: self._velocity(axis.counts_per_s()),
             (0x6074, 0): lambda: round(self.torque_of_current(self.demand_a)),
             (0x6077, 0): lambda: round(self.torque_of_current(self.current_a())),
             (0x6078, 0): lambda: round(self.current_a() * 1e6 / max(self._dictionary.number(0x6075), 1)),
             (0x6079, 0): lambda: round(seen().supply_v * 1e3),
         }
+        return standard | {place: source for place, source in own.items() if place in self._own}
 
     def _velocity(self, counts_per_s: float) -> int:
         return round(counts_per_s / self._unit_counts_per_s)

@@ -5,18 +5,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.canopen.conduct import GOOD, Conduct
 from sim_backend.devices.canopen.drive import ServoDrive
 from sim_backend.devices.canopen.eds import eds_text
+from sim_backend.devices.canopen.objects.data_sheet import read_data_sheet
 from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.family import Family, Rating
+from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.transport.bus_port import BusPort
 from sim_backend.devices.canopen.transport.stream_port import SlcanPort, SocketcandPort
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
-from sim_backend.devices.plant_tables import behind_a_drive
 from sim_backend.devices.process import Port, RunningDevice, Workplace
 from sim_backend.errors import ParameterError
 
+DEFAULT_NODE = 5
 FAMILIES = {family.name: family for family in (GENERIC, EPOS4)}
 
 
@@ -26,9 +30,13 @@ class CanOpenSettings:
 
     Attributes:
         family: "generic" or "epos4".
-        node_id: 1 .. 127.
-        interface: "slcan" (a pseudo-terminal), "socketcand" (a TCP server here), or an interface of python-can.
-        channel: of such an interface; TCP port of the server, 0 is any free one; not used by slcan.
+        eds: data sheet or configuration file of the drive to be, instead of a family.
+        node_id: 1 .. 127; None: what the file says, or 5.
+        interface: "slcan" (a pseudo-terminal), "socketcand" (a TCP server here), "join" (another device's server), or
+            an interface of python-can.
+        channel: of such an interface; TCP port of the server, 0 is any free one; host:port of the server that is
+            joined; not used by slcan.
+        conduct: the drive's manners.
         link: symbolic link to put on the pseudo-terminal; None: none.
         preset, plant, seed: the joint.
         side_port: TCP port of the side channel; 0 is any free one.
@@ -36,7 +44,8 @@ class CanOpenSettings:
     """
 
     family: str = "generic"
-    node_id: int = 5
+    eds: Path | None = None
+    node_id: int | None = None
     interface: str = "slcan"
     channel: str = "0"
     link: Path | None = None
@@ -45,18 +54,32 @@ class CanOpenSettings:
     seed: int = 1
     side_port: int = 0
     patience_s: float | None = None
+    conduct: Conduct = GOOD
 
 
-def serve_canopen(settings: CanOpenSettings) -> RunningDevice:
+class RunningDrive(RunningDevice):
+    """A CiA 402 drive in wall-clock time."""
+
+    device: ServoDrive
+
+    @property
+    def node_id(self) -> int:
+        """Its node number."""
+        return self.device.node.node_id
+
+
+def serve_canopen(settings: CanOpenSettings) -> RunningDrive:
     """Start one. It boots when its port does.
 
     Raises:
-        ParameterError: the joint cannot be, or the family is not known.
+        ParameterError: the joint cannot be, the family is not known, or the data sheet is none.
         OSError: a port is taken.
     """
     parameters = behind_a_drive(settings.preset, None, settings.plant)
-    drive = ServoDrive(parameters, _family(settings.family), settings.node_id, settings.seed)
-    return RunningDevice(drive, _port(drive, settings), settings.side_port, settings.patience_s)
+    family = _family(settings.family) if settings.eds is None else family_of(read_data_sheet(settings.eds))
+    node_id = settings.node_id or family.node_id or DEFAULT_NODE
+    drive = ServoDrive(parameters, family, node_id, settings.seed, settings.conduct)
+    return RunningDrive(drive, _port(drive, settings), settings.side_port, settings.patience_s)
 
 
 def data_sheet(family: str) -> str:
@@ -78,6 +101,18 @@ def _family(name: str) -> Family:
     return FAMILIES[name]
 
 
+def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, str | int]]:
+    """Interface, channel and whatever else python-can is told."""
+    if settings.interface == "udp_multicast":
+        return settings.interface, settings.channel, {"hop_limit": 0}  # it does not leave this machine
+    if settings.interface != "join":
+        return settings.interface, settings.channel, {}
+    host, _, port = settings.channel.rpartition(":")
+    if not port.isdigit():
+        raise ParameterError(f"channel '{settings.channel}': host:port of another device's socketcand server is wanted")
+    return "socketcand", "can0", {"host": host or "127.0.0.1", "port": int(port)}
+
+
 def _port(drive: ServoDrive, settings: CanOpenSettings) -> Callable[[Workplace], Port]:
     def make(place: Workplace) -> Port:
         line = Line(None, place.faults, settings.seed)
@@ -85,6 +120,6 @@ def _port(drive: ServoDrive, settings: CanOpenSettings) -> Callable[[Workplace],
             return SlcanPort(drive, place.clock, line, settings.link)
         if settings.interface == "socketcand":
             return SocketcandPort(drive, place.clock, line, int(settings.channel))
-        return BusPort(drive, place.clock, settings.interface, settings.channel)
+        return BusPort(drive, place.clock, *_bus(settings))
 
     return make

@@ -65,4 +65,4 @@ class TransmitPdo:
         return Frame(self._can_id, data)
 
     def _data(self) -> bytes:
-        return b"".join(self._dictionary.read(index, subindex) for index, subindex, _ in self._mapped)
+        return b"".join(self._dictionary.content(index, subindex) for index, subindex, _ in self._mapped)

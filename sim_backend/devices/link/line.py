@@ -1,9 +1,11 @@
 """A byte line with a baud rate and faults: which bytes arrive when."""
 
 import random
+import time
 from typing import NamedTuple
 
 from sim_backend.devices.link.faults import Direction, LinkFaultKind, LinkFaults
+from sim_backend.devices.wall_time import WallTime
 
 BITS_PER_BYTE = 10  # 8N1: start, eight data, stop
 
@@ -61,3 +63,15 @@ class Line:
         flipped = bytearray(data)
         flipped[place] ^= 1 << self._random.randrange(8)
         return bytes(flipped)
+
+
+_SPIN_S = 2e-4  # a nap on a busy machine ends late by about this much
+
+
+def pause_until(clock: WallTime, at_s: float) -> None:
+    """Return at a time [s] of the clock, or at once where that is over."""
+    left_s = at_s - clock.now_s()
+    if left_s > _SPIN_S:
+        time.sleep(left_s - _SPIN_S)
+    while clock.now_s() < at_s:
+        pass

@@ -7,8 +7,7 @@ import threading
 from typing import Protocol
 
 from sim_backend.devices.link.faults import Direction
-from sim_backend.devices.link.line import Line
-from sim_backend.devices.link.pause import pause_until
+from sim_backend.devices.link.line import Line, pause_until
 from sim_backend.devices.link.port import LOOK_UP_S
 from sim_backend.devices.wall_time import WallTime
 

@@ -1,14 +1,24 @@
 """The thread that carries bytes between a pseudo-terminal and a device, at the line's pace and with its faults."""
 
 from pathlib import Path
+from typing import Protocol
 
-from sim_backend.devices.link.byte_device import ByteDevice
+from sim_backend.devices.device import Device
 from sim_backend.devices.link.faults import Direction
-from sim_backend.devices.link.line import Line
-from sim_backend.devices.link.pause import pause_until
+from sim_backend.devices.link.line import Line, pause_until
 from sim_backend.devices.link.port import LOOK_UP_S, PortThread
 from sim_backend.devices.link.pseudo_terminal import PseudoTerminal
 from sim_backend.devices.wall_time import WallTime
+
+
+class ByteDevice(Device, Protocol):
+    """A device on a serial line or a stream."""
+
+    def receive(self, data: bytes, time_s: float) -> bytes:
+        """Take bytes that have arrived at a time [s], and return what the device answers."""
+
+    def connect(self) -> None:
+        """Somebody has plugged in anew: forget half of a packet."""
 
 
 class SerialPort(PortThread):

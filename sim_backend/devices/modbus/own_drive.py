@@ -8,8 +8,7 @@ from threading import RLock
 from drivers.contract import Sample
 from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.modbus.own_map import COMMAND_BLOCK, DEFAULTS, REGISTERS, identity
-from sim_backend.devices.modbus.refusal import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused
-from sim_backend.devices.modbus.register_file import RegisterFile
+from sim_backend.devices.modbus.register_file import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused, RegisterFile
 from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
 from sim_backend.plant.parameters import PlantParameters
 

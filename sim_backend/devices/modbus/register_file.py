@@ -1,9 +1,23 @@
-"""A map with values in it: reading and writing by address, by the rules of the map."""
+"""A map with values in it: reading and writing by address, by the rules of the map, and how a request is refused."""
 
 from collections.abc import Callable, Iterable
 
-from sim_backend.devices.modbus.refusal import ILLEGAL_ADDRESS, ILLEGAL_VALUE, Refused
 from sim_backend.devices.modbus.registers import Register, from_words, to_words
+
+
+class Refused(Exception):
+    """Raised for a request that is answered with an exception code: 1 function, 2 address, 3 value."""
+
+    def __init__(self, code: int) -> None:
+        super().__init__(f"Modbus exception {code}")
+        self.code = code
+
+
+class Unanswered(Exception):
+    """Raised for a request to which the device says nothing."""
+
+
+ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
 
 
 class RegisterFile:

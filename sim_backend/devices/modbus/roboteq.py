@@ -6,7 +6,13 @@ from threading import RLock
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import OFF, VOLTAGE, Axis, Demand
-from sim_backend.devices.modbus.refusal import ILLEGAL_ADDRESS, ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused, Unanswered
+from sim_backend.devices.modbus.register_file import (
+    ILLEGAL_ADDRESS,
+    ILLEGAL_FUNCTION,
+    ILLEGAL_VALUE,
+    Refused,
+    Unanswered,
+)
 from sim_backend.devices.modbus.registers import Kind, from_words, to_words
 from sim_backend.faults.script import OverTemperature, SupplyLost
 from sim_backend.plant.parameters import PlantParameters

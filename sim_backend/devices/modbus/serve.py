@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.serial_relay import SerialRelay
 from sim_backend.devices.link.tcp_relay import TcpRelay
 from sim_backend.devices.modbus.own_drive import OwnDrive
-from sim_backend.devices.modbus.register_device import RegisterDevice
 from sim_backend.devices.modbus.roboteq import Roboteq
-from sim_backend.devices.modbus.server import ModbusServer
-from sim_backend.devices.plant_tables import behind_a_drive
+from sim_backend.devices.modbus.server import ModbusServer, RegisterDevice
 from sim_backend.devices.process import RunningDevice, Workplace
 from sim_backend.errors import ParameterError
 

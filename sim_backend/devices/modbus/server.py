@@ -3,16 +3,27 @@
 import asyncio
 import logging
 import threading
-from typing import Any
+from typing import Any, Protocol
 
 from pymodbus import FramerType
 from pymodbus.constants import ExcCodes
 from pymodbus.server import ModbusSerialServer, ModbusTcpServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
-from sim_backend.devices.modbus.refusal import Refused, Unanswered
-from sim_backend.devices.modbus.register_device import RegisterDevice
+from sim_backend.devices.device import Device
+from sim_backend.devices.modbus.register_file import Refused, Unanswered
 from sim_backend.devices.wall_time import WallTime
+
+
+class RegisterDevice(Device, Protocol):
+    """A device with registers. Both calls raise `Refused` or `Unanswered`, and then have done nothing."""
+
+    def read(self, function: int, address: int, count: int) -> list[int]:
+        """Return registers."""
+
+    def write(self, function: int, address: int, words: list[int]) -> None:
+        """Write registers."""
+
 
 _ADDRESSES = 65536
 _START_S = 10.0

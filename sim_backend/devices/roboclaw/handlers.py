@@ -5,7 +5,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from sim_backend.devices.roboclaw.channel import FULL_DUTY
-from sim_backend.devices.roboclaw.settings import Settings
+from sim_backend.devices.roboclaw.memory import Settings
 
 if TYPE_CHECKING:
     from sim_backend.devices.roboclaw.device import RoboClaw

@@ -4,7 +4,25 @@ from struct import unpack
 from typing import NamedTuple
 
 from sim_backend.devices.roboclaw.commands import COMMANDS
-from sim_backend.devices.roboclaw.crc import crc16
+
+
+def _of_byte(byte: int) -> int:
+    register = byte << 8
+    for _ in range(8):
+        register = (register << 1) ^ 0x1021 if register & 0x8000 else register << 1
+    return register & 0xFFFF
+
+
+_TABLE = tuple(_of_byte(byte) for byte in range(256))
+
+
+def crc16(data: bytes) -> int:
+    """Return the CRC of some bytes."""
+    register = 0
+    for byte in data:
+        register = ((register << 8) & 0xFFFF) ^ _TABLE[(register >> 8) ^ byte]
+    return register
+
 
 LONGEST_GAP_S = 0.010
 ADDRESSES = range(0x80, 0x88)

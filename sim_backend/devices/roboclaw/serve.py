@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.serial_port import SerialPort
-from sim_backend.devices.plant_tables import behind_a_drive
 from sim_backend.devices.process import RunningDevice
 from sim_backend.devices.roboclaw.device import MEASURED, RoboClaw
 

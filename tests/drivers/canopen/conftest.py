@@ -26,7 +26,8 @@ def node(channel):
 @pytest.fixture
 def settings_of(channel):
     def make(**changes) -> CanopenSettings:
-        return CanopenSettings(bus=BusSettings("virtual", channel), **({"node_id": 5} | changes))
+        told = {"node_id": 5, "host_node_id": 127, "listen_s": 0.02} | changes
+        return CanopenSettings(bus=BusSettings("virtual", channel), **told)
 
     return make
 

@@ -93,6 +93,11 @@ class NodeDouble:
         self._become(0x0240)
         self._send(0x700 + self.node_id, b"\0")
 
+    @property
+    def _host_heartbeat(self) -> int:
+        """COB-ID of the heartbeat that it watches."""
+        return 0x700 + (self.get(0x1016, 1) >> 16 & 0x7F)
+
     # the inside ----------------------------------------------------------------------------------------
 
     def _send(self, cob: int, data: bytes) -> None:
@@ -111,7 +116,7 @@ class NodeDouble:
             if message is not None and not self.silent:
                 self.received.append((message.arbitration_id, bytes(message.data)))
                 self._take(message.arbitration_id, bytes(message.data))
-            elif message is not None and message.arbitration_id == 0x77F:
+            elif message is not None and message.arbitration_id == self._host_heartbeat:
                 self._heard_host_s = time.perf_counter()
             self._watch()
 
@@ -133,7 +138,7 @@ class NodeDouble:
             self._beat_s = 0.0
         elif cob == 0x600 + self.node_id:
             self._sdo(data)
-        elif cob == 0x77F:
+        elif cob == self._host_heartbeat:
             self._heard_host_s = time.perf_counter()
         elif cob == 0x80 and self.nmt == 5:
             self._sync()

@@ -2,8 +2,9 @@
 
 import pytest
 
-from drivers.canopen.cia301.emergency import Emergency, error_name
-from drivers.canopen.cia301.heartbeat import DriveMonitor, HostHeartbeat, NmtState
+from drivers.canopen.cia301.emergency import Emergency
+from drivers.canopen.cia301.error_codes import error_codes
+from drivers.canopen.cia301.heartbeat import DriveMonitor, NmtState
 from drivers.canopen.cia301.objects import (
     CONTROLWORD,
     POSITION,
@@ -83,7 +84,7 @@ def test_only_bit_30_of_a_cob_id_may_read_back_otherwise():
 def test_an_emergency_names_the_error():
     emergency = Emergency.decode(bytes.fromhex("1186210102030405"))
     assert (emergency.code, emergency.register, emergency.details) == (0x8611, 0x21, bytes([1, 2, 3, 4, 5]))
-    assert str(emergency) == "0x8611, following error"
+    assert error_codes().name(emergency.code) == "0x8611, following error"
 
 
 @pytest.mark.parametrize(
@@ -100,7 +101,14 @@ def test_an_emergency_names_the_error():
     ],
 )
 def test_error_codes_have_names_or_a_class(code, name):
-    assert error_name(code) == name
+    assert error_codes().name(code) == name
+
+
+def test_a_vendors_table_comes_before_the_standards():
+    maxon, other = error_codes(0xFB), error_codes(0x1A3)
+    assert maxon.name(0x81FD) == "0x81FD, CAN bus turned off"
+    assert maxon.name(0x8613) == other.name(0x8613) == "0x8613, homing"
+    assert other.name(0x81FD) == "0x81FD, monitoring"
 
 
 def test_an_emergency_of_another_length_is_none():
@@ -146,8 +154,3 @@ def test_heartbeats_are_told_and_missed():
     for nonsense in (b"", b"\x05\x05", b"\x33"):
         with pytest.raises(ValueError, match=r"heartbeat|NmtState"):
             monitor.hear(nonsense, 60.3)
-
-
-def test_the_hosts_heartbeat_comes_four_times_as_often_as_it_is_wanted():
-    heartbeat = HostHeartbeat(watchdog_s=0.1)
-    assert [heartbeat.due(0.005 * cycle) for cycle in range(11)] == [cycle % 5 == 0 for cycle in range(11)]

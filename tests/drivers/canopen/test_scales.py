@@ -9,7 +9,7 @@ from drivers.canopen.cia402.profiles import CIA402, EPOS4
 from drivers.canopen.cia402.scale import DriveScale
 from drivers.canopen.cia402.units import (
     VELOCITY_UNITS,
-    interpolation_period,
+    interpolation_periods,
     velocity_unit_code,
     velocity_unit_name,
     velocity_unit_rad_s,
@@ -48,7 +48,12 @@ def test_every_name_of_a_unit_has_a_code_and_back():
     [(0.001, (1, -3)), (0.005, (5, -3)), (0.0005, (5, -4)), (0.002, (2, -3)), (0.00125, (125, -5)), (0.00012345, None)],
 )
 def test_interpolation_periods(period_s, coded):
-    assert interpolation_period(period_s) == coded
+    assert next(iter(interpolation_periods(period_s, None)), None) == coded
+
+
+def test_the_form_of_a_period_that_keeps_the_drives_exponent_comes_first():
+    assert interpolation_periods(0.005, -4)[0] == (50, -4)
+    assert interpolation_periods(0.005, -6)[0] == (5, -3), "5000 does not fit one byte"
 
 
 def test_one_turn_per_minute_of_the_motor_seen_at_the_joint():

@@ -59,8 +59,7 @@ function timeLimit(timeout_ms) {
   return timeout_ms ? AbortSignal.timeout(timeout_ms) : undefined;
 }
 
-export async function post(path, body = {}, timeout_ms = 0) {
-  const signal = timeLimit(timeout_ms);
+export async function post(path, body = {}, timeout_ms = 0, { signal = timeLimit(timeout_ms) } = {}) {
   const options = { method: "POST", headers: headers({ "Content-Type": "application/json" }), body: JSON.stringify(body), signal };
   return (await request(path, options)).json();
 }

@@ -4,6 +4,7 @@ import { get } from "../app/api.js";
 import { attempt, together } from "../ui/attempt.js";
 import { facts, h, panel, replace } from "../ui/dom.js";
 import { nameOf, number } from "../ui/format.js";
+import { faultPanel } from "./fault.js";
 import { leasePanel } from "./lease.js";
 import { livePlot } from "./liveplot.js";
 import { withShownUnit } from "../ui/units.js";
@@ -12,9 +13,9 @@ import { startForm } from "./start.js";
 
 export function benchView(place, bench) {
   const { live, state } = bench;
-  const [start, lease, queue, drive, plot] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
+  const [start, lease, queue, drive, fault, plot] = ["div", "div", "div", "div", "div", "div"].map((tag) => h(tag));
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
-    panel("Queue", queue), panel("Drive and limits", drive)));
+    panel("Queue", queue), panel("Drive and limits", drive, fault)));
   const waiting = queuePanel(queue);
   const form = startForm(start, live, () => waiting.refresh());
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
@@ -28,8 +29,10 @@ export function benchView(place, bench) {
   together(place, [form, refresh()]);
   const leave = livePlot(plot, bench);
   const leaveLease = leasePanel(lease, live);
+  const leaveFault = faultPanel(fault, live);
   return () => {
     leaveLease();
+    leaveFault();
     waiting.leave();
     live.removeEventListener("status", changed);
     leave();
@@ -40,7 +43,8 @@ function description(bench) {
   const { drive, limits } = bench;
   const identity = drive
     ? [["drive", [drive.vendor, drive.product].filter(Boolean).join(" ") || drive.device], ["firmware", drive.firmware || "not told"],
-      ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s`]]
+      ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s, ${drive.watchdog}`],
+      ...drive.notes.map((note) => ["note", note])]
     : [["drive", "opens at the first start"]];
   return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, withShownUnit(limit.value, limit.unit)]), ["software", bench.software_version]]);
 }

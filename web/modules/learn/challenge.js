@@ -1,7 +1,7 @@
 // A challenge: a joint that hides something. Make it, study its recordings, guess, and be told.
 
 import { get, post } from "../app/api.js";
-import { attempt } from "../ui/attempt.js";
+import { attempt, patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { number, percent, when } from "../ui/format.js";
 
@@ -14,7 +14,7 @@ export function challengePanel(place) {
   const button = h("button", { type: "button", class: "primary" }, "New challenge");
   const refresh = () => attempt(list, async () => replace(list, challengeTable((await get("/challenges")).items, revealed)));
   button.addEventListener("click", async () => {
-    const made = await attempt(answer, () => post("/challenges", { difficulty: level.value }), { button, busy: "Drawing a joint and recording it; half a minute …" });
+    const made = await patiently(answer, `challenge ${level.value}`, "Drawing a joint at random, and recording it …", (signal) => post("/challenges", { difficulty: level.value }, 0, { signal }), { button });
     if (!made) return;
     replace(answer, h("div", { class: "good", role: "status" }, `Challenge ${made.challenge_id} is ready. Make a study of experiment ${made.experiment_id}, find what its model lacks, then come back and guess.`));
     await refresh();

@@ -8,7 +8,7 @@ import { effectView } from "./effect.js";
 import { equation } from "./equation.js";
 
 export function learnView(place, { rest }) {
-  if (rest[0]) return effectView(place, decodeURIComponent(rest[0]));
+  if (rest[0] && rest[0] !== "challenge") return effectView(place, rest[0]);
   const [challenge, list] = [h("div"), h("div", { class: "cards" })];
   const search = h("input", { type: "search", id: "effect-search", autocomplete: "off" });
   replace(place, panel("Practise: what is hidden in this joint?", challenge),

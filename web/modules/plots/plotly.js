@@ -7,7 +7,7 @@ import { h } from "../ui/dom.js";
 const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"], showSendToCloud: false, plotlyServerURL: "" };
 
 function axis(extra) {
-  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, ...extra };
+  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, exponentformat: "power", ...extra };
 }
 
 export function layout(extra = {}) {

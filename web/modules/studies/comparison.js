@@ -5,39 +5,39 @@ import { attempt } from "../ui/attempt.js";
 import { closedLoop } from "./closedloop.js";
 import { facts, h, panel, replace, table } from "../ui/dom.js";
 import { errorMap, momentList } from "./errormap.js";
-import { chanceCell, conditions, interval, nameOf, number, percent } from "../ui/format.js";
+import { conditions, nameOf, number, percent } from "../ui/format.js";
 import { colour } from "../ui/colours.js";
 import { band, draw } from "../plots/plotly.js";
-import { SeriesPlot } from "./seriesplot.js";
 
 const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
 
-// returns what has to be closed when the place is left
-export async function comparison(place, compared, path) {
-  const [series, loop, spots, moments, drivers] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
+// series: the plot beside it, which shows a moment that is chosen here
+export async function comparison(place, compared, { path, series }) {
+  const [loop, spots, moments, drivers] = ["div", "div", "div", "div"].map((tag) => h(tag));
   drivers.className = "cards";
+  const against = h("details", {}, h("summary", {}, "Residual against what drives it"),
+    h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers);
   replace(place,
-    panel("Measured against predicted", errors(compared), series),
-    panel("In closed loop", loop),
-    panel("Where the model is wrong", spots, moments),
-    panel("Residual against what drives it", h("p", { class: "soft" }, "Mean of the residual in bins with its band, by direction. A flat line at zero: the model has it. A shape: it is missing. Choose a point to see when that was."), drivers),
-    panel("Errors and parameters", h("div", { class: "cards" }, trialTable(compared), regimeTable(compared), ...restTable(compared), parameterTable(compared), ...breakawayTable(compared))),
-    compared.notes.length ? panel("Notes", compared.notes.map((note) => h("p", {}, note))) : null);
-  const plot = new SeriesPlot(series, compared);
+    panel("Where the model is wrong", errors(compared), spots, moments),
+    panel("Closer", against, h("details", {}, h("summary", {}, "Error of each trial and regime"), trialTable(compared), regimeTable(compared)),
+      h("details", {}, h("summary", {}, "In closed loop"), h("div", { role: "group", "aria-label": "In closed loop" }, loop)),
+      compared.notes.length > 0 && h("details", {}, h("summary", {}, compared.notes.length === 1 ? "1 note" : `${compared.notes.length} notes`), compared.notes.map((note) => h("p", {}, note)))));
   closedLoop(loop, path, compared.model_id);
   const ask = (where, words) => attempt(moments, async () => {
     const query = new URLSearchParams([...where.map((one) => ["where", one]), ["model_id", compared.model_id]]);
-    momentList(moments, words, await get(`${path}/moments?${query}`), (one) => plot.showMoment(one));
+    momentList(moments, words, await get(`${path}/moments?${query}`), (one) => series.showMoment(one));
     moments.scrollIntoView({ block: "nearest" });
   }, { busy: "Looking …" });
   attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask), { busy: "Looking …" });
-  for (const driver of compared.residual_against) {
-    const picture = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${nameOf(driver.driver)}` });
-    drivers.append(picture);
-    await driverPlot(picture, driver, compared.effort);
-    picture.on?.("plotly_click", ({ points }) => ask(...spotOf(driver, points[0])));
-  }
-  return plot;
+  against.addEventListener("toggle", async () => {
+    if (!against.open || drivers.children.length) return;
+    for (const driver of compared.residual_against) {
+      const picture = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${nameOf(driver.driver)}` });
+      drivers.append(picture);
+      await driverPlot(picture, driver, compared.effort);
+      picture.on?.("plotly_click", ({ points }) => ask(...spotOf(driver, points[0])));
+    }
+  });
 }
 
 // the bin around a point: half-way to its neighbours, on the side of its direction
@@ -84,28 +84,3 @@ function regimeTable({ regimes, effort }) {
   ], regimes);
 }
 
-function restTable({ at_rest: atRest, effort }) {
-  if (!atRest) return [];
-  return [table(`At rest, ${atRest.stretches} stretches of 0.1 s: beyond what friction holds`, [
-    { title: "Side", cell: (one) => one.side },
-    { title: "Outside", number: true, cell: (one) => percent(one.outside) },
-    { title: `Largest [${effort.unit}]`, number: true, cell: (one) => number(one.largest, 3) },
-    { title: "p", number: true, cell: (one) => chanceCell(one.p_value) },
-    { title: "Surest in", cell: (one) => one.trial },
-  ], atRest.sides), h("p", { class: "soft" }, atRest.sentence)];
-}
-
-function breakawayTable({ breakaway }) {
-  if (!breakaway) return [];
-  const errors = `error ${percent(breakaway.training.relative)}, held out ${percent(breakaway.held_out.relative)}`;
-  return [parameterTable(breakaway, `Breakaway: ${breakaway.starts} starts from rest, ${errors}`)];
-}
-
-function parameterTable({ parameters }, title = "Parameters") {
-  return table(title, [
-    { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
-    { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
-    { title: "Unit", cell: (one) => one.unit },
-    { title: "Note", cell: (one) => one.note },
-  ], parameters);
-}

@@ -21,7 +21,7 @@ export async function diagnosis(place, found, add) {
   replace(place, h("p", { class: "sentence", role: "status" }, found.sentence),
     problems.map(({ text }) => h("div", { class: "problem" }, text)),
     notes.map(({ text }) => h("p", { class: "soft" }, text)),
-    found.classes.map(className), curve, named, first.some((one) => !one.in_class) && h("h3", {}, found.classes.length ? "Less likely" : "Tested"), others,
+    found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
     found.ranking.length > SHOWN && more,
     notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, text))));
   if (curve) await provisional(curve, found.provisional, add);
@@ -30,6 +30,11 @@ export async function diagnosis(place, found, add) {
     const rest = more.querySelector(".cards");
     if (more.open && !rest.children.length) for (const one of found.ranking.slice(SHOWN)) await card(rest, one, add);
   });
+}
+
+// what is named comes first; where nothing is, what was tested is shown at once
+function folded(found, others) {
+  return h("details", { open: !found.classes.length }, h("summary", {}, found.classes.length ? "Less likely" : "Tested"), others);
 }
 
 function className(one) {

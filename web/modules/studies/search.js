@@ -1,7 +1,7 @@
 // The search: the lab adds, exchanges and drops effects by itself; every step is told.
 
 import { post } from "../app/api.js";
-import { attempt } from "../ui/attempt.js";
+import { patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { percent } from "../ui/format.js";
 
@@ -10,8 +10,7 @@ export function searchButton(place, path, model_id, done) {
   const answer = h("div");
   const button = h("button", { type: "button" }, "Search by itself");
   button.addEventListener("click", async () => {
-    const busy = "Adding effects until nothing is missing; this takes a while …";
-    const found = await attempt(answer, () => post(`${path}/search`, { model_id: model_id() }), { button, busy });
+    const found = await patiently(answer, "search", "Adding effects until nothing is missing …", (signal) => post(`${path}/search`, { model_id: model_id() }, 0, { signal }), { button });
     if (!found) return;
     await done(found.model_id, (target) => told(target, found));
   });

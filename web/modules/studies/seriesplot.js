@@ -13,9 +13,15 @@ export class SeriesPlot {
     this.choice = h("select", { id: `series-${label.length}` }, series.map((one) => h("option", { value: String(one.trial_id) }, one.name)));
     const picture = h("div");
     replace(place, h("label", { class: "inline" }, "Trial", this.choice), picture);
-    this.chart = new Chart(picture, { label, height: 440 });
+    this.chart = new Chart(picture, { label, height: 400 });
     this.choice.addEventListener("change", () => this.show(Number(this.choice.value)));
     if (series.length) this.show(series[0].trial_id);
+  }
+
+  // the model before beside the one after it; the trial that gained most is shown first, held-out ones before others
+  compareWith(before, after) {
+    this.earlier = before.series;
+    this.show(gained(before, after)[0].trial_id);
   }
 
   show(trial_id, shades = []) {
@@ -46,4 +52,11 @@ export class SeriesPlot {
   close() {
     this.chart.close();
   }
+}
+
+function gained(before, after) {
+  const error = (compared, trial_id) => compared.trials.find((one) => one.trial_id === trial_id)?.rms ?? 0;
+  const held = new Set(after.trials.filter((one) => one.role === "held_out").map((one) => one.trial_id));
+  const gain = (one) => error(before, one.trial_id) - error(after, one.trial_id) + (held.has(one.trial_id) ? 1e6 : 0);
+  return [...after.series].sort((one, other) => gain(other) - gain(one));
 }

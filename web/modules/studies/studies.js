@@ -7,9 +7,9 @@ import { when } from "../ui/format.js";
 import { newStudy } from "./newstudy.js";
 import { studyView } from "./study.js";
 
-export function studiesView(place, { rest }) {
+export function studiesView(place, { rest, query }) {
   const wanted = rest[0] === "new" ? Number(rest[1]) : null; // an experiment to make a study of
-  if (rest[0] && rest[0] !== "new") return studyView(place, rest[0]);
+  if (rest[0] && rest[0] !== "new") return studyView(place, rest, query);
   const list = h("div");
   const create = h("div");
   replace(place, panel("Studies", h("p", { class: "soft" },

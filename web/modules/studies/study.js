@@ -1,49 +1,66 @@
-// One open study: ladder, comparison, diagnosis; adding and dropping effects moves from model to model.
+// One open study as steps: the verdict on top, the step that is shown, and beside it measured against predicted, which
+// stays in view. Adding and dropping effects moves from model to model.
 
 import { get, post, remove } from "../app/api.js";
-import { attempt, together } from "../ui/attempt.js";
+import { attempt, patiently, together } from "../ui/attempt.js";
+import { h, panel, replace, table } from "../ui/dom.js";
+import { withFiles } from "../ui/files.js";
+import { conditions } from "../ui/format.js";
 import { beforeAfter } from "./beforeafter.js";
 import { comparison } from "./comparison.js";
 import { diagnosis } from "./diagnosis.js";
-import { h, panel, replace } from "../ui/dom.js";
-import { withFiles } from "../ui/files.js";
 import { ladderPlot, rungName } from "./ladder.js";
+import { parameterTables } from "./parameters.js";
 import { searchButton } from "./search.js";
+import { SeriesPlot } from "./seriesplot.js";
+import { Steps } from "./steps.js";
 import { suggestions } from "./suggestions.js";
+import { verdict } from "./verdict.js";
 
-export function studyView(place, id) {
-  const parts = Object.fromEntries(["head", "model", "change", "ladder", "compared", "diagnosed"].map((name) => [name, h("div")]));
-  replace(place, parts.head, panel("Model", parts.model, parts.change), panel("Ladder: the error from model to model", parts.ladder),
-    panel("What is missing?", parts.diagnosed), parts.compared);
-  const study = new Study(id, parts);
-  together(place, [study.open()]);
+const NAMES = ["head", "verdict", "steps", "record", "compare", "diagnose", "add", "result", "series", "model", "change", "ladder", "parameters", "search", "suggested", "diagnosed"];
+
+export function studyView(place, [id, step], query) {
+  const parts = Object.fromEntries(NAMES.map((name) => [name, h("div")]));
+  const study = new Study(id, parts, { step, model: Number(query.model) || null });
+  together(place, [study.open(place)]);
   return () => study.close();
 }
 
 class Study {
   #plots = [];
 
-  constructor(id, parts) {
-    this.path = `/studies/${encodeURIComponent(id)}`;
-    this.parts = parts;
-    this.model = null;
-    this.compared = null;
+  constructor(id, parts, wanted) {
+    Object.assign(this, { id, parts, wanted, path: `/studies/${encodeURIComponent(id)}`, model: null, compared: null, series: null });
   }
 
   close() {
-    for (const plot of this.#plots) plot.close();
+    for (const plot of [...this.#plots, this.series]) plot?.close();
     this.#plots = [];
+    this.series = null;
   }
 
-  async open() {
-    const study = await attempt(this.parts.head, () => get(this.path));
-    if (!study) return;
+  async open(place) {
+    const answer = h("div");
+    if (place) replace(place, answer);
+    const study = await attempt(answer, () => get(this.path));
+    if (!study) {
+      answer.append(h("p", {}, h("a", { href: "#study" }, "All studies")));
+      return;
+    }
+    this.study = study;
+    if (place) this.#layOut(place);
     replace(this.parts.head, heading(study, this.path));
-    await this.select(study.model_id);
+    this.#record();
+    const wanted = this.wanted.model;
+    const known = !wanted || (await get(`${this.path}/ladder`)).rungs.some((one) => one.model_id === wanted);
+    await this.select(wanted && known ? wanted : study.model_id);
+    if (!known) replace(this.parts.change, h("div", { class: "problem", role: "alert" }, `Study ${this.id} has no model ${wanted}; the newest is shown.`));
+    this.wanted.model = null;
   }
 
   async select(model_id) {
     this.model = model_id;
+    this.steps.say();
     this.askDiagnosis();
     await Promise.all([this.showLadder(), this.showComparison()]);
   }
@@ -52,41 +69,48 @@ class Study {
     const ladder = await attempt(this.parts.ladder, () => get(`${this.path}/ladder`));
     if (!ladder) return;
     const rung = ladder.rungs.find((one) => one.model_id === this.model);
-    replace(this.parts.model, this.chips(rung), this.modelChoice(ladder));
+    this.parts.verdict.textContent = verdict(ladder, this.model);
+    replace(this.parts.model, this.modelChoice(ladder), this.chips(rung));
     await ladderPlot(this.parts.ladder, ladder, this.model);
   }
 
   async showComparison() {
     const model_id = this.model;
-    const compared = await attempt(this.parts.compared, () => get(`${this.path}/compare`, { model_id }), { busy: "Fitting …" });
+    const compared = await patiently(this.parts.compare, "compare", "Fitting, and comparing with every trial …", (signal) => get(`${this.path}/compare`, { model_id }, { signal }));
     if (!compared || model_id !== this.model) return;
     this.compared = compared;
-    this.#plots.push(await comparison(this.parts.compared, compared, this.path));
+    this.series?.close();
+    this.series = new SeriesPlot(this.parts.series, compared);
+    replace(this.parts.parameters, parameterTables(compared));
+    await comparison(this.parts.compare, compared, { path: this.path, series: this.series });
   }
 
   askDiagnosis() {
-    const [answer, search, suggested] = [h("div"), h("div", { class: "row centre" }), h("div")];
+    const { diagnosed, diagnose } = this.parts;
     const button = h("button", { class: "primary", type: "button" }, "Diagnose");
+    replace(diagnosed);
     button.addEventListener("click", async () => {
-      const busy = "Testing every effect of the catalogue …";
-      const found = await attempt(answer, () => get(`${this.path}/diagnose`, { model_id: this.model }), { button, busy });
-      if (found) await diagnosis(answer, found, (effect, place) => this.add(effect, place));
+      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal }), { button });
+      if (found) await diagnosis(diagnosed, found, (effect, place) => this.add(effect, place));
     });
-    replace(this.parts.diagnosed, h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button, search), answer, suggested);
-    suggestions(suggested, this.path, () => this.model, (sentence) => this.extended(sentence));
-    searchButton(search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
+    replace(diagnose, panel("What is missing?", h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button), diagnosed));
+    searchButton(this.parts.search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
   }
 
   async extended(sentence) {
     await this.open();
-    replace(this.parts.change, h("div", { class: "good", role: "status" }, sentence));
-    this.parts.change.scrollIntoView({ block: "center" });
+    this.told(h("div", { class: "good", role: "status" }, sentence));
   }
 
   async searched(model_id, tell) {
     await this.select(model_id);
     tell(this.parts.change);
-    this.parts.change.scrollIntoView({ block: "center" });
+    this.steps.show("add");
+  }
+
+  told(...words) {
+    replace(this.parts.change, ...words);
+    this.steps.show("add");
   }
 
   add(effect, place) {
@@ -101,11 +125,11 @@ class Study {
 
   async changed(result) {
     const before = this.compared?.model_id === result.parent_id ? this.compared : await get(`${this.path}/compare`, { model_id: result.parent_id });
-    replace(this.parts.change, h("div", { class: "good", role: "status" }, result.sentence));
-    this.parts.change.scrollIntoView({ block: "start" });
+    this.told(h("div", { class: "good", role: "status" }, result.sentence));
     await this.select(result.model_id);
     if (this.compared?.model_id !== result.model_id) return;
-    this.#plots.push(beforeAfter(this.parts.change, result, { before, after: this.compared, undo: () => this.undo(result.parent_id) }));
+    beforeAfter(this.parts.change, result, { undo: () => this.undo(result.parent_id) });
+    this.series.compareWith(before, this.compared);
   }
 
   // back to the model before; the one that is left was made by the last change, and nothing was made from it
@@ -120,7 +144,7 @@ class Study {
   chips(rung) {
     const chip = (name) => h("span", { class: "chip" }, name.replaceAll("_", " "),
       h("button", { type: "button", title: `Drop ${name}`, "aria-label": `Drop ${name}`, onclick: () => this.drop(name) }, "×"));
-    return h("div", { "aria-label": "Effects of this model" }, (rung?.effects ?? []).map(chip));
+    return h("div", { role: "group", "aria-label": "Effects of this model" }, (rung?.effects ?? []).map(chip));
   }
 
   modelChoice(ladder) {
@@ -131,11 +155,47 @@ class Study {
     return h("div", { class: "row" }, h("label", { for: "model" }, "Shown model", choice),
       removable && h("button", { type: "button", onclick: take }, "Remove this model"));
   }
+
+  #layOut(place) {
+    const { parts } = this;
+    replace(parts.add, panel("Model", parts.model, parts.change, h("h3", {}, "Search by itself"), parts.search));
+    replace(parts.result, panel("Ladder: the error from model to model", parts.ladder), panel("Parameters", parts.parameters));
+    const shown = h("div", { class: "study-steps" }, parts.record, parts.compare, parts.diagnose, parts.add, parts.result);
+    replace(place, h("section", { class: "panel study-head" }, parts.head, h("p", { class: "sentence", role: "status" }, parts.verdict), parts.steps),
+      h("div", { class: "study" }, shown, h("div", { class: "study-plots" }, panel("Measured against predicted", parts.series))));
+    const address = (step) => ({ view: "study", rest: [this.id, step], query: { model: this.model && this.model !== this.study.model_id ? this.model : "" } });
+    this.steps = new Steps(parts.steps, parts, { address, first: this.wanted.step });
+  }
+
+  #record() {
+    const { record, suggested } = this.parts;
+    replace(record, panel("Trials of this study", trialTable(this.study)), panel("What to record next", suggested));
+    this.#offerSuggestions(suggested);
+  }
+
+  // only the joint of this bench can be recorded again: trials that came in from elsewhere are of another one
+  async #offerSuggestions(place) {
+    const first = await get(`/trials/${this.study.trials[0].trial_id}`).catch(() => null);
+    const experiment = first && (await get(`/experiments/${first.experiment_id}`).catch(() => null));
+    if (experiment?.source === "imported") {
+      replace(place, h("p", { class: "soft" }, "These trials were imported, or are those of a challenge: their joint does not stand on this bench, so nothing more can be recorded of it here."));
+    } else suggestions(place, this.path, () => this.model, (sentence) => this.extended(sentence));
+  }
+}
+
+function trialTable(study) {
+  return table("Trials of the study", [
+    { title: "Trial", number: true, cell: (one) => h("a", { href: `#trials/${one.trial_id}` }, String(one.trial_id)) },
+    { title: "Name", cell: (one) => one.name },
+    { title: "Role", cell: (one) => one.role.replace("_", "-") },
+    { title: "Conditions", cell: (one) => conditions(one.conditions) },
+  ], study.trials);
 }
 
 function heading(study, path) {
   const count = (role) => study.trials.filter((trial) => trial.role === role).length;
-  return h("div", { class: "panel" }, h("h2", {}, `Study ${study.study_id}: ${study.name}`),
-    h("p", { class: "soft" }, `${count("training")} training trials, ${count("held_out")} held out. Effort: ${study.effort.name} [${study.effort.unit}]. `,
-      h("a", { href: "#study" }, "All studies")), withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`]]));
+  const held = count("held_out") ? `${count("held_out")} held out` : "each left out in turn to judge";
+  return h("div", { class: "row centre between" }, h("div", {}, h("h2", {}, `Study ${study.study_id}: ${study.name}`),
+    h("p", { class: "soft" }, `${count("training")} training trials, ${held}. Effort: ${study.effort.name} [${study.effort.unit}]. `,
+      h("a", { href: "#study" }, "All studies"))), h("div", {}, withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`]])));
 }

@@ -2,7 +2,7 @@
 // round by round, a few at a time.
 
 import { post } from "../app/api.js";
-import { attempt } from "../ui/attempt.js";
+import { attempt, patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { nameOf, number, quantity } from "../ui/format.js";
 
@@ -11,7 +11,7 @@ export function suggestions(place, path, model_id, extended) {
   const answer = h("div");
   const button = h("button", { type: "button" }, "Suggest trials");
   button.addEventListener("click", async () => {
-    const found = await attempt(answer, () => post(`${path}/suggest`, { model_id: model_id() }), { button, busy: "Simulating what each trial would tell …" });
+    const found = await patiently(answer, "suggest", "Simulating what each trial would tell …", (signal) => post(`${path}/suggest`, { model_id: model_id() }, 0, { signal }), { button });
     if (found) show(answer, path, found, extended);
   });
   const round = h("button", { type: "button", title: "The joint moves when it is the queue's turn" }, "Record the next round");

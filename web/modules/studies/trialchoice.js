@@ -1,7 +1,7 @@
 // Trials chosen by what they have in common: kind, conditions, name. Criteria of the service: key=value[,value ...].
 
 import { h, replace } from "../ui/dom.js";
-import { nameOf, number, unitOf } from "../ui/format.js";
+import { nameOf, quantity } from "../ui/format.js";
 
 const MOST_VALUES = 60;
 const OPEN = 12;
@@ -43,9 +43,8 @@ export class TrialChoice {
   }
 
   #box(key, value) {
-    const unit = typeof value === "number" ? unitOf(key) : "";
     const input = h("input", { type: "checkbox", value: `${key}=${value}`, checked: this.look.checked });
-    return { input, value, label: h("label", { class: "inline" }, input, `${number(value)}${unit ? ` ${unit}` : ""}`) };
+    return { input, value, label: h("label", { class: "inline" }, input, quantity(key, value)) };
   }
 
   #fields() {

@@ -24,6 +24,38 @@ export async function attempt(place, action, { button = null, busy = "" } = {}) 
   }
 }
 
+// runs what takes a while: `place` says for how long it has run, how long it took the last time, and lets one stop waiting.
+// action(signal): the request; what was asked of the service is finished there, its answer is not waited for
+export async function patiently(place, key, words, action, { button = null } = {}) {
+  const way = new AbortController();
+  const expected_s = Number(localStorage.getItem(`took ${key}`)) || null;
+  const begin_ms = performance.now();
+  const [bar, told] = [h("progress", { "aria-label": words, ...(expected_s ? { max: expected_s } : {}) }), h("span", { class: "soft" })];
+  const show = () => {
+    const passed_s = (performance.now() - begin_ms) / 1000;
+    if (expected_s) bar.value = Math.min(passed_s, 0.97 * expected_s);
+    const left = expected_s ? (passed_s < expected_s ? `, about ${Math.ceil(expected_s - passed_s)} s left` : ", longer than the last time") : "";
+    told.textContent = `${Math.round(passed_s)} s${left}`;
+  };
+  place.replaceChildren(h("div", { class: "waiting" }, h("p", { class: "busy", role: "status" }, words), bar, told,
+    h("button", { type: "button", class: "small", onclick: () => way.abort() }, "Stop waiting")));
+  show();
+  const timer = setInterval(show, 1000);
+  if (button) button.disabled = true;
+  try {
+    const result = await action(way.signal);
+    localStorage.setItem(`took ${key}`, String((performance.now() - begin_ms) / 1000));
+    place.replaceChildren();
+    return result;
+  } catch (error) {
+    place.replaceChildren(error.name === "AbortError" ? h("p", { class: "soft", role: "status" }, "Not waited for any more; the service still finishes what it began.") : problemBox(error));
+    return undefined;
+  } finally {
+    clearInterval(timer);
+    if (button) button.disabled = false;
+  }
+}
+
 const LONGEST_MS = 5000; // then what there is is shown; STOP, in the head of the page, waits for nothing
 
 export function together(place, firstAnswers) {
@@ -35,5 +67,8 @@ export function together(place, firstAnswers) {
   };
   place.classList.add("filling");
   place.setAttribute("aria-busy", "true");
-  Promise.allSettled(firstAnswers).then(show);
+  Promise.allSettled(firstAnswers).then((settled) => {
+    show();
+    for (const { reason } of settled) if (reason) reportError(reason); // a fault of the page itself: not to be swallowed
+  });
 }

@@ -15,21 +15,24 @@ class Braking:
         self._counts = 0.0
         self._speed = 0.0
         self._stands_s = 0.0
+        self._no_ramp = False
 
     def start(self, seen: Seen) -> None:
         """Begin from the motion that there is."""
         self._counts, self._speed = seen.counts, seen.counts_per_s
         self._stands_s = 0.0
+        self._no_ramp = False
         self._loop.start()
 
     @property
     def done(self) -> bool:
-        """Whether the motor has been made to stand."""
-        return self._stands_s >= _SETTLES_S
+        """Whether the motor has been made to stand, or cannot be: a ramp of nothing brakes nothing."""
+        return self._stands_s >= _SETTLES_S or self._no_ramp
 
     def torque(self, seen: Seen, deceleration: float) -> float:
         """Return the torque [permille] of the coming tick."""
         step = deceleration * TICK_S
+        self._no_ramp = deceleration <= 0.0
         self._speed += max(-step, min(step, -self._speed))
         self._counts += self._speed * TICK_S
         if self._speed == 0.0:

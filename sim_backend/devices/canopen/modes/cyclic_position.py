@@ -2,15 +2,16 @@
 
 from sim_backend.devices.axis import TICK_S
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import FOLLOWS, Seen
-from sim_backend.devices.canopen.modes.position_loop import PositionLoop
+from sim_backend.devices.canopen.modes.mode import FOLLOWS, Seen, Units
+from sim_backend.devices.canopen.modes.position_loop import PositionLoop, within_limits
 
 
 class CyclicPosition:
     """Target position (0x607A), interpolated over the time of 0x60C2; torque offset (0x60B2) on top."""
 
-    def __init__(self, dictionary: Dictionary, loop: PositionLoop) -> None:
+    def __init__(self, dictionary: Dictionary, loop: PositionLoop, units: Units) -> None:
         self._dictionary = dictionary
+        self._units = units
         self._loop = loop
         self._from = self._to = self._now = 0.0
         self._since_s = 0.0
@@ -23,7 +24,8 @@ class CyclicPosition:
 
     def aim(self, time_s: float) -> None:
         """A target has come."""
-        self._from, self._to = self._now, float(self._dictionary.number(0x607A))
+        target = within_limits(self._dictionary.number(0x607A), self._dictionary)
+        self._from, self._to = self._now, self._units.counts(target)
         self._since_s = time_s
 
     def torque(self, seen: Seen) -> float:

@@ -1,5 +1,6 @@
 """What the drive asks of a mode."""
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 TARGET_REACHED, FOLLOWS, SET_POINT_TAKEN = 1 << 10, 1 << 12, 1 << 12
@@ -12,6 +13,13 @@ class Seen(NamedTuple):
     time_s: float
     counts: float
     counts_per_s: float
+
+
+class Units(NamedTuple):
+    """From the drive's units of position and velocity to counts, and counts a second."""
+
+    counts: Callable[[float], float]
+    counts_per_s: Callable[[float], float]
 
 
 class Mode(Protocol):

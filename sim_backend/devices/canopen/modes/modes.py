@@ -5,27 +5,28 @@ from collections.abc import Callable, Iterable
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.modes.cyclic_position import CyclicPosition
 from sim_backend.devices.canopen.modes.cyclic_torque import CyclicTorque
-from sim_backend.devices.canopen.modes.mode import Mode
+from sim_backend.devices.canopen.modes.mode import Mode, Units
 from sim_backend.devices.canopen.modes.position_loop import PositionLoop
 from sim_backend.devices.canopen.modes.profile_position import ProfilePosition
 from sim_backend.devices.canopen.modes.profile_torque import ProfileTorque
+from sim_backend.devices.canopen.modes.velocity import Velocity
 
 
-def make_modes(
-    numbers: Iterable[int], dictionary: Dictionary, loop: PositionLoop, counts_per_s: Callable[[int], float]
-) -> dict[int, Mode]:
-    """Return those of the numbers (0x6060).
+def make_modes(numbers: Iterable[int], dictionary: Dictionary, loop: PositionLoop, units: Units) -> dict[int, Mode]:
+    """Return those of the numbers (0x6060) that make the motor turn.
 
     Args:
         numbers: which modes.
         dictionary: the drive's.
         loop: its position controller.
-        counts_per_s: speed of a number in the drive's unit of velocity.
+        units: of the drive.
     """
     known: dict[int, Callable[[], Mode]] = {
-        1: lambda: ProfilePosition(dictionary, loop, counts_per_s),
+        1: lambda: ProfilePosition(dictionary, loop, units),
+        3: lambda: Velocity(dictionary, loop, units, profiled=True),
         4: lambda: ProfileTorque(dictionary),
-        8: lambda: CyclicPosition(dictionary, loop),
+        8: lambda: CyclicPosition(dictionary, loop, units),
+        9: lambda: Velocity(dictionary, loop, units, profiled=False),
         10: lambda: CyclicTorque(dictionary),
     }
-    return {number: known[number]() for number in numbers}
+    return {number: known[number]() for number in numbers if number in known}

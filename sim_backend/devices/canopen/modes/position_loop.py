@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import pi
 
 from sim_backend.devices.axis import TICK_S
+from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.modes.mode import Seen
 from sim_backend.plant.parameters import PlantParameters
 
@@ -59,3 +60,9 @@ class PositionLoop:
         self._integral = max(-self.limit_permille, min(self.limit_permille, integral))
         damped = self._gains.derivative * (counts_per_s - seen.counts_per_s)
         return self._gains.proportional * error + damped + self._integral
+
+
+def within_limits(target: float, dictionary: Dictionary) -> float:
+    """Return a target in the drive's unit of position, kept to the software position limits (0x607D)."""
+    low, high = dictionary.number(0x607D, 1), dictionary.number(0x607D, 2)
+    return min(max(target, low), high) if low < high else target

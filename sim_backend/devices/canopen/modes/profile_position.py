@@ -1,10 +1,8 @@
 """Profile position (1): the drive plans the move to a target by itself."""
 
-from collections.abc import Callable
-
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import HALT, SET_POINT_TAKEN, TARGET_REACHED, Seen
-from sim_backend.devices.canopen.modes.position_loop import PositionLoop
+from sim_backend.devices.canopen.modes.mode import HALT, SET_POINT_TAKEN, TARGET_REACHED, Seen, Units
+from sim_backend.devices.canopen.modes.position_loop import PositionLoop, within_limits
 from sim_backend.devices.canopen.modes.trapezoid import Trapezoid
 from sim_backend.devices.canopen.objects.drive_profile import NO_WINDOW
 
@@ -20,13 +18,13 @@ class ProfilePosition:
     Args:
         dictionary: the drive's.
         loop: its position controller.
-        counts_per_s: speed of a number in the drive's unit of velocity.
+        units: of the drive.
     """
 
-    def __init__(self, dictionary: Dictionary, loop: PositionLoop, counts_per_s: Callable[[int], float]) -> None:
+    def __init__(self, dictionary: Dictionary, loop: PositionLoop, units: Units) -> None:
         self._dictionary = dictionary
         self._loop = loop
-        self._counts_per_s = counts_per_s
+        self._units = units
         self._profile = Trapezoid()
         self._waiting: float | None = None
         self._controlword = 0
@@ -56,7 +54,7 @@ class ProfilePosition:
     def torque(self, seen: Seen) -> float:
         """Return the torque [permille]."""
         top, acceleration, deceleration = (
-            self._counts_per_s(self._dictionary.number(index)) for index in (0x6081, 0x6083, 0x6084)
+            self._units.counts_per_s(self._dictionary.number(index)) for index in (0x6081, 0x6083, 0x6084)
         )
         if self._dictionary.number(0x6040) & HALT:
             self._profile.halt(deceleration)
@@ -77,9 +75,11 @@ class ProfilePosition:
         return (SET_POINT_TAKEN if self._taken else 0) | (TARGET_REACHED if self._reached else 0)
 
     def _take(self, controlword: int) -> None:
-        target = float(self._dictionary.number(0x607A))
+        asked = self._dictionary.number(0x607A)
         if controlword & _RELATIVE:
-            target += self._profile.target
+            target = self._units.counts(asked) + self._profile.target
+        else:
+            target = self._units.counts(within_limits(asked, self._dictionary))
         self._taken, self._reached = True, False
         if controlword & _AT_ONCE or self._profile.done:
             self._profile.target = target
@@ -91,7 +91,7 @@ class ProfilePosition:
         if self._dictionary.number(0x6040) & HALT:
             self._reached = self._profile.speed == 0.0
             return
-        near = window == NO_WINDOW or abs(self._profile.target - seen.counts) <= window
+        near = window == NO_WINDOW or abs(self._profile.target - seen.counts) <= self._units.counts(window)
         if not (self._profile.done and near):
             self._within_s = seen.time_s
             self._reached = False

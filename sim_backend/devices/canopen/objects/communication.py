@@ -33,6 +33,8 @@ def communication(vendor: int, product: int, revision: int, serial: int, name: s
         variable(0x1005, "COB-ID SYNC message", U32, RW, 0x80),
         variable(0x1008, "Manufacturer device name", TEXT, CONST, name),
         variable(0x100A, "Manufacturer software version", TEXT, CONST, version),
+        variable(0x100C, "Guard time", U16),  # ms
+        variable(0x100D, "Life time factor", U8),
         variable(0x1014, "COB-ID emergency message", U32, RO, 0x80, with_node_id=True),
         record(
             0x1016,
@@ -66,7 +68,12 @@ def _error_history() -> Object:
 
 def _pdos() -> Iterator[Object]:
     for number, cob_id in enumerate(_RPDO_COB_IDS):
-        yield record(0x1400 + number, f"RPDO {number + 1} communication parameter", *_link(number, cob_id))
+        yield record(
+            0x1400 + number,
+            f"RPDO {number + 1} communication parameter",
+            *_link(number, cob_id),
+            Entry(5, "Event timer", U16),  # ms
+        )
     for number in range(PDOS):
         yield _mapping(0x1600 + number, f"RPDO {number + 1} mapping parameter", number, _CONTROLWORD)
     for number, cob_id in enumerate(_TPDO_COB_IDS):

@@ -1,7 +1,7 @@
 """The CiA 402 objects that every drive of ours has."""
 
 from sim_backend.devices.canopen.data_types import I8, I16, I32, U16, U32
-from sim_backend.devices.canopen.objects.entry import Access, Object, variable
+from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record, variable
 
 RO, RW = Access.RO, Access.RW
 POSITION_UNIT_INCREMENTS = 0x00B50000
@@ -38,6 +38,7 @@ def drive_profile(modes: int, velocity_unit: int, quick_stop: int) -> list[Objec
         variable(0x6076, "Motor rated torque", U32, RW),
         variable(0x6077, "Torque actual value", I16, RO, mappable=True),  # permille of rated torque
         variable(0x607A, "Target position", I32, RW, mappable=True),
+        record(0x607D, "Software position limit", Entry(1, "Minimum", I32), Entry(2, "Maximum", I32)),  # 0, 0: none
         variable(0x6081, "Profile velocity", U32, RW, mappable=True),
         variable(0x6083, "Profile acceleration", U32, RW, mappable=True, low=1),
         variable(0x6084, "Profile deceleration", U32, RW, mappable=True, low=1),
@@ -45,7 +46,9 @@ def drive_profile(modes: int, velocity_unit: int, quick_stop: int) -> list[Objec
         variable(0x6086, "Motion profile type", I16, RW, 0, low=0, high=0),  # trapezoid
         variable(0x60A8, "SI unit position", U32, RO, POSITION_UNIT_INCREMENTS),
         variable(0x60A9, "SI unit velocity", U32, RO, velocity_unit),
+        variable(0x60B1, "Velocity offset", I32, RW, mappable=True),
         variable(0x60B2, "Torque offset", I16, RW, mappable=True),
         variable(0x60F4, "Following error actual value", I32, RO, mappable=True),
+        variable(0x60FF, "Target velocity", I32, RW, mappable=True),
         variable(0x6502, "Supported drive modes", U32, RO, modes),
     ]

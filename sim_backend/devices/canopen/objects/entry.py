@@ -11,7 +11,15 @@ class Access(Enum):
 
     CONST = "const"
     RO = "ro"
+    WO = "wo"
     RW = "rw"
+    RWR = "rwr"  # of what may be put into PDOs: into TPDOs alone
+    RWW = "rww"  # into RPDOs alone
+
+    @property
+    def writable(self) -> bool:
+        """Whether a host may write it."""
+        return self not in (Access.CONST, Access.RO)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +35,7 @@ class Entry:
         mappable: into PDOs: a readable one into TPDOs, a writable one into RPDOs too.
         low, high: narrower than the type, where not None.
         with_node_id: the node's number is added to the default.
+        hidden: the drive works with it, and no host can reach it.
     """
 
     subindex: int
@@ -38,6 +47,13 @@ class Entry:
     low: int | None = None
     high: int | None = None
     with_node_id: bool = False
+    hidden: bool = False
+
+    def fits(self, received: bool) -> bool:
+        """Whether it may be put into an RPDO, or else into a TPDO."""
+        if not self.mappable or self.hidden:
+            return False
+        return self.access.writable and self.access is not Access.RWR if received else self.access is not Access.WO
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,11 @@ class Rating:
         return self.current_a * self.torque_constant_n_m_a
 
 
+def increment(counts_per_turn: float) -> float:
+    """Return the motor angle of one increment of the encoder [rad]."""
+    return 2.0 * pi / counts_per_turn
+
+
 @dataclass(frozen=True)
 class Family:
     """What distinguishes drives.
@@ -50,8 +55,11 @@ class Family:
         modes: numbers of 0x6060 that it has.
         objects: its dictionary, for a rating.
         velocity_rad_s: motor speed of one unit of velocity [rad/s], for the encoder's counts per turn.
+        position_rad: motor angle of one unit of position [rad], for the encoder's counts per turn.
         torque_unit_n_m: torque of one unit of 0x6076 [N m].
         peak: where the largest current is, and what its unit is in A, for a rating.
+        own_objects: objects beyond CiA 402 that tell something, of those that `Measured` knows.
+        node_id: node number that it is configured for; None: any.
     """
 
     name: str
@@ -61,6 +69,9 @@ class Family:
     velocity_rad_s: Callable[[float], float]
     torque_unit_n_m: float
     peak: tuple[tuple[Place, Callable[[Rating], float]], ...]
+    position_rad: Callable[[float], float] = increment
+    own_objects: frozenset[Place] = frozenset()
+    node_id: int | None = None
 
 
 def mode_bits(modes: frozenset[int]) -> int:

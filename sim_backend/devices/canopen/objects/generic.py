@@ -8,7 +8,7 @@ from sim_backend.devices.canopen.objects.family import Family, Rating, increment
 
 RO, RW = Access.RO, Access.RW
 VELOCITY_UNIT_INCREMENTS_PER_S = 0x00B50300
-_MODES = frozenset({1, 4, 8, 10})
+_MODES = frozenset({1, 3, 4, 8, 9, 10})
 _NAME = "friction-bench CiA 402 drive, simulated"
 
 
@@ -58,6 +58,7 @@ GENERIC = Family(
     objects=_objects,
     velocity_rad_s=increments_per_s,
     torque_unit_n_m=1e-3,
+    own_objects=frozenset({(0x2001, 0), (0x2002, 0)}),
     peak=(
         ((0x6072, 0), lambda rating: rating.current_a * 1e-3),
         ((0x6073, 0), lambda rating: rating.current_a * 1e-3),

@@ -1,6 +1,7 @@
 """The node on a python-can bus: virtual in one process, socketcan where the kernel has it."""
 
 import threading
+from typing import Any
 
 import can
 
@@ -19,13 +20,21 @@ class BusPort(threading.Thread):
         clock: of the device.
         interface: of python-can: "virtual", "socketcan" ...
         channel: of that interface.
+        more: what the interface takes beside it.
     """
 
-    def __init__(self, device: CanDevice, clock: WallTime, interface: str, channel: str) -> None:
+    def __init__(
+        self,
+        device: CanDevice,
+        clock: WallTime,
+        interface: str,
+        channel: str,
+        more: dict[str, Any] | None = None,
+    ) -> None:
         super().__init__(name="device CAN bus", daemon=True)
         self._device = device
         self._clock = clock
-        self._bus = can.Bus(interface=interface, channel=channel, receive_own_messages=False)
+        self._bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **(more or {}))
         self._closing = threading.Event()
         self.path = channel
         self.lost_frames = 0

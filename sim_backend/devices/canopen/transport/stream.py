@@ -8,8 +8,7 @@ from collections.abc import Callable
 from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.transport.adapter import Adapter
 from sim_backend.devices.link.faults import Direction
-from sim_backend.devices.link.line import Line
-from sim_backend.devices.link.pause import pause_until
+from sim_backend.devices.link.line import Line, pause_until
 from sim_backend.devices.wall_time import WallTime
 
 

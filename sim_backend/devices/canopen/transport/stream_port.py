@@ -12,8 +12,7 @@ from sim_backend.devices.canopen.transport.socketcand import SocketcandSession
 from sim_backend.devices.canopen.transport.stream import Stream
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.port import LOOK_UP_S, PortThread
-from sim_backend.devices.link.pseudo_terminal import PseudoTerminal
-from sim_backend.devices.link.unwritten import Unwritten
+from sim_backend.devices.link.pseudo_terminal import PseudoTerminal, Unwritten
 from sim_backend.devices.wall_time import WallTime
 
 

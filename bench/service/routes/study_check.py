@@ -1,0 +1,59 @@
+"""/studies/check: whether trials can carry a model, and what to hold out, before a study is made of them."""
+
+from fastapi import APIRouter, Depends, Request
+from pydantic import BaseModel, ConfigDict, Field
+
+from bench.service.auth.access import allow_read, require_viewer
+from bench.service.compute import in_worker
+from bench.service.http.problems import problems
+from bench.service.services import StoreOf
+from bench.store import Store
+
+router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+
+
+class ToCheck(BaseModel):
+    """Which trials a study would be made of."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"experiment_ids": [3, 4]}]})
+    experiment_ids: list[int] = Field(min_length=1, max_length=1000, description="experiments whose trials are used")
+    hold_out: list[str] = Field(default=[], max_length=1000, description="as of a new study")
+    where: list[str] = Field(default=[], max_length=1000, description="as of a new study")
+
+
+class Checked(BaseModel):
+    """What trials hold for a model."""
+
+    carries: bool = Field(description="whether they hold enough motion to fit the base model")
+    sentence: str
+    rows: int = Field(description="in which the joint slides, of the trials that are fitted")
+    parameters: int = Field(description="of the base model")
+    still: list[str] = Field(description="trials in which the joint does not slide")
+    hold_out: str = Field(description="criterion that would judge the model well; empty: there is none")
+    advice: str = Field(description="why that one")
+
+
+@router.post(
+    "/check",
+    summary="Can these trials carry a model?",
+    dependencies=[Depends(require_viewer)],
+    responses=problems(401, 404, 422),
+)
+async def check(request: Request, store: StoreOf, body: ToCheck) -> Checked:
+    """Nothing is kept. Takes about as long as making the study without its fit."""
+    return await in_worker(request, _checked, store, body)
+
+
+def _checked(store: Store, body: ToCheck) -> Checked:
+    from bench.study.carrying import check_trials  # the lab is imported when it is first needed
+
+    found = check_trials(store, body.experiment_ids, body.hold_out, body.where)
+    return Checked(
+        carries=found.carries,
+        sentence=found.sentence,
+        rows=found.rows,
+        parameters=found.parameters,
+        still=list(found.still),
+        hold_out=found.hold_out,
+        advice=found.advice,
+    )

@@ -1,0 +1,66 @@
+"""The head of a study's report: when, who, on what, with which software; and what came out in three sentences."""
+
+from collections.abc import Iterable
+from datetime import UTC, datetime
+
+from bench.provenance import software
+from bench.report import Section, Table
+from bench.store import Store
+from bench.store.records import Experiment
+from bench.study.models.ladder import Ladder
+from bench.study.models.study import Study
+from bench.study.report.model_sections import percent
+
+NOT_TOLD = "not told"
+
+
+def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store) -> Section:
+    """What whoever files the report looks for first.
+
+    Args:
+        study: which one.
+        rungs: its models.
+        diagnosis: of the newest model, in a sentence.
+        store: with its experiments.
+    """
+    numbers = dict.fromkeys(store.trial(one.trial_id).experiment_id for one in study.trials)
+    experiments = [store.experiment(number) for number in numbers]
+    now = software()
+    drives = [one.provenance.get("drive") or {} for one in experiments]
+    facts = [
+        ("date", datetime.now(UTC).astimezone().isoformat(sep=" ", timespec="minutes")),
+        ("recorded", _days(experiments)),
+        ("operator", _joined(one.operator for one in experiments)),
+        ("rig", _joined(str(one.rig.get("name", "")) for one in experiments)),
+        ("drive", _joined(" ".join(str(d[k]) for k in ("vendor", "product", "firmware") if d.get(k)) for d in drives)),
+        ("source", _joined(one.source for one in experiments)),
+        ("version", str(now.get("version") or NOT_TOLD)),
+        ("commit", str(now.get("commit") or NOT_TOLD)),
+    ]
+    return Section("In short", summary(study, rungs, diagnosis), [Table("Head", ["", ""], facts)])
+
+
+def summary(study: Study, rungs: Ladder, diagnosis: str) -> list[str]:
+    """What was measured, what the model is off by, what it lacks."""
+    held = sum(one.role == "held_out" for one in study.trials)
+    first, last = rungs.rungs[0], rungs.rungs[-1]
+    added = [name.replace("_", " ") for name in last.effects if name not in first.effects]
+    error = f"{percent(last.held_out)} ({percent(last.held_out_low)} .. {percent(last.held_out_high)})"
+    if added:
+        off = f"With {' and '.join(added)} the error goes from {percent(first.held_out)} to {error} of the effort"
+    else:
+        off = f"The model is off by {error} of the effort"
+    return [
+        f"{len(study.trials)} trials were measured, of which {held} judge the model.",
+        f"{off}, on trials that it was not fitted to.",
+        diagnosis,
+    ]
+
+
+def _days(experiments: Iterable[Experiment]) -> str:
+    days = sorted({one.started_utc.date().isoformat() for one in experiments})
+    return days[0] if len(days) == 1 else f"{days[0]} .. {days[-1]}"
+
+
+def _joined(values: Iterable[str]) -> str:
+    return ", ".join(dict.fromkeys(value for value in values if value)) or NOT_TOLD

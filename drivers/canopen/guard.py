@@ -1,0 +1,242 @@
+"""The drive's own watchdog: how it notices that its host is silent, and what it does then.
+
+Whichever of these the drive has, in this order: heartbeat consumer (0x1016), life guarding (0x100C, 0x100D), the event
+timer of an RPDO (0x140n:05); with a reaction that it lets be set (0x6007), before one that it keeps for itself. As a
+last resort one that the person at the drive has set, where the configuration says so. A reaction that the drive does
+not tell is tried before the first motion (`guard_trial`).
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+from drivers.canopen.cia301.heartbeat import NmtState
+from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.object_table import Need, ObjectTable
+from drivers.canopen.cia301.objects import (
+    BEHAVIOUR_ON_COMMUNICATION_ERROR,
+    CONNECTION_LOSS_OPTION,
+    CONSUMER_HEARTBEAT,
+    GUARD_TIME,
+    LIFE_TIME_FACTOR,
+    PRODUCER_HEARTBEAT,
+    QUICK_STOP_DECELERATION,
+    QUICK_STOP_OPTION,
+    DataType,
+    DriveObject,
+)
+from drivers.canopen.cia301.pdo import communication
+from drivers.canopen.settings import CanopenSettings
+from drivers.errors import DriveConfigurationError, DriveError, WatchdogError
+
+_QUICK_STOP, _DISABLE, _FAULT = 3, 2, 1  # 0x6007
+_RAMP_THEN_OFF, _OFF_AT_ONCE = 2, 0  # 0x605A: on the quick-stop ramp, then power off; power off
+_ENDS_IN_OFF: Final = range(5)  # codes of 0x605A that end in power off; 5 .. 8 stay in quick stop active
+_STAY_OPERATIONAL: Final = 1  # 0x1029:01: keep sending TPDOs, so that the fault is heard of
+_LIFE_FACTOR: Final = 4
+_SIGNS: Final = 4  # of life that the host gives while the drive waits for one
+_PURPOSE: Final = "watchdog: stops when the host is silent"
+
+
+class Kind(Enum):
+    """How the drive notices."""
+
+    HEARTBEAT = "heartbeat consumer 0x1016"
+    LIFE = "life guarding 0x100C, 0x100D"
+    RPDO = "event timer of the RPDO in use"
+    IN_DRIVE = "set in the drive, by the configuration"
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """What the drive does then.
+
+    Attributes:
+        told: whether the drive's dictionary says it.
+        words: for messages.
+    """
+
+    told: bool
+    words: str
+
+
+class Guard:
+    """The watchdog of one drive. It watches only while the power is to be on: with the power off nobody has to call.
+
+    Args:
+        table: of the drive's objects.
+        link: open.
+        settings: its time-out.
+        host_id: node ID of this host.
+
+    Attributes:
+        armed: whether it watches now.
+        tried: whether it has been seen to stop the drive since opening.
+    """
+
+    def __init__(self, table: ObjectTable, link: CanLink, settings: CanopenSettings, host_id: int) -> None:
+        self._table = table
+        self._link = link
+        self._settings = settings
+        self._host_id = host_id
+        self._kind = Kind.IN_DRIVE
+        self._reaction = Reaction(False, "")
+        self._timers: tuple[DriveObject, ...] = ()
+        self._sign_s = float("-inf")
+        self.armed = False
+        self.tried = False
+
+    @property
+    def kind(self) -> Kind:
+        """How the drive notices."""
+        return self._kind
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the drive's own dictionary says that it stops; else it has to be tried."""
+        return self._reaction.told and self._kind is not Kind.IN_DRIVE
+
+    @property
+    def words(self) -> str:
+        """What it is, for a person."""
+        return f"{self._kind.value}, {self._settings.watchdog_s:g} s; then {self._reaction.words}"
+
+    def prepare(self) -> None:
+        """Choose how the drive is to watch, set what it does then, and try each object: on, read back, off again.
+
+        Raises:
+            WatchdogError: it has nothing of the kind, or the objects cannot be set; with each reason.
+        """
+        self._reaction = self._prepare_reaction()
+        self._table.try_set(BEHAVIOUR_ON_COMMUNICATION_ERROR, _STAY_OPERATIONAL, "the fault is still told by PDO")
+        refusals = []
+        for kind in (Kind.HEARTBEAT, Kind.LIFE, Kind.RPDO):
+            why = self._try(kind)
+            if not why:
+                break
+            refusals.append(f"{kind.value}: {why}")
+        else:
+            self._accept_own(refusals)
+        self._table.note(self._kind.value, Need.REQUIRED, _PURPOSE, True, f"then {self._reaction.words}")
+
+    def watch_demands(self, numbers: tuple[int, ...]) -> None:
+        """Tell which RPDOs carry demands: their event timers watch, where nothing else does."""
+        if self._kind is Kind.RPDO:
+            self._timers = tuple(_timer(number) for number in numbers)
+
+    def arm(self) -> None:
+        """From the next sign of the host on, the drive counts.
+
+        Raises:
+            WatchdogError: it does not.
+        """
+        self.armed = True  # even where reading back fails: it may have been set
+        try:
+            for item, value in self._watching():
+                self._table.set(item, value, _PURPOSE)
+        except DriveConfigurationError as error:
+            raise WatchdogError(self._settings.device, f"the watchdog cannot be set: {error}") from error
+        self.hurry()
+
+    def disarm(self) -> None:
+        """The drive no longer counts. Only with the power off."""
+        for item, _ in reversed(self._watching()):
+            self._table.set(item, 0, _PURPOSE)
+        self.armed = False
+
+    def sign(self, now_s: float) -> None:
+        """Give a sign of life if one is due. The control loop alone does: one that hangs is silent."""
+        if now_s - self._sign_s < self._settings.watchdog_s / _SIGNS:
+            return
+        self._sign_s = now_s
+        if self._kind is Kind.HEARTBEAT:
+            self._link.send_message(0x700 + self._host_id, bytes([NmtState.OPERATIONAL]))
+        elif self._kind is Kind.LIFE and self.armed:
+            self._link.send_message(0x700 + self._settings.node_id, b"", remote=True)
+
+    def hurry(self) -> None:
+        """The next sign is due at once: a drive counts only from the first after it was told to."""
+        self._sign_s = float("-inf")
+
+    @property
+    def silences_heartbeat(self) -> bool:
+        """Whether the drive answers requests instead of sending heartbeats of its own."""
+        return self._kind is Kind.LIFE
+
+    def _watching(self) -> list[tuple[DriveObject, int]]:
+        """The objects that make it watch, and their values."""
+        time_ms = round(self._settings.watchdog_s * 1000)
+        match self._kind:
+            case Kind.HEARTBEAT:
+                return [(CONSUMER_HEARTBEAT, self._host_id << 16 | time_ms)]
+            case Kind.LIFE:
+                return [(GUARD_TIME, max(time_ms // _LIFE_FACTOR, 1)), (LIFE_TIME_FACTOR, _LIFE_FACTOR)]
+            case Kind.RPDO:
+                return [(timer, time_ms) for timer in self._timers]
+            case Kind.IN_DRIVE:
+                return []
+
+    def _try(self, kind: Kind) -> str:
+        """Switch a kind on and off again; return why it cannot be used, "" where it can."""
+        if kind is Kind.LIFE and not self._settings.bus.sends_remote_frames:
+            return f"python-can sends no remote frames over {self._settings.bus.interface}"
+        self._kind, self._timers = kind, (_timer(1),)
+        try:
+            if kind is Kind.LIFE:  # a node that sends heartbeats does not guard
+                self._table.try_set(PRODUCER_HEARTBEAT, 0, "the drive is asked instead")
+            self.arm()
+            self.disarm()
+        except DriveError as error:
+            self.armed = False
+            return _without_name(error.__cause__ or error, self._settings.device)
+        return ""
+
+    def _accept_own(self, refusals: list[str]) -> None:
+        if not self._settings.watchdog_is_set_in_drive:
+            raise WatchdogError(
+                self._settings.device,
+                f"it has no watchdog that can be set: {'; '.join(refusals)}. Without one it must not move: it would go "
+                "on when this host dies. Where the drive's own tool has set one, say watchdog_is_set_in_drive = true; "
+                "it is tried before the first motion",
+            )
+        self._kind = Kind.IN_DRIVE
+        self._reaction = Reaction(False, "whatever was set with the drive's own tool")
+
+    def _prepare_reaction(self) -> Reaction:
+        if self._table.ask(CONNECTION_LOSS_OPTION, _PURPOSE) is None:
+            return Reaction(False, f"what it does by itself, for it has no {CONNECTION_LOSS_OPTION}")
+        codes = (_QUICK_STOP, _DISABLE, _FAULT) if self._prepare_quick_stop() else (_DISABLE, _FAULT)
+        words = {_QUICK_STOP: "quick stop", _DISABLE: "power off", _FAULT: "fault"}
+        for code in codes:
+            if self._table.try_set(CONNECTION_LOSS_OPTION, code, _PURPOSE):
+                return Reaction(True, f"{words[code]} (0x6007 = {code})")
+        raise WatchdogError(
+            self._settings.device,
+            f"the watchdog cannot be set: {CONNECTION_LOSS_OPTION} takes none of quick stop (3), power off (2), fault "
+            f"(1): {self._table.outcome(CONNECTION_LOSS_OPTION, _PURPOSE)}. Without it the drive must not move",
+        )
+
+    def _prepare_quick_stop(self) -> bool:
+        """Have quick stops end in power off; tell whether they do."""
+        # a ramp of 0 brakes nothing
+        ramp = self._table.ask(QUICK_STOP_DECELERATION, "quick stop")
+        wanted = _OFF_AT_ONCE if ramp == 0 else _RAMP_THEN_OFF
+        before = self._table.ask(QUICK_STOP_OPTION, "quick stop")
+        if before is None:
+            return ramp != 0  # CiA 402: by default it brakes on the ramp, then switches off
+        return self._table.try_set(QUICK_STOP_OPTION, wanted, "quick stop") or (ramp != 0 and before in _ENDS_IN_OFF)
+
+
+def _without_name(error: BaseException, device: str) -> str:
+    """A message that becomes part of another of the same drive."""
+    return str(error).removeprefix(f"drive '{device}': ")
+
+
+def heartbeat_ms(settings: CanopenSettings) -> int:
+    """How often the drive sends its own heartbeat [ms]."""
+    return max(round(settings.watchdog_s * 1000) // 2, 1)
+
+
+def _timer(number: int) -> DriveObject:
+    """Event timer of an RPDO."""
+    return communication(number, False, 5, DataType.U16, "event timer")

@@ -1,0 +1,82 @@
+"""What travels in every cycle, by what the drive has: PDOs and the interpolation period."""
+
+from drivers.canopen.capabilities import Capabilities
+from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.object_table import Need, ObjectTable
+from drivers.canopen.cia301.objects import (
+    INTERPOLATION_EXPONENT,
+    INTERPOLATION_PERIOD,
+    POSITION,
+    STATUSWORD,
+    SYNC_COB_ID,
+    TARGET_POSITION,
+    TARGET_TORQUE,
+    TARGET_VELOCITY,
+    TORQUE_OFFSET,
+    VELOCITY,
+    DriveObject,
+)
+from drivers.canopen.cia402.modes import TARGETS
+from drivers.canopen.cia402.process_data import Arrangement, ProcessData
+from drivers.canopen.cia402.units import interpolation_periods
+from drivers.canopen.settings import CanopenSettings
+
+_SYNC = 0x80
+_SYNC_MATTERS = 0x4000_07FF  # of 0x1005: the COB-ID, and whether the drive produces SYNC
+_PURPOSE = "interpolation of positions"
+
+
+def set_interpolation(table: ObjectTable, period_s: float) -> None:
+    """Tell the drive how often positions come, where it wants to know (0x60C2).
+
+    Args:
+        table: of the drive's objects.
+        period_s: control period [s].
+    """
+    if table.ask(INTERPOLATION_PERIOD, _PURPOSE) is None:
+        return
+    exponent = table.ask(INTERPOLATION_EXPONENT, _PURPOSE)
+    for number, power in interpolation_periods(period_s, exponent):
+        same = exponent is None or power == exponent or table.try_set(INTERPOLATION_EXPONENT, power, _PURPOSE)
+        if same and table.try_set(INTERPOLATION_PERIOD, number, _PURPOSE):
+            return
+    if exponent is not None:
+        table.try_set(INTERPOLATION_EXPONENT, exponent, _PURPOSE)  # as it was found
+
+
+def set_up_pdos(
+    table: ObjectTable, access: ObjectAccess, settings: CanopenSettings, found: Capabilities
+) -> ProcessData:
+    """Configure SYNC and the PDOs.
+
+    Raises:
+        DriveConfigurationError: SYNC is elsewhere, or a PDO that is required has no room.
+    """
+    _require_sync(table)
+    duty = found.profile.duty if settings.duty_sign_from_current else None
+    state = [STATUSWORD, *(item for item in (found.current, duty) if item in found.present and item is not None)]
+    motion = [POSITION, *(item for item in (VELOCITY,) if item in found.present)]
+    # with every target: a drive adds the offset in other modes too, and keeps the last one it was given
+    offsets = [TORQUE_OFFSET] if TORQUE_OFFSET in found.present else []
+    arrangement = Arrangement(access, settings.device, settings.node_id)
+    data = arrangement.arrange(_targets(table, found), offsets, [state, motion])
+    for pdo in (*data.demands.values(), *data.tpdos):
+        table.note(pdo, Need.REQUIRED, "process data", True, ", ".join(map(str, pdo.layout.entries)))
+    for item in data.lost:
+        table.note(item, Need.WISHED, "process data", False, "no room in a TPDO: not measured")
+    return data
+
+
+def _require_sync(table: ObjectTable) -> None:
+    """SYNC at the COB-ID of CiA 301, and the drive does not produce it (bit 30). Many drives have it fixed."""
+    found = table.ask(SYNC_COB_ID, "SYNC", Need.REQUIRED)
+    if found is not None and found & _SYNC_MATTERS != _SYNC:
+        table.set(SYNC_COB_ID, _SYNC, "SYNC")
+
+
+def _targets(table: ObjectTable, found: Capabilities) -> list[DriveObject]:
+    """One for each mode; where the drive offers none, whichever target it has: it can be looked at all the same."""
+    used = dict.fromkeys(TARGETS[code] for code in found.modes.values())
+    if used:
+        return list(used)
+    return [item for item in (TARGET_POSITION, TARGET_VELOCITY, TARGET_TORQUE) if table.has(item, "process data")][:1]

@@ -1,0 +1,50 @@
+"""Each trait that real drives have, alone: the drive runs, or is refused for want of a watchdog."""
+
+import pytest
+
+from drivers.contract import Watchdog
+from sim_backend.devices.canopen.conduct import Conduct
+from tests.drivers.dictionaries.attempt import attempt
+from tests.drivers.dictionaries.traits import TRAITS
+
+MANNERS = {
+    "looks-every-20-ms": Conduct(look_s=0.02),
+    "mode-shown-late": Conduct(mode_shown_enabled=True),
+    "late-answers": Conduct(answer_s=0.03),
+    "other-abort-codes": Conduct(absent_code=0x08000000, refused_code=0x060A0023),
+    "slow-brake": Conduct(enable_s=0.6),
+}
+
+
+@pytest.mark.parametrize("name", TRAITS)
+def test_a_drive_with_this_trait_runs_or_is_refused_for_safety(name, tmp_path) -> None:
+    trait = TRAITS[name]
+    result = attempt(trait.write(tmp_path, name), **trait.settings)
+    assert result.is_right, result
+    assert result.is_safety is trait.is_refused, result
+    if not trait.is_refused:
+        assert result.modes == trait.modes
+
+
+@pytest.mark.parametrize("name", MANNERS)
+def test_a_drive_with_these_manners_runs(name, tmp_path) -> None:
+    trait = TRAITS["no-current"]  # one with something absent to be told of
+    result = attempt(trait.write(tmp_path, name), MANNERS[name])
+    assert result.is_right, result
+    assert not result.is_safety
+
+
+@pytest.mark.parametrize("name", ["plain", "life-guarding", "rpdo-timer", "no-reaction-object"])
+def test_a_drive_that_never_watches_is_never_called_proven(name, tmp_path) -> None:
+    result = attempt(TRAITS[name].write(tmp_path, name), Conduct(deaf=True))
+    assert result.watchdog is not Watchdog.PROVEN
+    assert not result.stopped
+
+
+def test_a_reaction_that_the_drive_does_not_tell_is_tried_before_the_first_motion(tmp_path) -> None:
+    sheet = TRAITS["no-reaction-object"].write(tmp_path, "sheet")
+    assert attempt(sheet).watchdog is Watchdog.PROVEN
+    refused = attempt(sheet, Conduct(reaction="nothing"))
+    assert refused.opened
+    assert refused.is_safety
+    assert not refused.moved

@@ -1,0 +1,57 @@
+"""`friction-bench doctor --move` on a simulated device: the proof of its watchdog, in the record of every run after."""
+
+import json
+
+import pytest
+import tomli_w
+
+from bench.config.configuration import default_configuration
+from bench.store import Store
+from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
+from tests.cli.conftest import command  # noqa: F401  a fixture
+
+
+@pytest.fixture
+def device():
+    with serve_roboclaw(RoboClawSettings()) as running:
+        yield running
+
+
+@pytest.fixture
+def on_device(command, device, tmp_path):  # noqa: F811
+    """Runs `friction-bench --config bench.toml ...` on the device."""
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    values["control"]["period_s"] = 0.02
+    values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+    values["drive"] = {
+        "kind": "roboclaw", "port": device.path, "side_channel": device.side_channel, "watchdog_s": 1.0,
+        "answer_timeout_s": 0.3,
+    }  # fmt: skip
+    (tmp_path / "bench.toml").write_text(tomli_w.dumps(values))
+    return lambda *words: command("--config", "bench.toml", *words)
+
+
+def watchdogs(folder):
+    """What the records say, the newest first."""
+    with Store.open(f"sqlite:///{folder / 'friction-bench.sqlite'}") as store:
+        return [found.provenance["drive"]["watchdog"] for found in store.experiments()]
+
+
+def test_what_doctor_has_seen_is_in_the_record_of_each_run_after(on_device, tmp_path):
+    ran = on_device("run", "commissioning")
+    assert ran.exit_code == 0, ran.output
+    assert watchdogs(tmp_path) == ["configured, not proven"]
+    found = on_device("doctor", "--move")
+    assert found.exit_code == 0, found.output
+    assert "watchdog: proven: after 1.6 s of silence" in found.output.replace("\n", " ")
+    ran = on_device("run", "steps", "--repeats", "1")
+    assert "refused" not in ran.output
+    assert watchdogs(tmp_path)[0] == "proven"
+
+
+def test_a_drive_that_goes_on_is_not_moved_any_further(on_device, device, monkeypatch):
+    monkeypatch.setattr(device.device, "_watch", lambda: None)
+    found = on_device("doctor", "--move")
+    assert found.exit_code != 0
+    assert "watchdog: DOES NOT STOP IT" in found.output
+    assert json.loads(on_device("experiments", "--json").stdout) == []

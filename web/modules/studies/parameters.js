@@ -1,0 +1,39 @@
+// The parameters of a model with their units and intervals, and what it does at rest and at breakaway.
+
+import { h, table } from "../ui/dom.js";
+import { chanceCell, interval, number, percent } from "../ui/format.js";
+
+export function parameterTables(compared) {
+  return [parameterTable(compared), ...breakawayTable(compared), ...restTable(compared)];
+}
+
+function restTable({ at_rest: atRest, effort }) {
+  if (!atRest) return [];
+  return [table(`At rest, ${atRest.stretches} stretches of 0.1 s: beyond what friction holds`, [
+    { title: "Side", cell: (one) => one.side },
+    { title: "Outside", number: true, cell: (one) => percent(one.outside) },
+    { title: `Largest [${effort.unit}]`, number: true, cell: (one) => number(one.largest, 3) },
+    { title: "p", number: true, cell: (one) => chanceCell(one.p_value) },
+    { title: "Clearest in", cell: (one) => one.trial },
+  ], atRest.sides), h("p", { class: "soft" }, atRest.sentence)];
+}
+
+function breakawayTable({ breakaway }) {
+  if (!breakaway) return [];
+  const errors = `error ${percent(breakaway.training.relative)}, held out ${percent(breakaway.held_out.relative)}`;
+  return [parameterTable(breakaway, `Breakaway: ${breakaway.starts} starts from rest, ${errors}`)];
+}
+
+function parameterTable({ parameters }, title = "Parameters") {
+  return table(title, [
+    { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
+    { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
+    { title: "Unit", cell: (one) => unitText(one.unit) },
+    { title: "Note", cell: (one) => one.note },
+  ], parameters);
+}
+
+// "N m s2/rad" -> "N m s²/rad"
+function unitText(unit) {
+  return unit.replace(/(?<=[a-z])2/g, "²").replace(/^1$/, "");
+}
