@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from bench.service.http import written_samples
+from bench.service.http import downloads
 from bench.service.http.downloads import column, samples_json
 from bench.service.routes.trials import Samples
 
 
 def test_the_text_is_that_of_the_description(monkeypatch):
-    monkeypatch.setattr(written_samples, "AT_ONCE", 7)
+    monkeypatch.setattr(downloads, "AT_ONCE", 7)
     generator = np.random.default_rng(3)
     channels = {"time_s": np.arange(50.0) / 3.0, 'a "name"': generator.normal(size=50)}
     channels['a "name"'][[3, 7, 9]] = np.nan, np.inf, 1e-300
