@@ -104,7 +104,8 @@ def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[Need], 
     pause_s, spread_k = float(random.uniform(20.0, 120.0)), float(random.uniform(1.0, 3.0))
     if "temperature" in needs:
         spread_k = float(random.uniform(5.0, 9.0))
-    scatter = float(random.uniform(0.0, 0.01)) if level == "textbook" else float(random.uniform(0.0, 0.03))
+    # friction that differs from trial to trial is beyond the base model, and to say so is right
+    scatter = float(random.uniform(0.0, 0.03)) if level == "foreign" else 0.0
     session_s, trials = 0.0, []
     for number, kind in enumerate(kinds):
         seconds = round(float(random.uniform(6.0, 9.0)), 1)
