@@ -1,4 +1,4 @@
-"""What the base model of a joint is made of, and what its rivals are, as columns over true motion.
+"""What the base model of a joint is made of, and what its rivals are, as columns over true or measured motion.
 
 They serve the oracle alone: they are written from the same books as the mechanisms, and know no lab.
 """
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import savgol_filter
 
 from sim_backend.second_plant.mechanism import Scales
 from sim_backend.second_plant.protocol import OPEN_KINDS
@@ -15,12 +16,13 @@ from sim_backend.second_plant.recording import SecondRecording
 FloatArray = NDArray[np.float64]
 FILMS = (0.01, 0.03, 0.06, 0.12)  # Stribeck speeds, as shares of the top speed
 MOVING, SLOW = 0.01, 0.05  # of the top speed
+SMOOTH_S = 0.08  # over which measured motion is differentiated
 NEAR_RAD = 0.02  # to a reversal
 
 
 @dataclass(frozen=True)
 class Rows:
-    """True motion of all trials, one after the other; arrays of shape (n,)."""
+    """Motion of all trials, one after the other; arrays of shape (n,)."""
 
     angle: FloatArray
     speed: FloatArray
@@ -37,9 +39,15 @@ class Rows:
     stratum: NDArray[np.int64]  # 0 steady motion, 1 slow or near a reversal, 2 commanded by current
 
     @classmethod
-    def of(cls, recordings: list[SecondRecording], scales: Scales) -> "Rows":
-        """Join the trials of a joint."""
-        parts = [_of_one(one, number) for number, one in enumerate(recordings)]
+    def of(cls, recordings: list[SecondRecording], scales: Scales, measured: bool = False) -> "Rows":
+        """Join the trials of a joint.
+
+        Args:
+            recordings: of it.
+            scales: of it.
+            measured: motion from the recorded position, as whoever does not know the truth has it.
+        """
+        parts = [_of_one(one, number, measured) for number, one in enumerate(recordings)]
         angle, rate, acceleration, passed, load_kg, warm_c, session_s, way, effort, effort_rate, number = (
             np.concatenate(values) for values in zip(*parts, strict=True)
         )
@@ -53,8 +61,13 @@ class Rows:
         )  # fmt: skip
 
 
-def _of_one(one: SecondRecording, number: int) -> list[FloatArray]:
-    time_s, truth = one.channels["time_s"], one.truth
+def _of_one(one: SecondRecording, number: int, measured: bool) -> list[FloatArray]:
+    time_s, truth, effort_rate = one.channels["time_s"], one.truth, np.gradient(one.effort, one.channels["time_s"])
+    if measured:
+        position = one.channels["position_rad"]
+        angle, speed, acceleration = (_rate(time_s, position, order) for order in range(3))
+        truth = truth._replace(reading_rad=angle, speed_rad_s=speed, acceleration_rad_s2=acceleration)
+        effort_rate = _rate(time_s, one.effort, 1)
     count = len(time_s)
     return [
         truth.reading_rad,
@@ -66,9 +79,18 @@ def _of_one(one: SecondRecording, number: int) -> list[FloatArray]:
         one.session_s + time_s,
         _way(truth.reading_rad, truth.speed_rad_s),
         one.effort,
-        np.gradient(one.effort, time_s),
+        effort_rate,
         np.full(count, float(number)),
     ]
+
+
+def _rate(time_s: FloatArray, values: FloatArray, order: int) -> FloatArray:
+    """Derivative of an order, by local cubics over `SMOOTH_S` (Savitzky, Golay 1964); stamps need not be even."""
+    period_s = float(np.median(np.diff(time_s)))
+    even = np.arange(time_s[0], time_s[-1], period_s)
+    width = max(2 * int(0.5 * SMOOTH_S / period_s) + 1, 5)
+    smooth: FloatArray = savgol_filter(np.interp(even, time_s, values), width, 3, deriv=order, delta=period_s)
+    return np.asarray(np.interp(time_s, even, smooth), dtype=np.float64)
 
 
 def _way(angle: FloatArray, speed: FloatArray) -> FloatArray:

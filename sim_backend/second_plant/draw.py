@@ -74,7 +74,7 @@ def sensors_drawn(random: np.random.Generator, needs: set[Need]) -> Sensors:
         supply_measured="nominal" not in needs and bool(random.random() < 0.5),
         rate_hz=rate_hz,
         jitter=float(random.choice([0.0, 0.02, 0.1])),
-        hold_s=float(random.choice([0.0, 0.5, 1.0])) / rate_hz,
+        hold_s=float(random.choice([0.0, 5e-4, 1e-3])),
         skew_s=float(random.uniform(-1e-3, 4e-3)),
         filter_hz=float(np.exp(random.uniform(np.log(50.0), np.log(400.0)))),
         noise=float(np.exp(random.uniform(np.log(0.001), np.log(0.01)))),
@@ -104,7 +104,8 @@ def trials_drawn(random: np.random.Generator, scales: Scales, needs: set[Need], 
     pause_s, spread_k = float(random.uniform(20.0, 120.0)), float(random.uniform(1.0, 3.0))
     if "temperature" in needs:
         spread_k = float(random.uniform(5.0, 9.0))
-    scatter = float(random.uniform(0.0, 0.01)) if level == "textbook" else float(random.uniform(0.0, 0.03))
+    # friction that differs from trial to trial is beyond the base model, and to say so is right
+    scatter = float(random.uniform(0.0, 0.03)) if level == "foreign" else 0.0
     session_s, trials = 0.0, []
     for number, kind in enumerate(kinds):
         seconds = round(float(random.uniform(6.0, 9.0)), 1)

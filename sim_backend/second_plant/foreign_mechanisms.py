@@ -103,6 +103,7 @@ FOREIGN = table(
             "bias_a": 0.3 * size * s.coulomb_n_m / s.torque_per_a,
             "bias_s": float(draw.uniform(0.3, 2.0)),
         },
+        needs=("current",),
     ),
     Mechanism(
         "rub",

@@ -1,12 +1,11 @@
 """How far a mechanism stands out of recordings, from the truth: what an ideal judge could know.
 
 The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true
-motion takes what it can. What is left is the mechanism's evidence: by its power more than without, in the direction of
-the difference D. (The joint moves a little otherwise without it, so D alone holds what no model has of either.)
+motion takes what it can; the difference D of what is left is the mechanism's evidence.
 
-    s = rms that the base model leaves of the noisy joint without the mechanism, in steady motion, near reversals, and
-        where the current is commanded, each for itself
-    r^2 = mean square of what is left with it, over s, less that without
+    s = rms that the base model leaves of the joint without the mechanism, over measured motion and with noise, in
+        steady motion, near reversals, and where the current is commanded, each for itself
+    r = rms(D / s)
     lambda = n / v ln(1 + r^2),   v = (1 + rho_1) / (1 - rho_1) of that remainder (rows per independent row)
     d' = sqrt(lambda (1 - rho^2)), rho the largest correlation of D / s with another mechanism's columns
 """
@@ -67,7 +66,7 @@ def floor_of(joint: DrawnJoint, name: str) -> Floor:
         name: of the mechanism.
     """
     without = frozenset({name})
-    noisy = Rows.of(record(joint, without=without), joint.scales)
+    noisy = Rows.of(record(joint, without=without), joint.scales, measured=True)
     quiet = Rows.of(record(joint, quiet=True, without=without), joint.scales)
     left = np.ones(STRATA)
     for _ in range(2):  # least squares, then weighted by what each stratum leaves
@@ -94,11 +93,10 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
     paired = moving & floor.rows.moving
     remainder = _remainder(rows, joint, floor.left)
     difference = np.where(paired, remainder - floor.remainder, 0.0)
-    ratio = _ratio(rows, remainder, difference, floor)
     shown = difference[moving]
     basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[moving])
     shown = shown - basis @ (basis.T @ shown)
-    independent = len(shown) / floor.dependent
+    ratio, independent = float(np.sqrt(np.mean(shown**2))), len(shown) / floor.dependent
     correlation, rival = 0.0, ""
     for other, columns in rival_columns(rows, joint.scales).items():
         alike = 0.0 if other == name else _correlation(shown, basis, (columns * weight[:, None])[moving])
@@ -106,18 +104,6 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
             correlation, rival = alike, other
     strength = independent * float(np.log1p(ratio**2))
     return Evidence(ratio, float(np.sqrt(strength * (1.0 - correlation**2))), rival, independent)
-
-
-def _ratio(rows: Rows, remainder: FloatArray, difference: FloatArray, floor: Floor) -> float:
-    """r: of each stratum the power that is left more with the mechanism, never more than that of the difference."""
-    power = 0.0
-    for stratum in range(STRATA):
-        with_it = rows.moving & (rows.stratum == stratum)
-        without = floor.rows.moving & (floor.rows.stratum == stratum)
-        if with_it.any() and without.any():
-            more = float(np.mean(remainder[with_it] ** 2) - np.mean(floor.remainder[without] ** 2))
-            power += min(more, float(np.mean(difference[with_it] ** 2))) * np.count_nonzero(with_it)
-    return float(np.sqrt(max(power, 0.0) / np.count_nonzero(rows.moving)))
 
 
 def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:
