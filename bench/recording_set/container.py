@@ -1,8 +1,8 @@
-"""Where the files of a recording set are: a folder, a zip, or a single CSV. Nothing is ever unpacked to disk."""
+"""Where the files of a recording set are: a folder, a zip, or files of their own. Nothing is ever unpacked to disk."""
 
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO, Protocol
@@ -31,26 +31,47 @@ class Container(Protocol):
 
 
 class Folder:
-    """A recording set in a folder, or of one CSV in it."""
+    """A recording set in a folder."""
 
-    def __init__(self, path: Path, only: str | None = None) -> None:
-        self.path = path if only is None else path / only
-        self._folder = path
-        self._only = only
+    def __init__(self, path: Path) -> None:
+        self.path = path
 
     def files(self) -> list[str]:
         """The files at the top level of the set, sorted."""
-        if self._only is not None:
-            return [self._only]
-        return sorted(item.name for item in self._folder.iterdir() if item.is_file())
+        return sorted(item.name for item in self.path.iterdir() if item.is_file())
 
     def has(self, file: str) -> bool:
         """Whether the set has this file."""
-        return (self._only in (None, file)) and (self._folder / file).is_file()
+        return (self.path / file).is_file()
 
     def open(self, file: str) -> IO[bytes]:
         """Open a file that the set has."""
-        return (self._folder / file).open("rb")
+        return (self.path / file).open("rb")
+
+
+class Files:
+    """A recording set of single files, each a trial, in the order given."""
+
+    def __init__(self, paths: Sequence[Path]) -> None:
+        self.path = paths[0] if len(paths) == 1 else paths[0].parent
+        self._paths: dict[str, Path] = {}
+        for path in paths:
+            name = path.name if path.name not in self._paths else f"{path.parent.name}/{path.name}"
+            if name in self._paths:
+                raise RecordingSetError(str(path), "is named twice; name each file once")
+            self._paths[name] = path
+
+    def files(self) -> list[str]:
+        """Their names; where two are called the same, with the folder before it."""
+        return list(self._paths)
+
+    def has(self, file: str) -> bool:
+        """Whether it is one of them."""
+        return file in self._paths
+
+    def open(self, file: str) -> IO[bytes]:
+        """Open one of them."""
+        return self._paths[file].open("rb")
 
 
 class Zip:
@@ -75,23 +96,27 @@ class Zip:
 
 
 @contextmanager
-def open_container(path: Path) -> Iterator[Container]:
-    """The files of a recording set.
+def open_container(*paths: Path) -> Iterator[Container]:
+    """The files of a recording set: a folder, a zip, or one file or more, each a trial.
 
     Raises:
         RecordingSetError: not there, no permission, no zip, or a zip that is damaged, encrypted, too large or unsafe.
     """
+    path = paths[0]
     name = path.name
     try:
+        for one in paths:
+            if not one.exists():
+                raise RecordingSetError(str(one), "there is no such folder or file; name a folder, a zip or files")
+        if len(paths) > 1 and (wrong := [one for one in paths if one.is_dir()]):
+            raise RecordingSetError(str(wrong[0]), "is a folder among files; name one folder, or files")
         if path.is_dir():
             yield Folder(path)
-        elif path.suffix.lower() == ".csv" and path.is_file():
-            yield Folder(path.parent, only=path.name)
-        elif path.is_file():
+        elif path.suffix.lower() == ".zip" and len(paths) == 1:
             with zipfile.ZipFile(path) as archive:
                 yield Zip(path, archive)
         else:
-            raise RecordingSetError(str(path), "there is no such folder or file; name a folder, a zip or a CSV")
+            yield Files(paths)
     except (zipfile.BadZipFile, zlib.error, EOFError) as error:
         raise RecordingSetError(
             name, f"is no zip, or a damaged one ({error}); make it again, or name a folder"

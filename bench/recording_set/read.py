@@ -1,13 +1,16 @@
-"""Read a recording set: a folder, a zip, or a single CSV."""
+"""Read a recording set: a folder, a zip, or single files."""
 
-import zipfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 from bench.config.rig import Rig
-from bench.recording_set.container import Container, check_name, open_container
+from bench.recording_set.checks import check_recordings
+from bench.recording_set.container import Container, Files, check_name, open_container
+from bench.recording_set.conversion import channels_of_table
 from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.formats.column_table import ColumnTable
+from bench.recording_set.formats.registry import BINARY_ENDINGS, check_readable, is_binary, read_table
 from bench.recording_set.mapping import Mapping
 from bench.recording_set.recording_csv import read_recording_csv
 from bench.recording_set.recording_set import RecordingSet
@@ -15,6 +18,7 @@ from bench.recording_set.text.table import Table, place
 from bench.recording_set.text.toml_file import MOST_BYTES, parse_toml
 from bench.recording_set.trials_csv import (
     DEFAULT_KIND,
+    TEXT_ENDINGS,
     TRIALS_FILE,
     TrialEntry,
     condition_problem,
@@ -24,49 +28,83 @@ from bench.recording_set.trials_csv import (
 from compensator.lab.recordings.recording import Recording
 
 RIG_FILE = "rig.toml"
+MAPPING_FILE = "mapping.toml"
+SourceTable = Table | ColumnTable
 
 
-def read_recording_set(path: Path, mapping: Mapping | None = None, rig: Rig | None = None) -> RecordingSet:
+def read_recording_set(
+    path: Path | Sequence[Path], mapping: Mapping | None = None, rig: Rig | None = None
+) -> RecordingSet:
     """Read and check a whole recording set.
 
     Args:
-        path: a folder, a zip of one, or a single CSV.
-        mapping: for files of another shape.
+        path: a folder, a zip of one, or single files, each a trial.
+        mapping: for files of another shape; None takes the set's own mapping.toml, if it has one.
         rig: instead of the set's own rig.toml.
 
     Raises:
         RecordingSetError: naming file, line and column, what was found and what is wanted.
     """
-    path = Path(path).absolute()
-    mapping = mapping or Mapping()
-    with open_container(path) as container:
+    paths = [Path(one).absolute() for one in ([path] if isinstance(path, Path | str) else path)]
+    with open_container(*paths) as container:
+        mapping = mapping or own_mapping(container)
         rig = rig or _read_rig(container)
-        entries = _entries(container, mapping)
-        tables = [_table(container, entry, mapping) for entry in entries]
+        entries = entries_of(container, mapping)
+        tables = [table_of(container, entry, mapping) for entry in entries]
         _check_mapping_is_used(container, mapping, tables)
         recordings = [_read(entry, table, mapping) for entry, table in zip(entries, tables, strict=True)]
-    return RecordingSet(path.stem if path.is_file() else path.name, rig, recordings)
+        notes = [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
+    check_recordings(recordings, rig, mapping)
+    return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
+
+
+def name_of_set(paths: Sequence[Path]) -> str:
+    """The name of a set, told by where it is."""
+    first = paths[0]
+    return first.parent.name if len(paths) > 1 else first.stem if first.is_file() else first.name
+
+
+def own_mapping(container: Container) -> Mapping:
+    """The mapping that a set brings along; one that changes nothing where it has none."""
+    if not container.has(MAPPING_FILE):
+        return Mapping()
+    with container.open(MAPPING_FILE) as file:
+        return parse_toml(file.read(MOST_BYTES + 1), Mapping, place(container, MAPPING_FILE))
 
 
 def _read_rig(container: Container) -> Rig:
-    if not container.has(RIG_FILE):
-        message = 'is not there; write one with at least: name = "...", or name a rig file of your own'
-        if container.path.is_file() and not zipfile.is_zipfile(container.path):
-            raise RecordingSetError(container.path.name, "a single CSV has no rig; name one with --rig rig.toml")
-        raise RecordingSetError(place(container, RIG_FILE), message)
+    if container.has(RIG_FILE):
+        return read_rig_of(container)
+    if isinstance(container, Files):
+        raise RecordingSetError(container.path.name, "a single file has no rig; name one with --rig rig.toml")
+    message = 'is not there; write one with at least: name = "...", or name a rig file of your own'
+    raise RecordingSetError(place(container, RIG_FILE), message)
+
+
+def read_rig_of(container: Container) -> Rig:
+    """The rig that a set brings along.
+
+    Raises:
+        RecordingSetError: no TOML, an unknown key or an impossible value; names file, line and key.
+    """
     with container.open(RIG_FILE) as file:
         return parse_toml(file.read(MOST_BYTES + 1), Rig, place(container, RIG_FILE))
 
 
-def _entries(container: Container, mapping: Mapping) -> list[TrialEntry]:
+def entries_of(container: Container, mapping: Mapping) -> list[TrialEntry]:
+    """The trials of a set, in its order.
+
+    Raises:
+        RecordingSetError: a list of trials that is wrong, or no table.
+    """
     if container.has(TRIALS_FILE):
         if mapping.trials:
             message = "is there, and the mapping lists trials too; leave [[trials]] out of the mapping"
             raise RecordingSetError(place(container, TRIALS_FILE), message)
-        return read_trials_csv(Table(container, TRIALS_FILE, mapping.delimiter), mapping)
+        return read_trials_csv(_text_table(container, TRIALS_FILE, mapping, numeric=False), mapping)
     if mapping.trials:
         return _mapped(mapping)
-    files = [file for file in container.files() if file.lower().endswith(".csv")]
+    files = _tables(container)
     if not files:
         raise RecordingSetError(container.path.name, f"holds no CSV; wanted {TRIALS_FILE} and one CSV per trial")
     return [TrialEntry(file, name_of(file), DEFAULT_KIND, {}) for file in files]
@@ -85,26 +123,54 @@ def _mapped(mapping: Mapping) -> list[TrialEntry]:
     return [TrialEntry(trial.file, name_of(trial.file), trial.kind, dict(trial.conditions)) for trial in mapping.trials]
 
 
-def _table(container: Container, entry: TrialEntry, mapping: Mapping) -> Table:
+def _tables(container: Container) -> list[str]:
+    """The files that hold trials: all that were named; of a folder, those whose ending says so."""
+    files = [file for file in container.files() if file != TRIALS_FILE]
+    if isinstance(container, Files):
+        return files
+    for endings in ((".csv", *BINARY_ENDINGS), TEXT_ENDINGS):  # a text file beside tables is a remark
+        found = [file for file in files if file.lower().endswith(endings)]
+        if found:
+            return found
+    for file in files:
+        check_readable(container, file)
+    return []
+
+
+def table_of(container: Container, entry: TrialEntry, mapping: Mapping) -> SourceTable:
+    """The table of a trial, of whatever format.
+
+    Raises:
+        RecordingSetError: not there, no table, or one that cannot be read.
+    """
     if not container.has(entry.file):
-        tables = [file for file in container.files() if file.lower().endswith(".csv") and file != TRIALS_FILE]
-        there = ", ".join(tables[:10])
+        there = ", ".join(_tables(container)[:10])
         message = f"'{entry.file}' is not in the set; wanted one of its files (such as {there})"
         source = "the mapping's [[trials]]" if entry.line is None else place(container, TRIALS_FILE)
         raise RecordingSetError(source, message, entry.line, "file")
-    return Table(container, entry.file, mapping.delimiter)
+    check_readable(container, entry.file)
+    if is_binary(entry.file):
+        return read_table(container, entry.file)
+    return _text_table(container, entry.file, mapping)
 
 
-def _check_mapping_is_used(container: Container, mapping: Mapping, tables: Sequence[Table]) -> None:
+def _text_table(container: Container, file: str, mapping: Mapping, numeric: bool = True) -> Table:
+    return Table(container, file, mapping.delimiter, mapping.decimal, mapping.encoding, numeric)
+
+
+def _check_mapping_is_used(container: Container, mapping: Mapping, tables: Sequence[SourceTable]) -> None:
     there = {name for table in tables for name in table.header}
     for channel, column in mapping.columns.items():
-        if column.source not in there:
-            message = f"the mapping takes {channel} from '{column.source}', which is in no CSV; they have "
-            raise RecordingSetError(container.path.name, message + ", ".join(sorted(there)), column=column.source)
+        if missing := [name for name in column.sources if name not in there]:
+            message = f"the mapping takes {channel} from '{missing[0]}', which is in no file; they have "
+            raise RecordingSetError(container.path.name, message + ", ".join(sorted(there)), column=missing[0])
 
 
-def _read(entry: TrialEntry, table: Table, mapping: Mapping) -> Recording:
-    channels, events = read_recording_csv(table, mapping)
+def _read(entry: TrialEntry, table: SourceTable, mapping: Mapping) -> Recording:
+    if isinstance(table, Table):
+        channels, events = read_recording_csv(table, mapping)
+    else:
+        channels, events = channels_of_table(table, mapping), []
     rows = len(channels["time_s"])
     if entry.rows is not None and entry.rows != rows:
         message = f"has {rows} rows; {TRIALS_FILE}, line {entry.line}, says {entry.rows}. Is it cut off?"

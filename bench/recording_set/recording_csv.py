@@ -1,19 +1,22 @@
 """One trial from its CSV, read in chunks: memory holds the numbers, and the text of one chunk."""
 
 from array import array
-from collections.abc import Iterator, Sequence
+from itertools import islice
 
 import numpy as np
 
+from bench.recording_set.conversion import Raw, channels_of
+from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping
 from bench.recording_set.text import numbers
-from bench.recording_set.text.columns import Use, plan
-from bench.recording_set.text.table import Chunk, Row, Table
+from bench.recording_set.text.columns import TIME, plan
+from bench.recording_set.text.table import Chunk, Table
 from bench.recording_set.text.values import decode_events
 from compensator.lab.recordings.recording import Event, FloatArray
 
 MOST_ROWS = 50_000_000
 FEWEST_ROWS = 2
+MOSTLY = 0.5  # of the rows: a column that holds text in so many is one of text
 
 
 def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatArray], list[Event]]:
@@ -23,73 +26,100 @@ def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatA
         RecordingSetError: unknown columns, ragged lines, text in a number, too few or too many rows,
             a time that is not finite, stands still or runs backwards.
     """
-    uses, event_index = plan(table, mapping)
-    grown = {use.channel: array("d") for use in uses}  # grows in place, where a list of parts would double the memory
+    wanted = plan(table, mapping)
+    reader = _Reader(table, wanted.numbers, wanted.stamps, wanted.events)
+    raw = reader.raw()
+    channels, order = channels_of(raw, wanted, mapping)
     events: list[Event] = []
-    time = next(use for use in uses if use.channel == "time_s")
-    last_s = -np.inf
+    for sample, row in enumerate(range(len(raw)) if order is None else order.tolist()):
+        if row in reader.events:
+            events += decode_events(reader.events[row], float(channels[TIME][sample]))
+    return channels, events
+
+
+def read_columns(table: Table) -> dict[str, FloatArray | list[str]]:
+    """Every column of a table, as numbers where it holds numbers alone, else as text.
+
+    Raises:
+        RecordingSetError: ragged lines, too many rows.
+    """
+    text = _text_columns(table)
+    raw = _Reader(table, [name for name in table.header if name not in text], text, None).raw()
+    return {name: raw.numbers[name] if name in raw.numbers else raw.stamps[name] for name in table.header}
+
+
+def _text_columns(table: Table) -> list[str]:
+    """Columns that hold text in most rows; a word among numbers is a fault, which reading them names."""
+    texts = dict.fromkeys(table.header, 0)
+    width, decimal, rows = len(table.header), table.dialect.decimal, 0
     for chunk in table.chunks():
-        columns, rows = _read(chunk, len(table.header), uses, event_index, mapping)
-        time_s = columns["time_s"]
-        _check_time(chunk, last_s, time_s, time.source)
-        last_s = time_s[-1] if len(time_s) else last_s
-        for use in uses:
-            _check_finite(chunk, columns[use.channel], use.source)
-        if event_index is not None:
-            events += _events(rows, event_index, time_s)
-        for channel, values in columns.items():
-            grown[channel].frombytes(values.tobytes())
-        if len(grown["time_s"]) > MOST_ROWS:
-            raise table.error(f"has more than {MOST_ROWS} rows; split the trial into several files")
-    count = len(grown["time_s"])
-    if count < FEWEST_ROWS:
-        found = "1 row" if count == 1 else f"{count} rows"
-        raise table.error(f"has {found} below the header; wanted at least {FEWEST_ROWS}")
-    return {channel: np.frombuffer(values) for channel, values in grown.items()}, events
+        records = [cells for _, cells in chunk.records(width)] if _has_text(chunk, width, decimal) else []
+        rows += len(records) or chunk.text.count("\n")
+        for index, name in enumerate(table.header):
+            texts[name] += sum(not numbers.is_number(cells[index], decimal) for cells in records)
+    return [name for name, count in texts.items() if count > MOSTLY * rows]
 
 
-def _read(
-    chunk: Chunk, width: int, uses: Sequence[Use], event_index: int | None, mapping: Mapping
-) -> tuple[dict[str, FloatArray], list[Row]]:
-    """The channels of a chunk, and its rows as text where they hold events."""
-    if event_index is None or (event_index == width - 1 and chunk.last_is_empty()):
-        matrix = numbers.matrix(chunk.text, width, mapping.delimiter, mapping.decimal)
-        if matrix is not None:
-            return {use.channel: use.convert(matrix[:, use.index]) for use in uses}, []
-    rows = [cells for _, cells in chunk.records(width)]
-    return {use.channel: _column(chunk, rows, use, mapping.decimal) for use in uses}, rows
+def _has_text(chunk: Chunk, width: int, decimal: str) -> bool:
+    return numbers.matrix(chunk.text, width, chunk.delimiter, decimal) is None
 
 
-def _column(chunk: Chunk, rows: Sequence[Row], use: Use, decimal: str) -> FloatArray:
-    try:
-        return use.convert(numbers.column([cells[use.index] for cells in rows], decimal))
-    except numbers.NoNumber as error:
-        wanted = "a number in the unit of the column's name, or nothing where it is not known"
-        raise chunk.error(f"found '{error.text[:40]}'; wanted {wanted}", error.index, use.source) from None
+class _Reader:
+    """Reads the wanted columns of a table, chunk by chunk.
 
+    Attributes:
+        events: row -> cell of the column of events, where it holds any.
+    """
 
-def _events(rows: Sequence[Row], index: int, time_s: FloatArray) -> Iterator[Event]:
-    for row, cells in enumerate(rows):
-        if cells[index]:
-            yield from decode_events(cells[index], float(time_s[row]))
+    def __init__(self, table: Table, wanted: list[str], texts: list[str], events: str | None) -> None:
+        self._table = table
+        self._width, self._decimal = len(table.header), table.dialect.decimal
+        self._at = {name: table.header.index(name) for name in (*wanted, *texts)}
+        self._events_at = None if events is None else table.header.index(events)
+        # grows in place, where a list of parts would double the memory
+        self._numbers = {name: array("d") for name in wanted}
+        self._texts: dict[str, list[str]] = {name: [] for name in texts}
+        self._rows = 0
+        self.events: dict[int, str] = {}
 
+    def raw(self) -> Raw:
+        """All rows of the table."""
+        for chunk in self._table.chunks():
+            self._read(chunk)
+            if self._rows > MOST_ROWS:
+                raise self._table.error(f"has more than {MOST_ROWS} rows; split the trial into several files")
+        if self._rows < FEWEST_ROWS:
+            found = "1 row" if self._rows == 1 else f"{self._rows} rows"
+            raise self._table.error(f"has {found} below the header; wanted at least {FEWEST_ROWS}")
+        return Raw({name: np.frombuffer(values) for name, values in self._numbers.items()}, self._texts, self._error)
 
-def _check_finite(chunk: Chunk, values: FloatArray, column: str) -> None:
-    infinite = np.flatnonzero(np.isinf(values))
-    if len(infinite):
-        row = int(infinite[0])
-        raise chunk.error(f"found {values[row]}; wanted a finite number, or nothing where it is not known", row, column)
+    def _read(self, chunk: Chunk) -> None:
+        plain = self._events_at is None or (self._events_at == self._width - 1 and chunk.last_is_empty())
+        if plain and not self._texts:
+            matrix = numbers.matrix(chunk.text, self._width, chunk.delimiter, self._decimal)
+            if matrix is not None:
+                for name, values in self._numbers.items():
+                    values.frombytes(matrix[:, self._at[name]].tobytes())
+                self._rows += len(matrix)
+                return
+        rows = [cells for _, cells in chunk.records(self._width)]
+        for name, values in self._numbers.items():
+            values.frombytes(self._column(chunk, [cells[self._at[name]] for cells in rows], name).tobytes())
+        for name, texts in self._texts.items():
+            texts += [cells[self._at[name]] for cells in rows]
+        if self._events_at is not None:
+            cells_of = ((self._rows + row, cells[self._events_at]) for row, cells in enumerate(rows))
+            self.events |= {row: cell for row, cell in cells_of if cell}
+        self._rows += len(rows)
 
+    def _column(self, chunk: Chunk, cells: list[str], name: str) -> FloatArray:
+        try:
+            return numbers.column(cells, self._decimal)
+        except numbers.NoNumber as error:
+            wanted = "a number in the unit of the column's name, or nothing where it is not known"
+            raise chunk.error(f"found '{error.text[:40]}'; wanted {wanted}", error.index, name) from None
 
-def _check_time(chunk: Chunk, last_s: float, time_s: FloatArray, column: str) -> None:
-    unknown = np.flatnonzero(~np.isfinite(time_s))
-    if len(unknown):
-        row = int(unknown[0])
-        raise chunk.error(f"found {time_s[row]}; wanted a finite time in every row", row, column)
-    wrong = np.flatnonzero(np.diff(time_s, prepend=last_s) <= 0)
-    if len(wrong):
-        row = int(wrong[0])
-        before, now = float(time_s[row - 1] if row else last_s), float(time_s[row])
-        how = "stands still" if now == before else "runs backwards"
-        message = f"time {how}: found {now!r} s after {before!r} s; wanted a time that rises from row to row"
-        raise chunk.error(message, row, column)
+    def _error(self, message: str, row: int, column: str) -> RecordingSetError:
+        """An error in a row of the whole table: its line is looked for only now."""
+        lines = (line for chunk in self._table.chunks() for line, _ in chunk.records(self._width))
+        return self._table.error(message, next(islice(lines, row, None), None), column)

@@ -17,11 +17,13 @@ class RecordingSet:
         name: of the folder or zip, without its ending.
         rig: the joint as its owner knows it.
         recordings: each with a name of its own.
+        notes: how its files were read, where that is not as the format has it; in words.
     """
 
     name: str
     rig: Rig
     recordings: list[Recording]
+    notes: tuple[str, ...] = ()
 
 
 def read_rig(path: Path) -> Rig:

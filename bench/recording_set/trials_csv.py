@@ -5,13 +5,16 @@ from dataclasses import dataclass
 
 from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.mapping import Column, Mapping
+from bench.recording_set.formats.registry import BINARY_ENDINGS
+from bench.recording_set.mapping import Mapping, Renamed
 from bench.recording_set.text import values
 from bench.recording_set.text.table import Row, Table, quoted
 from compensator.lab.recordings.recording import Condition
 
 TRIALS_FILE = "trials.csv"
 DEFAULT_KIND = "recording"
+TEXT_ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".asc", ".log")
+ENDINGS = (*TEXT_ENDINGS, *BINARY_ENDINGS)
 RESERVED = ("file", "name", "kind", "rows")  # every other column is a condition
 
 
@@ -34,7 +37,8 @@ class TrialEntry:
 
 def name_of(file: str) -> str:
     """The name of a trial without a name of its own: its file, without the ending."""
-    return file[:-4] if file.lower().endswith(".csv") else file
+    stem, point, ending = file.rpartition(".")
+    return stem if point and stem and f".{ending.lower()}" in ENDINGS else file
 
 
 def read_trials_csv(table: Table, mapping: Mapping) -> list[TrialEntry]:
@@ -73,7 +77,7 @@ def trials_csv_lines(entries: Sequence[TrialEntry]) -> list[str]:
     return [",".join(map(quoted, line)) + "\n" for line in lines]
 
 
-def _places(table: Table, mapping: Mapping) -> dict[str, tuple[int, Column]]:
+def _places(table: Table, mapping: Mapping) -> dict[str, tuple[int, Renamed]]:
     """Where each column comes from: its index, and the conversion."""
     renamed = {name: column for name in mapping.trials_columns if (column := mapping.trials_column(name))}
     for name, column in renamed.items():
@@ -83,21 +87,21 @@ def _places(table: Table, mapping: Mapping) -> dict[str, tuple[int, Column]]:
         if name in table.header and column.source != name:
             raise RecordingSetError(table.place, f"is a column, and is mapped from '{column.source}' too", 1, name)
     moved = {column.source for name, column in renamed.items() if name != "kind"}
-    kept = {name: Column(source=name) for name in table.header if name not in moved}
+    kept = {name: Renamed(source=name) for name in table.header if name not in moved}
     if "file" not in kept | renamed:
         message = f"has no column 'file'; it has {', '.join(table.header)}. Name it in a mapping: [trials_columns]"
         raise RecordingSetError(table.place, message, 1)
     return {name: (table.header.index(column.source), column) for name, column in (kept | renamed).items()}
 
 
-def _entry(table: Table, line: int, cells: Row, places: dict[str, tuple[int, Column]], mapping: Mapping) -> TrialEntry:
+def _entry(table: Table, line: int, cells: Row, places: dict[str, tuple[int, Renamed]], mapping: Mapping) -> TrialEntry:
     text = {name: cells[index] for name, (index, _) in places.items()}
     file = text["file"].strip()
     check_name(file, table.place, line, "file")
     conditions: dict[str, Condition] = {}
     for name, (_, column) in places.items():
-        value = values.parse(text[name], mapping.decimal)
-        if name not in RESERVED and name not in mapping.ignore and value is not None:
+        value = values.parse(text[name], table.dialect.decimal)
+        if name not in RESERVED and not (name in mapping.ignore and mapping.ignore != "rest") and value is not None:
             conditions[values.unshield(name)] = _checked(
                 table, line, name, _converted(table, line, value, column), column
             )
@@ -106,13 +110,13 @@ def _entry(table: Table, line: int, cells: Row, places: dict[str, tuple[int, Col
     return TrialEntry(file, name, values.unshield(text.get("kind", DEFAULT_KIND)), conditions, rows, line)
 
 
-def _checked(table: Table, line: int, name: str, value: Condition, column: Column) -> Condition:
+def _checked(table: Table, line: int, name: str, value: Condition, column: Renamed) -> Condition:
     if problem := condition_problem(name, value):
         raise RecordingSetError(table.place, problem, line, column.source)
     return value
 
 
-def _converted(table: Table, line: int, value: Condition, column: Column) -> Condition:
+def _converted(table: Table, line: int, value: Condition, column: Renamed) -> Condition:
     if column.scale == 1.0 and column.offset == 0.0:
         return value
     if isinstance(value, (str, bool)):

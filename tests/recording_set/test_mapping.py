@@ -120,9 +120,9 @@ BAD: dict[str, tuple[str, str]] = {
     "no source": ("[columns.duty]\nscale = 1.0\n", "mapping.toml, line 1: columns.duty.from: missing"),
     "unknown key": ('colums = "x"\n', "mapping.toml, line 1: colums: unknown key"),
     "unknown key of a column": (
-        '[columns.position_rad]\nfrom = "x"\nunit = "deg"\n',
-        "mapping.toml, line 3: columns.position_rad.unit: unknown key; remove it or correct its spelling "
-        "(allowed: from, scale, offset)",
+        '[columns.position_rad]\nfrom = "x"\nunits = "deg"\n',
+        "mapping.toml, line 3: columns.position_rad.units: unknown key; remove it or correct its spelling "
+        "(allowed: from, scale, offset, unit, period)",
     ),
     "signs the same": ('delimiter = ","\ndecimal = ","\n', "delimiter and decimal are both ','"),
     "condition without value": (
@@ -143,7 +143,7 @@ def test_a_bad_mapping_is_explained(tmp_path: Path, what: str) -> None:
 UNFIT: dict[str, tuple[str, str]] = {
     "source nowhere": (
         '[columns.force_n]\nfrom = "drive_v"\n',
-        "the mapping takes force_n from 'drive_v', which is in no CSV; they have duty, position_rad, time_s",
+        "the mapping takes force_n from 'drive_v', which is in no file; they have duty, position_rad, time_s",
     ),
     "channel there already": ('[columns.duty]\nfrom = "position_rad"\n', "is mapped from 'position_rad' too"),
     "trial missing": (

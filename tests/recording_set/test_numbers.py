@@ -55,7 +55,7 @@ def test_a_decimal_comma_is_read_where_it_is_announced() -> None:
 
 @pytest.mark.parametrize(
     ("cells", "decimal", "index"),
-    [(["1", "x"], ".", 1), (["1_0"], ".", 0), (["1", "1.000,5"], ",", 1), (["", "--"], ".", 1)],
+    [(["1", "x"], ".", 1), (["1_0"], ".", 0), (["1", "1.000,5"], ",", 1), (["", "?"], ".", 1)],
 )
 def test_the_careful_way_says_which_cell(cells: list[str], decimal: str, index: int) -> None:
     with pytest.raises(NoNumber) as caught:

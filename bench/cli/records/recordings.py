@@ -1,12 +1,22 @@
 """`friction-bench export` and `import`: recording sets leave and enter."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.output import Json, print_json, say, write_whole
+from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, show, write_guess
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.config.rig import Rig
+    from bench.recording_set.guess import Known
+
+_GUESS = (
+    "Import nothing: show what each column seems to be, by its name and values, and write that to a mapping file "
+    "(--mapping, or mapping.toml). What is not sure is asked; answer with the options below."
+)
 
 
 def export(
@@ -27,24 +37,52 @@ def export(
 
 def import_(
     context: typer.Context,
-    path: Annotated[Path, typer.Argument(help="Folder or .zip with rig.toml, trials.csv and one CSV per trial.")],
+    path: Annotated[
+        list[Path], typer.Argument(metavar="PATH...", help="Folder or .zip of a recording set, or files: each a trial.")
+    ],
     rig: Annotated[Path | None, typer.Option(help="rig.toml, where the set has none or another is wanted.")] = None,
     mapping: Annotated[
         Path | None, typer.Option(help="mapping.toml, for files whose columns have other names.")
     ] = None,
     name: Annotated[str | None, typer.Option(help="Name of the import; without it, that of the set.")] = None,
+    guess: Annotated[bool, typer.Option("--guess", help=_GUESS)] = False,
+    take: Take = None,
+    counts_per_turn: CountsPerTurn = None,
+    rate_hz: RateHz = None,
+    supply_v: SupplyV = None,
     as_json: Json = False,
 ) -> None:
     """Read trials of any bench into the store: all of them, or none and the file, line and column at fault."""
     from bench.recording_set import import_recording_set, read_mapping, read_recording_set, read_rig
 
+    chosen_rig = None if rig is None else read_rig(rig)
+    if guess:
+        _guess(path, chosen_rig, known_of(take, counts_per_turn, rate_hz, supply_v), mapping or Path("mapping.toml"))
+        return
     chosen_mapping = None if mapping is None else read_mapping(mapping)
-    recording_set = read_recording_set(path, chosen_mapping, None if rig is None else read_rig(rig))
+    recording_set = read_recording_set(path, chosen_mapping, chosen_rig)
     with session_of(context).open_store() as store:
         experiment_id = import_recording_set(store, recording_set, name or recording_set.name)
     rows = sum(len(recording) for recording in recording_set.recordings)
     trials = len(recording_set.recordings)
     if as_json:
         print_json({"experiment_id": experiment_id, "name": name or recording_set.name, "trials": trials, "rows": rows})
-    else:
-        say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
+        return
+    for note in recording_set.notes:
+        say(note)
+    say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
+
+
+def _guess(paths: list[Path], rig: "Rig | None", known: "Known", mapping_file: Path) -> None:
+    """Show what the columns are taken for; write mapping and rig where nothing is left to be asked."""
+    from bench.recording_set.guess import check_answered, guess_of
+    from bench.recording_set.read import name_of_set
+
+    found, assumed, notes = guess_of(paths, rig, known)
+    show(found, notes)
+    check_answered(found, name_of_set(paths))
+    rig_file = mapping_file.with_name("rig.toml")
+    needs_rig = rig is None and not (paths[0] / "rig.toml").exists()
+    write_guess(found, assumed if needs_rig else None, mapping_file, rig_file)
+    which = " ".join(map(str, paths))
+    say(f"then: friction-bench import {which} --mapping {mapping_file} --rig {rig_file if needs_rig else 'RIG'}")

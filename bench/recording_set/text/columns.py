@@ -1,60 +1,96 @@
-"""Which column of a CSV becomes which channel."""
+"""Which column of a table becomes which channel."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
-from bench.recording_set.mapping import Column, Mapping
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.mapping import SPEED_UNITS, Column, Mapping
 from bench.recording_set.text.suggestions import suggestion
-from bench.recording_set.text.table import Table
 from compensator.lab.recordings.channels import CHANNELS, EVENT_COLUMN
-from compensator.lab.recordings.recording import FloatArray
+
+TIME = "time_s"
+
+
+class Headed(Protocol):
+    """A table with named columns, of any format."""
+
+    @property
+    def header(self) -> list[str]:
+        """The names of the columns."""
+
+    @property
+    def header_line(self) -> int | None:
+        """The line in which they stand; None where the format has no lines."""
+
+    def error(self, message: str, line: int | None = None, column: str | None = None) -> RecordingSetError:
+        """An error that names the file."""
 
 
 @dataclass(frozen=True)
-class Use:
-    """A channel, and the column that it comes from."""
+class Plan:
+    """What is read of a table, and what becomes of it.
 
-    channel: str
-    index: int
-    source: str
-    scale: float = 1.0
-    offset: float = 0.0
+    Attributes:
+        channels: channel -> the columns that it comes from; without constants and without the event.
+        events: the column of events; None where there is none.
+    """
 
-    def convert(self, values: FloatArray) -> FloatArray:
-        """The channel from the column. Without scale and offset not a bit is changed."""
-        if self.scale == 1.0 and self.offset == 0.0:
-            return values
-        return values * self.scale + self.offset
+    channels: dict[str, Column]
+    events: str | None
+
+    @property
+    def numbers(self) -> list[str]:
+        """Columns of numbers."""
+        return _unique([name for one in self.channels.values() if not one.is_stamp for name in one.sources])
+
+    @property
+    def stamps(self) -> list[str]:
+        """Columns of dates and times."""
+        return _unique([name for one in self.channels.values() if one.is_stamp for name in one.sources])
 
 
-def plan(table: Table, mapping: Mapping) -> tuple[list[Use], int | None]:
-    """The use of each wanted column, and the index of the column of events.
+def _unique(names: Sequence[str]) -> list[str]:
+    return list(dict.fromkeys(names))
+
+
+def plan(table: Headed, mapping: Mapping) -> Plan:
+    """The use of each wanted column.
 
     Raises:
         RecordingSetError: a column that is no channel, nor mapped, nor ignored; no time; nothing but time.
     """
     _check_known(table, mapping)
-    mapped = {channel: column for channel, column in mapping.columns.items() if column.source in table.header}
+    mapped = {name: one for name, one in mapping.columns.items() if all(each in table.header for each in one.sources)}
     _check_clash(table, mapped, mapping)
-    sources = {name: Column(source=name) for name in table.header if _is_known(name) and name not in mapping.ignore}
-    uses, events = [], None
-    for channel, column in (sources | mapped).items():
-        index = table.header.index(column.source)
-        if channel == EVENT_COLUMN:
-            events = index
-        else:
-            uses.append(Use(channel, index, column.source, column.scale, column.offset))
-    channels = {use.channel for use in uses}
-    if "time_s" not in channels:
-        raise table.error(f"has no column time_s, and none is mapped to it; it has {', '.join(table.header)}", 1)
-    if channels == {"time_s"}:
-        raise table.error("has no channel but time_s; wanted a position and what drives it as well", 1)
-    return uses, events
+    taken = {name for one in mapped.values() for name in one.sources}
+    own = [name for name in table.header if _is_known(name) and name not in taken and not _unwanted(name, mapping)]
+    channels = {name: Column(source=name) for name in own} | mapped
+    if mapping.rate_hz is not None:
+        channels.pop(TIME, None)
+    events = channels.pop(EVENT_COLUMN, None)
+    if mapping.rate_hz is None and TIME not in channels:
+        there = ", ".join(table.header)
+        message = f"has no column time_s, and none is mapped to it; it has {there}. Map one, or say rate_hz"
+        raise table.error(message, table.header_line)
+    if not set(channels) - {TIME}:
+        message = "has no channel but time_s; wanted a position and what drives it as well"
+        raise table.error(message, table.header_line)
+    if mapping.position_from_speed and not set(SPEED_UNITS) & set(channels):
+        raise table.error("has no speed that position_from_speed could integrate; map a velocity", table.header_line)
+    return Plan(channels, events.sources[0] if events else None)
 
 
-def _check_known(table: Table, mapping: Mapping) -> None:
-    wanted = {column.source for column in mapping.columns.values()} | set(mapping.ignore)
-    unknown = [name for name in table.header if not _is_known(name) and name not in wanted]
+def _unwanted(name: str, mapping: Mapping) -> bool:
+    return mapping.ignore != "rest" and name in mapping.ignore
+
+
+def _check_known(table: Headed, mapping: Mapping) -> None:
+    wanted = {name for column in mapping.columns.values() for name in column.sources}
+    unknown = [
+        name for name in table.header if not _is_known(name) and name not in wanted and not mapping.ignores(name)
+    ]
     if not unknown:
         return
     first = unknown[0]
@@ -62,20 +98,22 @@ def _check_known(table: Table, mapping: Mapping) -> None:
     if len(table.header) == 1 and sign is not None:
         entry = json.dumps(sign)
         message = f"is the only column; is the delimiter another sign? Then say so in a mapping: delimiter = {entry}"
-        raise table.error(message, 1, first)
+        raise table.error(message, table.header_line, first)
     parts = ["is no known channel", *filter(None, [suggestion(first)])]
     if len(unknown) > 1:
         parts.append(f"Not known either: {', '.join(unknown[1:])}")
     parts.append(f"Known: {', '.join([*CHANNELS, EVENT_COLUMN])}. Map or ignore the column in a mapping file")
-    raise table.error(". ".join(parts), 1, first)
+    parts.append("`friction-bench import --guess` writes one")
+    raise table.error(". ".join(parts), table.header_line, first)
 
 
-def _check_clash(table: Table, mapped: dict[str, Column], mapping: Mapping) -> None:
+def _check_clash(table: Headed, mapped: dict[str, Column], mapping: Mapping) -> None:
     for channel, column in mapped.items():
-        if channel in table.header and column.source != channel and channel not in mapping.ignore:
+        if channel in table.header and channel not in column.sources and not mapping.ignores(channel):
             raise table.error(
-                f"is a column, and is mapped from '{column.source}' too; ignore the column, or leave the mapping out",
-                1,
+                f"is a column, and is mapped from '{column.sources[0]}' too; ignore the column, or leave the mapping "
+                "out",
+                table.header_line,
                 channel,
             )
 

@@ -5,7 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bench.recording_set.text.dialect import BLANKS
 from compensator.lab.recordings.recording import FloatArray
+
+NOTHING = ("", "na", "n/a", "#n/a", "null", "none", "-", "--", "---")  # a value that is not known
 
 
 class NoNumber(ValueError):
@@ -29,19 +32,21 @@ def matrix(text: str, width: int, delimiter: str, decimal: str) -> FloatArray | 
     again, cell by cell.
     """
     text = text.replace("\r\n", "\n")
-    if '"' in text or "\r" in text or text.isspace() or (decimal != "." and "." in text):
+    if '"' in text or "\r" in text or not text.strip() or (decimal != "." and "." in text):
         return None
     if decimal != ".":
         text = text.replace(decimal, ".")
+    blanks = delimiter == BLANKS
     try:
-        found = np.loadtxt(io.StringIO(_filled(text, delimiter)), delimiter=delimiter, comments=None, ndmin=2)
+        filled = text if blanks else _filled(text, delimiter)
+        found = np.loadtxt(io.StringIO(filled), delimiter=None if blanks else delimiter, comments=None, ndmin=2)
     except ValueError:
         return None
     return found if found.shape[1] == width else None
 
 
 def column(cells: Sequence[str], decimal: str) -> FloatArray:
-    """Numbers of a column, shape (n,). Empty cells and "nan" are NaN.
+    """Numbers of a column, shape (n,). Empty cells, "nan", "NA" and the like are NaN.
 
     Raises:
         NoNumber: text, or groups of digits ("1_000", "1.000,5").
@@ -53,10 +58,19 @@ def column(cells: Sequence[str], decimal: str) -> FloatArray:
         try:
             values[index] = float(cell.replace(decimal, ".") or "nan")
         except ValueError:
-            if not cell.isspace():
+            if cell.strip().lower() not in NOTHING:
                 raise NoNumber(index, cell) from None
             values[index] = np.nan
     return values
+
+
+def is_number(cell: str, decimal: str) -> bool:
+    """Whether `column` takes a cell."""
+    try:
+        column([cell], decimal)
+    except NoNumber:
+        return False
+    return True
 
 
 def _filled(text: str, delimiter: str) -> str:

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -9,10 +10,15 @@ from itertools import islice
 
 from bench.recording_set.container import Container
 from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.text.dialect import BLANKS, Dialect, dialect_of, dialect_of_text, is_comment
+from bench.recording_set.text.encoding import UTF_8, encoding_of, name_of
 
 CHUNK_CHARACTERS = 2**20
 LONGEST_RECORD = 64 * CHUNK_CHARACTERS
+HEAD_BYTES = 2**16  # from which the dialect is told
+SI_TIME = "time_s"  # a header with it is one of a recording set, and needs no guess
 Row = list[str]
+_QUOTED_COMMA = re.compile(r'"[+-]?\d+,\d+"')
 
 
 @dataclass(frozen=True)
@@ -24,12 +30,14 @@ class Chunk:
         delimiter: between columns.
         first_line: the line of the file in which it begins, from 1.
         text: as it stands in the file.
+        header: of the table; lines that repeat it are left out, and so are remarks.
     """
 
     place: str
     delimiter: str
     first_line: int
     text: str
+    header: tuple[str, ...] = ()
 
     def records(self, width: int) -> list[tuple[int, Row]]:
         """The line in which each record ends, and its cells; blank lines are left out.
@@ -39,6 +47,8 @@ class Chunk:
         """
         found = []
         for line, cells in self._records():
+            while len(cells) > width and not cells[-1].strip():
+                cells.pop()  # a sign at the end of each line
             if len(cells) != width:
                 raise RecordingSetError(
                     self.place, f"found {len(cells)} cells; wanted {width}, one per column of the header", line
@@ -60,37 +70,102 @@ class Chunk:
         return RecordingSetError(self.place, message, self.line_of(row), column)
 
     def _records(self) -> Iterator[tuple[int, Row]]:
+        if self.delimiter == BLANKS:
+            for number, line in enumerate(self.text.splitlines()):
+                if line.strip() and not self._is_remark(line.split()):
+                    yield self.first_line + number, line.split()
+            return
         reader = csv.reader(io.StringIO(self.text, newline=""), delimiter=self.delimiter, strict=True)
         try:
             for cells in reader:
-                if cells and (len(cells) > 1 or cells[0].strip()):
+                if cells and (len(cells) > 1 or cells[0].strip()) and not self._is_remark(cells):
                     yield self.first_line + reader.line_num - 1, cells
         except csv.Error as error:
             message = f"{error}; wanted cells between '{self.delimiter}', and text with such signs in double quotes"
             raise RecordingSetError(self.place, message, self.first_line + max(reader.line_num, 1) - 1) from error
 
+    def _is_remark(self, cells: Row) -> bool:
+        """Whether a record is a remark or the header again. In a column of events any text is an event."""
+        if not self.header or self.header[0] == "event":
+            return False
+        return is_comment(cells[0], self.delimiter) or [cell.strip() for cell in cells] == list(self.header)
+
 
 class Table:
-    """A CSV with a header, read from front to end.
+    """A text file with a header, read from front to end.
 
     Args:
         container: where the file is.
         file: its name in the set.
-        delimiter: between columns.
+        delimiter, decimal, encoding: told by the file where None.
+        numeric: its lines are numbers, for the most part; a preface may stand above the header then.
+
+    Attributes:
+        header: names of the columns.
+        dialect: how it is written.
+        header_line: the line of the names.
+        rate_hz: what the preface says of the sampling; None where it says nothing.
+        told: what was told by the file, in words, and is not as a recording set has it; "" where nothing is.
 
     Raises:
-        RecordingSetError: empty, or a header with a column twice or without a name.
+        RecordingSetError: empty, no text, or a header with a column twice or without a name.
     """
 
-    def __init__(self, container: Container, file: str, delimiter: str = ",") -> None:
+    def __init__(
+        self,
+        container: Container,
+        file: str,
+        delimiter: str | None = None,
+        decimal: str | None = None,
+        encoding: str | None = None,
+        numeric: bool = True,
+    ) -> None:
         self.place = place(container, file)
         self._container = container
         self._file = file
-        self._delimiter = delimiter
+        with container.open(file) as binary:
+            head = binary.read(HEAD_BYTES)
+        self._encoding = encoding or self._told_encoding(head)
+        lines = head.decode(self._encoding, errors="replace").splitlines()
+        lines = lines[:-1] if len(head) == HEAD_BYTES else lines  # cut off
+        self.dialect = self._dialect(lines, delimiter, decimal, numeric)
         with self._text() as text:
-            header = Chunk(self.place, delimiter, 1, text.readline())
-            self.header = [name.strip() for _, cells in header._records() for name in cells]
+            self.header = list(self.dialect.header) or self._plain_header(text)
+        self.header_line = max(self.dialect.header_line, 1)
+        self.rate_hz = self.dialect.rate_hz
         self._check_header()
+        self.told = self._told(delimiter, decimal, encoding)
+
+    def _dialect(self, lines: list[str], delimiter: str | None, decimal: str | None, numeric: bool) -> Dialect:
+        plain = Dialect(delimiter or ",", decimal or ".")
+        cells = [cell.strip() for cell in (lines[0] if lines else "").split(plain.delimiter)]
+        quoted_commas = any(_QUOTED_COMMA.search(line) for line in lines[1:3])
+        if SI_TIME in cells and (decimal is not None or (plain.delimiter == "," and not quoted_commas)):
+            return plain
+        if not numeric:
+            return dialect_of_text(lines, delimiter, decimal)
+        return dialect_of(lines, delimiter, decimal) or plain
+
+    def _plain_header(self, text: io.TextIOWrapper) -> list[str]:
+        line = ""
+        for _ in range(self.dialect.header_line):
+            line = text.readline()
+        header = Chunk(self.place, self.dialect.delimiter, self.dialect.header_line, line)
+        names = [name.strip() for _, cells in header._records() for name in cells]
+        return names[:-1] if len(names) > 1 and not names[-1] else names  # a sign at the end of each line
+
+    def _told(self, delimiter: str | None, decimal: str | None, encoding: str | None) -> str:
+        names = {"\t": "tabs", BLANKS: "blanks"}
+        found = []
+        if delimiter is None and self.dialect.delimiter != ",":
+            found.append(f"columns between {names.get(self.dialect.delimiter, repr(self.dialect.delimiter))}")
+        if decimal is None and self.dialect.decimal != ".":
+            found.append("decimal comma")
+        if self.dialect.header_line != 1:
+            found.append(f"header in line {self.dialect.header_line}" if self.dialect.header_line else "no header")
+        if encoding is None and self._encoding != UTF_8:
+            found.append(name_of(self._encoding))
+        return ", ".join(found)
 
     def chunks(self, characters: int = CHUNK_CHARACTERS) -> Iterator[Chunk]:
         """What stands below the header, in chunks of about so many characters.
@@ -98,20 +173,24 @@ class Table:
         Raises:
             RecordingSetError: not UTF-8, or a record without end.
         """
-        line, begun = 2, ""
+        line, begun = self.dialect.first_line, ""
         with self._text() as text:
-            text.readline()
+            for _ in range(line - 1):
+                text.readline()
             while more := text.read(characters):
                 begun += more
                 whole = begun[: begun.rfind("\n") + 1]
                 if whole and whole.count('"') % 2 == 0:  # else a quoted cell goes on in the next lines
-                    yield Chunk(self.place, self._delimiter, line, whole)
+                    yield self._chunk(line, whole)
                     line += whole.count("\n")
                     begun = begun[len(whole) :]
                 elif len(begun) > LONGEST_RECORD:
                     raise self.error("a line or a quoted cell has no end; is a double quote missing?", line)
         if begun:
-            yield Chunk(self.place, self._delimiter, line, begun)
+            yield self._chunk(line, begun)
+
+    def _chunk(self, line: int, text: str) -> Chunk:
+        return Chunk(self.place, self.dialect.delimiter, line, text, tuple(self.header))
 
     def error(self, message: str, line: int | None = None, column: str | None = None) -> RecordingSetError:
         """An error that names the file."""
@@ -119,13 +198,23 @@ class Table:
 
     @contextmanager
     def _text(self) -> Iterator[io.TextIOWrapper]:
-        with self._container.open(self._file) as binary, io.TextIOWrapper(binary, "utf-8-sig", newline="") as text:
+        with self._container.open(self._file) as binary, io.TextIOWrapper(binary, self._encoding, newline="") as text:
             try:
                 yield text
             except UnicodeDecodeError as error:
                 raise self._encoding_error() from error
 
+    def _told_encoding(self, head: bytes) -> str:
+        found = encoding_of(head)
+        if found is None:
+            raise self.error(
+                "is no text; save the table as CSV, or name it by its format: .mat, .npz, .h5, .parquet, .jsonl"
+            )
+        return found
+
     def _encoding_error(self) -> RecordingSetError:
+        if self._encoding != UTF_8:
+            return self.error(f"is not {name_of(self._encoding)} throughout; save the file as CSV UTF-8")
         with self._container.open(self._file) as binary:
             for number, line in enumerate(binary, start=1):
                 try:
@@ -140,9 +229,9 @@ class Table:
             raise self.error("the file or its first line is empty; wanted a header of column names")
         for position, name in enumerate(self.header):
             if not name:
-                raise self.error(f"column {position + 1} has no name; give it one, or remove it", 1)
+                raise self.error(f"column {position + 1} has no name; give it one, or remove it", self.header_line)
             if name in self.header[:position]:
-                raise self.error("is there twice; remove one of the two", 1, name)
+                raise self.error("is there twice; remove one of the two", self.header_line, name)
 
 
 def quoted(cell: str) -> str:

@@ -1,6 +1,7 @@
 """Channels that cannot be what their names say, looked for before anything is filtered: wraps, units, signs."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -75,37 +76,60 @@ def _unsigned(recording: Recording, effort: Effort) -> str:
     return ""
 
 
-def _wrapped_position(recording: Recording, unit: str) -> str:
-    """A jump against the motion before and after it."""
-    time_s, position = recording.channels["time_s"], recording.channels.get(f"position_{unit}")
-    if position is None or len(position) < 4:
-        return ""
+@dataclass(frozen=True, slots=True)
+class _Jumps:
+    """Jumps against the motion before and after them. Attributes: how many, the first one's size and row, period."""
+
+    count: int
+    first: float
+    row: int
+    period: float
+
+
+def _jumps(time_s: FloatArray, position: FloatArray) -> _Jumps | None:
+    if len(position) < 4:
+        return None
     step, period_s = np.diff(position), typical_step_s(time_s)
     step[~(np.diff(time_s) <= LONGEST_GAP_PERIODS * period_s)] = np.nan
     if not np.isfinite(step).any():
-        return ""
+        return None
     size = np.abs(step)
     large = max(JUMP * float(np.nanmax(position) - np.nanmin(position)), QUICK * float(np.nanquantile(size, 0.95)))
     before, jump, after = step[:-2], step[1:-1], step[2:]
     against = (before * jump < 0.0) & (after * jump < 0.0) & (size[:-2] < large) & (size[2:] < large)
     jumps = np.flatnonzero((size[1:-1] >= large) & against)
     if not len(jumps):
-        return ""
+        return None
     # what the joint moves during a wrap is added to the jump: the neighbouring steps tell it
     wraps = np.abs(jump[jumps] - 0.5 * (before[jumps] + after[jumps]))
-    period = float(np.median(wraps))
+    return _Jumps(len(jumps), float(jump[jumps[0]]), int(jumps[0]) + 2, float(np.median(wraps)))
+
+
+def _wrapped_position(recording: Recording, unit: str) -> str:
+    time_s, position = recording.channels["time_s"], recording.channels.get(f"position_{unit}")
+    jumps = None if position is None else _jumps(time_s, position)
+    if jumps is None:
+        return ""
+    period = jumps.period
     turn = unit == "rad" and abs(period - 2.0 * np.pi) < SAME_PERIOD * 2.0 * np.pi
-    how = (
-        "once a turn; unwrap it (numpy.unwrap)" if turn else f"every {period:.4g} {unit}; unwrap it ({_unwrap(period)})"
-    )
+    how = "once a turn" if turn else f"every {period:.4g} {unit}"
+    exact = f"{2.0 * np.pi if turn else period:.5g}"
     return (
-        f"position_{unit} jumps by {jump[jumps[0]]:.4g} {unit} against the motion at {time_s[jumps[0] + 2]:.4g} s, and "
-        f"{len(jumps)} times in all: it wraps, {how} and import again"
+        f"position_{unit} jumps by {jumps.first:.4g} {unit} against the motion at {time_s[jumps.row]:.4g} s, and "
+        f"{jumps.count} times in all: it wraps, {how}; unwrap it in a mapping (period = {exact}, in the unit of the "
+        f"column), or by numpy.unwrap(position, period={exact}), and import again"
     )
 
 
-def _unwrap(period: float) -> str:
-    return f"numpy.unwrap(position, period={period:.4g})"
+def wrap_period(time_s: FloatArray, position: FloatArray) -> float | None:
+    """The period at which a position wraps, in its own unit; None where it does not.
+
+    Args:
+        time_s: of its samples, rising.
+        position: in any unit.
+    """
+    jumps = _jumps(time_s, position)
+    return None if jumps is None else jumps.period
 
 
 def _scale(recording: Recording, unit: str) -> str:

@@ -54,17 +54,22 @@ def _current(channel: str, quantity: EffortQuantity, title: str) -> Callable[[Fa
 
 
 def _terminal_voltage(_: Facts) -> Effort:
+    return Effort("terminal_voltage", "terminal voltage", "V", ("voltage_v",))
+
+
+def _duty_times_supply(_: Facts) -> Effort:
     return Effort("terminal_voltage", "terminal voltage (duty x supply)", "V", ("duty", "supply_v"))
 
 
 # in order of preference: what is measured closest to the load comes first
-_MAKERS: dict[EffortQuantity, Callable[[Facts], Effort]] = {
-    "torque": _torque,
-    "force": _force,
-    "current": _current("current_a", "current", "measured current"),
-    "current_estimate": _current("current_estimate_a", "current_estimate", "current from duty and speed"),
-    "terminal_voltage": _terminal_voltage,
-}
+_MAKERS: tuple[tuple[EffortQuantity, Callable[[Facts], Effort]], ...] = (
+    ("torque", _torque),
+    ("force", _force),
+    ("current", _current("current_a", "current", "measured current")),
+    ("current_estimate", _current("current_estimate_a", "current_estimate", "current from duty and speed")),
+    ("terminal_voltage", _duty_times_supply),
+    ("terminal_voltage", _terminal_voltage),
+)
 
 
 def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
@@ -73,7 +78,7 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
     Raises:
         UnusableDataError: no such quantity in some recording; the message names it and the channels needed.
     """
-    wanted = [_MAKERS[facts.effort](facts)] if facts.effort else [make(facts) for make in _MAKERS.values()]
+    wanted = [make(facts) for quantity, make in _MAKERS if facts.effort in (None, quantity)]
     for effort in wanted:
         if all(_measured(recording, effort.channels) for recording in recordings):
             return effort

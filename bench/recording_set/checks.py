@@ -1,0 +1,170 @@
+"""Whether what comes in can be a recording of a joint: values within physics, a position, an effort, no wraps."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.config.rig import Rig
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.mapping import Mapping
+from compensator.lab.errors import UnusableDataError
+from compensator.lab.recordings.channel_checks import check_channels
+from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import typical_step_s
+from compensator.lab.recordings.recording import FloatArray, Recording
+
+FEWEST_ROWS = 20  # fewer are an example, and show nothing of a motion
+TWO_TURNS_RAD = 4.0 * np.pi
+LARGE_PART = 0.25  # of the range of position: a move that counts as there or back
+THERE_AND_BACK = 2  # moves the other way
+
+
+@dataclass(frozen=True, slots=True)
+class Plausible:
+    """What a channel can be. Attributes: lowest, highest possible value; the unit that it may be in where it is not."""
+
+    low: float
+    high: float
+    other: str
+
+
+# far beyond what benches of joints have, and far below what a wrong unit makes of it
+PLAUSIBLE: dict[str, Plausible] = {
+    "duty": Plausible(-1.05, 1.05, "%"),
+    "current_a": Plausible(-1000.0, 1000.0, "mA"),
+    "current_command_a": Plausible(-1000.0, 1000.0, "mA"),
+    "voltage_v": Plausible(-1500.0, 1500.0, "mV"),
+    "supply_v": Plausible(-1.0, 1500.0, "mV"),
+    "temperature_c": Plausible(-80.0, 250.0, "K"),
+    "torque_n_m": Plausible(-1e5, 1e5, "mN m"),
+    "force_n": Plausible(-1e7, 1e7, "mN"),
+    "velocity_rad_s": Plausible(-1e4, 1e4, "deg/s"),
+    "velocity_m_s": Plausible(-100.0, 100.0, "mm/s"),
+    "position_m": Plausible(-100.0, 100.0, "mm"),
+}
+LOWEST_HZ, HIGHEST_HZ = 4.0, 2e5
+
+
+def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping) -> None:
+    """Look at every recording, before any of them is kept.
+
+    A unit that the mapping states is taken as it is, except where the value is impossible in it.
+
+    Raises:
+        RecordingSetError: a value outside physics, no position or no effort in any trial, a wrap, two units.
+    """
+    for recording in recordings:
+        if len(recording) < FEWEST_ROWS:
+            continue
+        for problem in (_rate(recording, mapping), _outside(recording, mapping), _degrees(recording, mapping)):
+            if problem:
+                raise RecordingSetError(f"trial '{recording.name}'", problem)
+    judged = [one for one in recordings if len(one) >= FEWEST_ROWS]
+    if judged:
+        facts = Facts(joint=rig.joint, horizontal=rig.horizontal, effort=rig.effort.quantity if rig.effort else None)
+        _check_physics(judged, facts)
+
+
+def question(channel: str, largest: float, smallest: float, unit: str) -> str:
+    """What is asked about a value outside physics; "" where it is inside.
+
+    Args:
+        channel: which.
+        largest: of its values, in `unit`.
+        smallest: of them.
+        unit: of the channel.
+    """
+    wanted = PLAUSIBLE.get(channel)
+    if wanted is None or (wanted.low <= smallest and largest <= wanted.high):
+        return ""
+    found = largest if largest > wanted.high else smallest
+    return (
+        f"{channel} reaches {found:.5g} {unit}; possible is {wanted.low:g} .. {wanted.high:g} {unit}. Is the column in "
+        f"{wanted.other}"
+    )
+
+
+def back_and_forth(position: FloatArray) -> bool:
+    """Whether a joint goes more than two turns, and comes back again and again: few do, but angles in degrees do."""
+    known = position[np.isfinite(position)]
+    span = float(np.ptp(known)) if len(known) else 0.0
+    if span <= TWO_TURNS_RAD:
+        return False
+    levels = np.unique(np.round(known[:: max(1, len(known) // 2000)] / (LARGE_PART * span)), return_inverse=True)[1]
+    turns = np.diff(np.sign(np.diff(levels[np.append(True, np.diff(levels) != 0)])))
+    return int(np.count_nonzero(turns)) >= THERE_AND_BACK
+
+
+def _rate(recording: Recording, mapping: Mapping) -> str:
+    rate_hz = 1.0 / typical_step_s(recording.channels["time_s"])
+    if LOWEST_HZ <= rate_hz <= HIGHEST_HZ or _is_stated("time_s", mapping):
+        return ""
+    other = "ms" if rate_hz < LOWEST_HZ else "a clock of another unit"
+    return (
+        f"time_s has {rate_hz:.3g} samples a second; possible is {LOWEST_HZ:g} .. {HIGHEST_HZ:g}. Is the column in "
+        f"{other}? {_how('time_s', 'ms', 's')}"
+    )
+
+
+def _outside(recording: Recording, mapping: Mapping) -> str:
+    for channel, values in recording.channels.items():
+        known = values[np.isfinite(values)]
+        if not len(known) or (channel != "duty" and _is_stated(channel, mapping)):
+            continue
+        si = CHANNELS[channel].unit
+        if asked := question(channel, float(known.max()), float(known.min()), si):
+            return f"{asked}? {_how(channel, PLAUSIBLE[channel].other, si)}"
+    return ""
+
+
+def _degrees(recording: Recording, mapping: Mapping) -> str:
+    position = recording.channels.get("position_rad")
+    if position is None or "velocity_rad_s" in recording.channels or _is_stated("position_rad", mapping):
+        return ""
+    if not back_and_forth(position):
+        return ""
+    low, high = float(np.nanmin(position)), float(np.nanmax(position))
+    return (
+        f"position_rad goes back and forth between {low:.4g} and {high:.4g} rad, which is "
+        f"{(high - low) / (2.0 * np.pi):.3g} turns. Is the column in degrees? {_how('position_rad', 'deg', 'rad')}"
+    )
+
+
+def _is_stated(channel: str, mapping: Mapping) -> bool:
+    column = mapping.columns.get(channel)
+    return column is not None and column.unit is not None
+
+
+def _how(channel: str, other: str, si: str) -> str:
+    return f'Say so in a mapping: columns.{channel} with unit = "{other}"; or confirm it there with unit = "{si}"'
+
+
+def _check_physics(recordings: Sequence[Recording], facts: Facts) -> None:
+    name = f"position_{facts.position_unit}"
+    if not any(name in one.channels and np.isfinite(one.channels[name]).any() for one in recordings):
+        there = ", ".join(sorted({channel for one in recordings for channel in one.channels}))
+        other = "m" if facts.position_unit == "rad" else "rad"
+        hint = (
+            f'; the set has position_{other}: say joint = "{"linear" if other == "m" else "rotary"}" in the rig'
+            if any(f"position_{other}" in one.channels for one in recordings)
+            else "; map a column to it, or say position_from_speed = true in a mapping where a speed is measured"
+        )
+        raise RecordingSetError(
+            "the trials", f"no trial has {name}, which a {facts.joint} joint needs; found {there}{hint}"
+        )
+    refusals: list[UnusableDataError] = []
+    try:
+        for one in recordings:
+            try:
+                effort = choose_effort([one], facts)
+            except UnusableDataError as error:
+                refusals.append(error)
+                continue
+            check_channels([one], effort, facts)
+        if len(refusals) == len(recordings):
+            raise refusals[0]
+    except UnusableDataError as error:
+        raise RecordingSetError("the trials", str(error)) from error

@@ -1,0 +1,49 @@
+"""HDF5 files, and MATLAB files of version 7.3, by h5py."""
+
+import io
+from types import ModuleType
+
+import numpy as np
+
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.formats.column_table import Arrays, ColumnTable, table_of
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+def read(place: str, data: bytes) -> ColumnTable:
+    """The columns of a file: its data sets of one length, by their names.
+
+    Raises:
+        RecordingSetError: h5py is not installed, no HDF5, or no columns of numbers.
+    """
+    h5py = _h5py(place)
+    arrays: Arrays = {}
+
+    def take(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "biufSV" and "#refs#" not in name:
+            arrays[name.replace("/", ".")] = np.asarray(item)
+
+    try:
+        with h5py.File(io.BytesIO(data), "r") as file:
+            file.visititems(take)
+    except (OSError, KeyError, ValueError, RuntimeError) as error:
+        raise RecordingSetError(place, f"is no HDF5 file, or a damaged one ({error}); save it again") from error
+    return table_of(place, _without_common(arrays))
+
+
+def _without_common(arrays: Arrays) -> Arrays:
+    """Names without the group that all of them are in."""
+    groups = {name.partition(".")[0] for name in arrays}
+    if len(groups) == 1 and all("." in name for name in arrays):
+        return _without_common({name.partition(".")[2]: values for name, values in arrays.items()})
+    return arrays
+
+
+def _h5py(place: str) -> ModuleType:
+    try:
+        import h5py
+    except ImportError as error:
+        message = "needs h5py; install it with: pip install 'friction-bench[formats]', or save as CSV"
+        raise RecordingSetError(place, message) from error
+    return h5py  # type: ignore[no-any-return]

@@ -1,0 +1,43 @@
+"""MATLAB files: those up to version 7 by scipy; those of version 7.3 are HDF5."""
+
+import io
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from scipy.io import loadmat
+from scipy.io.matlab import MatReadError
+
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.formats import hdf5
+from bench.recording_set.formats.column_table import ColumnTable, table_of
+
+_HDF5 = b"MATLAB 7.3"
+
+
+def read(place: str, data: bytes) -> ColumnTable:
+    """The columns of a .mat: variables, and the fields of structures, of one length.
+
+    Raises:
+        RecordingSetError: no .mat, or one without columns of numbers.
+    """
+    if data.startswith(_HDF5) or data[:8] == hdf5.SIGNATURE:
+        return hdf5.read(place, data)
+    try:
+        found = loadmat(io.BytesIO(data), squeeze_me=True, struct_as_record=False, simplify_cells=True)
+    except (MatReadError, ValueError, TypeError, NotImplementedError, KeyError, OSError, EOFError) as error:
+        raise RecordingSetError(place, f"is no MATLAB file, or a damaged one ({error}); save it again") from error
+    arrays = dict(_flat({name: value for name, value in found.items() if not name.startswith("__")}))
+    return table_of(place, arrays)
+
+
+def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Structures within structures as names with points; a structure that holds everything is looked through."""
+    for name, value in values.items():
+        if isinstance(value, dict):
+            inner = "" if len(values) == 1 and not prefix else f"{prefix}{name}."
+            yield from _flat(value, inner)
+        elif isinstance(value, list | str):
+            continue
+        else:
+            yield f"{prefix}{name}", np.asarray(value)

@@ -1,0 +1,26 @@
+"""Files of numpy: .npz, .npy."""
+
+import io
+import zipfile
+
+import numpy as np
+
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.formats.column_table import ColumnTable, table_of
+
+
+def read(place: str, data: bytes) -> ColumnTable:
+    """The columns of a .npz or .npy; nothing is unpickled.
+
+    Raises:
+        RecordingSetError: none of them, one that holds Python objects, or none with columns of numbers.
+    """
+    try:
+        found = np.load(io.BytesIO(data), allow_pickle=False)
+        arrays = {"": found} if isinstance(found, np.ndarray) else {name: found[name] for name in found.files}
+    except ValueError as error:
+        message = f"cannot be read ({error}); save plain arrays: numpy.savez(file, time_s=..., position_rad=...)"
+        raise RecordingSetError(place, message) from error
+    except (OSError, EOFError, zipfile.BadZipFile, KeyError) as error:
+        raise RecordingSetError(place, f"is no numpy file, or a damaged one ({error}); save it again") from error
+    return table_of(place, arrays)

@@ -1,0 +1,34 @@
+"""Parquet files, by pyarrow."""
+
+import io
+
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.formats.column_table import Arrays, ColumnTable, table_of
+
+
+def read(place: str, data: bytes) -> ColumnTable:
+    """The columns of a table.
+
+    Raises:
+        RecordingSetError: pyarrow is not installed, no Parquet, or no columns of numbers.
+    """
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError as error:
+        message = "needs pyarrow; install it with: pip install 'friction-bench[formats]', or save as CSV"
+        raise RecordingSetError(place, message) from error
+    try:
+        found = parquet.read_table(io.BytesIO(data))
+    except (pyarrow.ArrowException, OSError, ValueError) as error:
+        raise RecordingSetError(place, f"is no Parquet file, or a damaged one ({error}); save it again") from error
+    arrays: Arrays = {}
+    for name, column in zip(found.column_names, found.columns, strict=True):
+        kind = column.type
+        if pyarrow.types.is_string(kind) or pyarrow.types.is_large_string(kind):
+            arrays[name] = [text or "" for text in column.to_pylist()]
+        elif pyarrow.types.is_boolean(kind):
+            arrays[name] = column.cast(pyarrow.int8()).to_numpy()
+        elif pyarrow.types.is_primitive(kind):
+            arrays[name] = column.to_numpy()
+    return table_of(place, arrays)

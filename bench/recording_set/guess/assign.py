@@ -1,0 +1,142 @@
+"""Which column is which quantity: by their names, one column each; of several, the most direct one."""
+
+from collections.abc import Mapping as MappingOf
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.formats.column_table import Columns
+from bench.recording_set.guess.evidence import is_clock
+from bench.recording_set.guess.names import UNITS_OF, Reading, read_name, same_kind
+from bench.recording_set.guess.said import IGNORE, Said
+from bench.recording_set.text.dialect import is_stamp
+from compensator.lab.recordings.recording import FloatArray
+
+
+@dataclass(frozen=True)
+class Assigned:
+    """Which column is which quantity.
+
+    Attributes:
+        names: of all columns.
+        columns: quantity -> names of the columns; of a time in two columns, both.
+        readings: of every name.
+        said: what a user says, by name.
+        unused: column -> why it is not used.
+        questions: where several columns are equally good.
+    """
+
+    names: tuple[str, ...]
+    columns: dict[str, tuple[str, ...]]
+    readings: dict[str, Reading]
+    said: MappingOf[str, Said]
+    unused: dict[str, str]
+    questions: tuple[str, ...]
+
+
+def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
+    """The column of each quantity.
+
+    Args:
+        files: the columns of each.
+        said: what a user says of some of them.
+    """
+    columns: Columns = {}
+    for one in files:
+        columns = one | columns  # of a column that several have, the first one's values
+    columns = {name: columns[name] for one in files for name in one}
+    missing = [name for name in said if name not in columns]
+    if missing:
+        raise RecordingSetError("--take", f"no column is called '{missing[0]}'; there are {', '.join(columns)}")
+    readings = {name: read_name(name) for name in columns}
+    everywhere = {name for name in columns if all(name in one for one in files)}
+    candidates: dict[str, list[str]] = {}
+    unused: dict[str, str] = {}
+    for name, values in columns.items():
+        quantity, why = _quantity(name, values, readings[name], said)
+        if quantity:
+            candidates.setdefault(quantity, []).append(name)
+        else:
+            unused[name] = why
+    _clock(columns, candidates, unused)
+    chosen: dict[str, tuple[str, ...]] = {}
+    questions = []
+    for quantity, names in candidates.items():
+        wanted = [name for name in names if name in everywhere or name in said] or names
+        best, tied = _best(quantity, wanted, columns, readings, said)
+        chosen[quantity] = best
+        unused |= {name: f"{' + '.join(best)} is the {quantity}" for name in names if name not in best}
+        if tied:
+            listed = ", ".join(f"'{name}'" for name in tied)
+            option = f"--take '{tied[0]}={quantity}[{UNITS_OF[quantity][0]}]'"
+            questions.append(f"{listed} could each be the {quantity}: say which one, such as {option}")
+    return Assigned(tuple(columns), chosen, readings, said, unused, tuple(questions))
+
+
+def _quantity(name: str, values: object, reading: Reading, said: MappingOf[str, Said]) -> tuple[str, str]:
+    """The quantity of a column, or "" and why it is not used."""
+    if name in said:
+        return ("", "as said") if said[name].quantity == IGNORE else (said[name].quantity, "")
+    if isinstance(values, list):
+        texts = [text for text in values[:50] if text.strip()]
+        stamps = bool(texts) and all(is_stamp(text) for text in texts)
+        return ("time", "") if stamps and reading.quantity in ("time", "") else ("", "text")
+    numbers = np.asarray(values)
+    if not np.isfinite(numbers).any():
+        return "", "empty"
+    return reading.quantity, "its name is not known"
+
+
+def _clock(columns: Columns, candidates: dict[str, list[str]], unused: dict[str, str]) -> None:
+    """Where no name is one of a time: the only column that rises evenly."""
+    if "time" in candidates:
+        return
+    rising = [name for name, values in columns.items() if name in unused and not isinstance(values, list)]
+    rising = [name for name in rising if is_clock(np.asarray(columns[name]))]
+    if len(rising) == 1:
+        candidates["time"] = rising
+        del unused[rising[0]]
+
+
+def _best(
+    quantity: str, names: list[str], columns: Columns, readings: dict[str, Reading], said: MappingOf[str, Said]
+) -> tuple[tuple[str, ...], list[str]]:
+    """The column of a quantity, and those that are as good."""
+    told = [name for name in names if name in said]
+    if told:
+        return tuple(told) if quantity == "time" else (told[0],), told[1:] and told
+    if quantity == "time" and (pair := _clock_pair(names, columns, readings)):
+        return pair, []
+    score = {name: readings[name].score for name in names}
+    top = max(score.values())
+    best = [name for name in names if score[name] == top]
+    if len(best) == 1:
+        return (best[0],), []
+    if quantity == "time":
+        return (best[0],), []
+    same = all(np.array_equal(_array(columns[best[0]]), _array(columns[name]), equal_nan=True) for name in best[1:])
+    return (best[0],), [] if same and not same_kind(best) else best
+
+
+def _array(values: FloatArray | list[str]) -> NDArray[np.generic]:
+    return np.asarray(values)
+
+
+def _clock_pair(names: list[str], columns: Columns, readings: dict[str, Reading]) -> tuple[str, ...]:
+    """Two columns that are one time: date and time of day as text, or seconds and their fractions."""
+    texts = [name for name in names if isinstance(columns[name], list)]
+    if len(texts) == 2:
+        dates = [name for name in texts if not any(":" in text for text in columns[name][:5] if isinstance(text, str))]
+        if len(dates) == 1:
+            return (dates[0], next(name for name in texts if name != dates[0]))
+    units = {unit.name: name for name in names if name not in texts and (unit := readings[name].unit)}
+    for part in ("ns", "us"):
+        whole, fraction = units.get("s"), units.get(part)
+        if whole and fraction and not isinstance(columns[fraction], list):
+            values = np.asarray(columns[fraction])
+            if np.nanmin(values) >= 0.0 and np.nanmax(values) < (1e9 if part == "ns" else 1e6):
+                return (whole, fraction)
+    return ()

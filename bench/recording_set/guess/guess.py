@@ -1,0 +1,150 @@
+"""From the tables of an unknown bench to a mapping: which column is which channel, in which unit, and why."""
+
+from collections.abc import Mapping as MappingOf
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from bench.recording_set.formats.column_table import Columns
+from bench.recording_set.guess.assign import Assigned, assign
+from bench.recording_set.guess.said import Said
+from bench.recording_set.guess.units_told import Units
+from bench.recording_set.mapping import Column, Mapping
+from compensator.lab.recordings.channels import CHANNELS
+
+EFFORTS = ("torque", "force", "current", "voltage", "duty")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The columns of one file. Attributes: its place, columns, and what it says of the sampling rate [Hz]."""
+
+    place: str
+    columns: Columns
+    rate_hz: float | None = None
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What a column is taken for.
+
+    Attributes:
+        column: its name.
+        channel: of the recording; "" where it is not used.
+        unit: of the column.
+        low, high: of its values, in that unit; None of text.
+        why: in words.
+        outline: some of its values over time, in that unit; empty of text.
+    """
+
+    column: str
+    channel: str
+    unit: str
+    low: float | None
+    high: float | None
+    why: str
+    outline: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Guess:
+    """A proposal.
+
+    Attributes:
+        mapping: as far as it is known; complete where nothing is asked.
+        joint: as the units say.
+        taken: every column, in the order of the file.
+        questions: what a person has to say first; each names its option.
+        notes: what was found besides.
+    """
+
+    mapping: Mapping
+    joint: Literal["rotary", "linear"]
+    taken: tuple[Taken, ...]
+    questions: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a user tells of files besides their columns.
+
+    Attributes:
+        said: of columns, by name.
+        counts_per_turn: of the joint.
+        rate_hz: of the samples, where no column is a time.
+        supply_v: where no column holds it.
+    """
+
+    said: MappingOf[str, Said]
+    counts_per_turn: float | None = None
+    rate_hz: float | None = None
+    supply_v: float | None = None
+
+
+NOTHING = Known({})
+
+
+def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
+    """What the columns of some files of one bench may be.
+
+    Args:
+        sheets: of the files.
+        known: what a user tells.
+    """
+    assigned = assign([sheet.columns for sheet in sheets], known.said)
+    rate_hz = None if "time" in assigned.columns else known.rate_hz or sheets[0].rate_hz
+    units = Units([sheet.columns for sheet in sheets], assigned, known.counts_per_turn, rate_hz)
+    made = {quantity: units.column_of(quantity, names) for quantity, names in assigned.columns.items()}
+    columns = {units.channel_of(quantity): column for quantity, column in made.items() if column is not None}
+    used = {name for column in columns.values() for name in column.sources}
+    mapping = Mapping(
+        columns=columns,
+        ignore="rest" if set(assigned.names) - used else [],
+        rate_hz=rate_hz,
+        stamps=units.clock.stamps,
+        counts_per_turn=known.counts_per_turn,
+        constants={} if known.supply_v is None else {"supply_v": known.supply_v},
+        position_from_speed="position" not in assigned.columns and "velocity" in assigned.columns,
+    )
+    notes = list(units.notes)
+    if mapping.position_from_speed:
+        notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
+    taken = tuple(_taken(name, columns, units, assigned) for name in assigned.names)
+    questions = (*assigned.questions, *units.questions, *_missing(assigned, known, rate_hz))
+    return Guess(mapping, "linear" if units.joint == "linear" else "rotary", taken, questions, tuple(notes))
+
+
+def _missing(assigned: Assigned, known: Known, rate_hz: float | None) -> list[str]:
+    """What every study needs."""
+    there = ", ".join(f"'{name}'" for name in assigned.names[:20])
+    efforts = set(EFFORTS) & set(assigned.columns)
+    found = []
+    if "time" not in assigned.columns and rate_hz is None:
+        found.append(
+            f"no column is a time (there are {there}): say how many samples a second, --rate-hz 1000, or which it is, "
+            "--take 'NAME=time[ms]'"
+        )
+    if not {"position", "velocity"} & set(assigned.columns):
+        found.append(f"no column is a position or a speed (there are {there}): say --take 'NAME=position[deg]'")
+    if not efforts:
+        found.append(
+            f"no column is an effort: torque, force, current, voltage or duty (there are {there}): say "
+            "--take 'NAME=current[A]'"
+        )
+    elif efforts == {"duty"} and "supply" not in assigned.columns and known.supply_v is None:
+        found.append(
+            "the duty is an effort only with the supply: say which column it is, --take 'NAME=supply[V]', or its "
+            "voltage, --supply-v 12"
+        )
+    return found
+
+
+def _taken(name: str, columns: MappingOf[str, Column], units: Units, assigned: Assigned) -> Taken:
+    low, high = units.range_of(name) or (None, None)
+    outline = units.outline_of(name)
+    for channel, column in columns.items():
+        if name in column.sources:
+            unit = column.unit or CHANNELS[channel].unit
+            return Taken(name, channel, unit, low, high, units.why.get(name, "its name"), outline)
+    return Taken(name, "", "", low, high, assigned.unused.get(name) or "it is asked about", outline)

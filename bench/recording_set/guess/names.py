@@ -1,0 +1,159 @@
+"""What the name of a column says: words, a unit, and the quantity that they stand for."""
+
+import re
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from bench.recording_set.guess.vocabulary import (
+    DERIVED,
+    ERROR,
+    JOINT_SIDE,
+    MEASURED,
+    OTHER_AXIS,
+    SENSOR,
+    TARGET,
+    WORDS,
+)
+from bench.recording_set.units import Unit, unit_named
+from compensator.lab.recordings.channels import CHANNELS
+
+_BRACKET = re.compile(r"^(?P<base>.*?)\s*[\[({<](?P<unit>[^\])}>]*)[\])}>]\s*$")
+_WORD = re.compile(r"[A-ZÄÖÜ]?[a-zäöüßàâéèêíóúñùµθωτφ]+|[A-ZÄÖÜ]+(?![a-z])|\d+")
+# SI unit -> quantity, where the words say nothing
+BY_UNIT = {
+    "s": "time", "rad": "position", "m": "position", "rad/s": "velocity", "m/s": "velocity", "A": "current",
+    "V": "voltage", "N m": "torque", "N": "force", "degC": "temperature",
+}  # fmt: skip
+UNITS_OF = {
+    "time": ("s",), "position": ("rad", "m"), "target": ("rad", "m"), "velocity": ("rad/s", "m/s"), "current": ("A",),
+    "current_command": ("A",), "voltage": ("V",), "supply": ("V",), "duty": ("1",), "torque": ("N m",),
+    "load_torque": ("N m",), "force": ("N",), "temperature": ("degC",), "enabled": ("1",),
+}  # fmt: skip
+_OF_CHANNEL = {
+    "time_s": "time",
+    "current_a": "current",
+    "current_command_a": "current_command",
+    "voltage_v": "voltage",
+    "supply_v": "supply",
+    "duty": "duty",
+    "torque_n_m": "torque",
+    "load_torque_n_m": "load_torque",
+    "force_n": "force",
+    "temperature_c": "temperature",
+    "enabled": "enabled",
+    "target_rad": "target",
+    "target_m": "target",
+    "position_rad": "position",
+    "position_m": "position",
+    "velocity_rad_s": "velocity",
+    "velocity_m_s": "velocity",
+}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a name says.
+
+    Attributes:
+        quantity: "" where nothing is known, or it is none that is used.
+        unit: None where it says none.
+        score: how sure and how direct; the best of several columns of one quantity is taken.
+        words: of the name.
+    """
+
+    quantity: str
+    unit: Unit | None
+    score: float
+    words: frozenset[str]
+
+
+def read_name(name: str) -> Reading:
+    """What the name of a column says of it."""
+    if name in _OF_CHANNEL:
+        return Reading(
+            _OF_CHANNEL[name], unit_named(CHANNELS[name].unit) if name in CHANNELS else None, 10.0, frozenset()
+        )
+    base, unit = _unit(name)
+    words = _words(base)
+    quantity = _quantity(words)
+    if unit is not None and quantity and unit.si not in UNITS_OF.get(quantity, (unit.si,)):
+        if _is_named_by(words, quantity) or unit.si == "1":
+            unit = None  # "theta_m" is no length, and "torque %" no torque that is known
+        else:
+            quantity = ""
+    if not quantity and unit is not None and not words & ERROR:
+        quantity = BY_UNIT.get(unit.si, "")
+    quantity = _told_apart(quantity, words)
+    return Reading(quantity, unit, _score(words, unit, quantity), words)
+
+
+def _unit(name: str) -> tuple[str, Unit | None]:
+    """The name without its unit, and the unit."""
+    text = unicodedata.normalize("NFKC", name).strip()
+    if match := _BRACKET.match(text):
+        unit = unit_named(match["unit"])
+        return match["base"] or text, unit
+    for sign in ("/", ",", " in "):
+        for place in (index for index in range(1, len(text)) if text.startswith(sign, index)):
+            unit = unit_named(text[place + len(sign) :])
+            if unit is not None and text[:place].strip():
+                return text[:place], unit
+    parts = re.split(r"[_ .]", text)
+    for count in (3, 2, 1):
+        if len(parts) > count and (unit := unit_named("_".join(parts[-count:]))):
+            return "_".join(parts[:-count]), unit
+    return text, unit_named(text) if len(text) > 1 else None
+
+
+def _words(base: str) -> frozenset[str]:
+    plain = base.replace("τ", " tau ").replace("θ", " theta ").replace("ω", " omega ").replace("φ", " phi ")
+    return frozenset(word.lower() for word in _WORD.findall(plain) if not word.isdigit())
+
+
+def _quantity(words: frozenset[str]) -> str:
+    if words & ERROR:
+        return ""
+    for quantity, known in WORDS:
+        if words & known:
+            return quantity
+    return _compound(words)
+
+
+def _compound(words: frozenset[str]) -> str:
+    """Of a word that is made of several, as German ones are: "motordrehzahl", "antriebsmoment"."""
+    for quantity, known in WORDS:
+        endings = [one for one in known if len(one) > 4]
+        if any(word.endswith(ending) for word in words for ending in endings):
+            return quantity
+    return ""
+
+
+def _is_named_by(words: frozenset[str], quantity: str) -> bool:
+    known = next((known for name, known in WORDS if name == quantity), frozenset())
+    return any(len(word) > 2 and word in known for word in words)
+
+
+def _told_apart(quantity: str, words: frozenset[str]) -> str:
+    """Set points apart from what is measured, and torque sensors apart from the torque of the motor."""
+    wanted = bool(words & TARGET) or any(word.startswith("soll") for word in words)
+    if wanted:
+        return {"position": "target", "": "target", "current": "current_command", "torque": "torque"}.get(quantity, "")
+    if quantity == "torque" and words & SENSOR:
+        return "load_torque"
+    return quantity if quantity in UNITS_OF else ""
+
+
+def _score(words: frozenset[str], unit: Unit | None, quantity: str) -> float:
+    score = 2.0 * (unit is not None) + 2.0 * bool(words & MEASURED) - 1.0 * bool(words & DERIVED)
+    score += 0.5 * bool(words & JOINT_SIDE)
+    if quantity == "current":
+        score -= 5.0 * bool(words & OTHER_AXIS)
+    if quantity == "torque" and words & TARGET:
+        score -= 3.0
+    return score
+
+
+def same_kind(names: Sequence[str]) -> bool:
+    """Whether names differ by a number alone, as columns of several joints do."""
+    return len({re.sub(r"\d+", "#", name) for name in names}) == 1 and len(names) > 1

@@ -1,0 +1,67 @@
+"""Files of an unknown bench as a recording set: guessed where nobody wrote a mapping, or refused with a question."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from bench.config.rig import Rig
+from bench.recording_set.container import open_container
+from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.guess.guess import Guess, Known, guess_mapping
+from bench.recording_set.guess.sheets import read_sheets
+from bench.recording_set.read import MAPPING_FILE, RIG_FILE, name_of_set, read_recording_set, read_rig_of
+from bench.recording_set.recording_set import RecordingSet
+
+
+def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
+    """What the columns of files may be, the rig that is assumed, and how the files were read.
+
+    Args:
+        paths: a folder, a zip, or files.
+        rig: of the joint, where it is known; a set may bring one.
+        known: what a user tells.
+
+    Raises:
+        RecordingSetError: a file that cannot be read, or a column that is not there.
+    """
+    own = rig or _own_rig(paths)
+    if known.counts_per_turn is None and own is not None and own.sensor.counts_per_turn is not None:
+        known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (own.gear.ratio or 1.0))
+    sheets, notes = read_sheets(paths)
+    guess = guess_mapping(sheets, known)
+    return guess, own or Rig(name=name_of_set(list(paths)), joint=guess.joint), tuple(notes)
+
+
+def read_unknown(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[RecordingSet, Guess | None]:
+    """Files of any bench; a mapping that the set brings along is used, without one it is guessed.
+
+    Raises:
+        RecordingSetError: what `guess_of` refuses, a question that has to be answered first, or a value at fault.
+    """
+    paths = [Path(one).absolute() for one in paths]
+    with open_container(*paths) as container:
+        mapped = container.has(MAPPING_FILE)
+    if mapped:
+        return read_recording_set(paths, None, rig), None
+    guess, rig, _ = guess_of(paths, rig, known)
+    check_answered(guess, name_of_set(paths))
+    return read_recording_set(paths, guess.mapping, rig), guess
+
+
+def check_answered(guess: Guess, name: str) -> None:
+    """Refuse a guess that leaves questions.
+
+    Raises:
+        RecordingSetError: names every question and the option that answers it.
+    """
+    if not guess.questions:
+        return
+    if len(guess.questions) == 1:
+        raise RecordingSetError(name, guess.questions[0])
+    listed = "".join(f"\n- {question}" for question in guess.questions)
+    raise RecordingSetError(name, f"{len(guess.questions)} things have to be said first:{listed}")
+
+
+def _own_rig(paths: Sequence[Path]) -> Rig | None:
+    with open_container(*paths) as container:
+        return read_rig_of(container) if container.has(RIG_FILE) else None

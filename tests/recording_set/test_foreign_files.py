@@ -1,0 +1,46 @@
+"""Files as other labs write them: read right, or one sentence that names the mend; nothing half-imported."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.recording_set import RecordingSetError, read_mapping, read_recording_set
+from bench.recording_set.guess import guess_of, mapping_text, read_unknown
+from tests.recording_set.foreign_files import FILES
+
+
+def test_there_are_sixty_of_them() -> None:
+    assert len(FILES) >= 60
+
+
+@pytest.mark.parametrize("what", FILES)
+def test_a_foreign_file_is_read_right_or_refused_with_the_mend(tmp_path: Path, what: str) -> None:
+    foreign = FILES[what]
+    path = tmp_path / foreign.name
+    path.write_bytes(foreign.data)
+    if foreign.asks:
+        with pytest.raises(RecordingSetError) as caught:
+            read_unknown([path], None, foreign.known)
+        assert re.search(foreign.asks, str(caught.value)), caught.value
+        return
+    found, _ = read_unknown([path], None, foreign.known)
+    (recording,) = found.recordings
+    for channel, values in foreign.truth.items():
+        assert channel in recording.channels, sorted(recording.channels)
+        np.testing.assert_allclose(recording.channels[channel], values, atol=10.0**-foreign.digits, err_msg=channel)
+
+
+@pytest.mark.parametrize("what", [name for name, foreign in FILES.items() if not foreign.asks])
+def test_the_mapping_that_is_written_reads_the_same(tmp_path: Path, what: str) -> None:
+    foreign = FILES[what]
+    path = tmp_path / foreign.name
+    path.write_bytes(foreign.data)
+    guess, rig, _ = guess_of([path], None, foreign.known)
+    (tmp_path / "mapping.toml").write_text(mapping_text(guess.mapping, ("a remark",)), encoding="utf-8")
+    (again,) = read_recording_set(path, read_mapping(tmp_path / "mapping.toml"), rig).recordings
+    (first,) = read_unknown([path], None, foreign.known)[0].recordings
+    assert again.channels.keys() == first.channels.keys()
+    for channel, values in first.channels.items():
+        np.testing.assert_array_equal(again.channels[channel], values)
