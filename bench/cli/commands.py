@@ -93,6 +93,11 @@ COMMANDS = (
         "Read trials of any bench into the store: all of them, or none and the file, line and column at fault.",
     ),
     CommandEntry(
+        "explain",
+        "bench.cli.lab.explain:explain",
+        "Import files of any bench, say what a model of the joint lacks, and write a report for a colleague.",
+    ),
+    CommandEntry(
         "calibrate",
         "bench.cli.operation.calibrate:app",
         "Friction curves of the joint, one per load, and what they are used for.",

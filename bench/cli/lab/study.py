@@ -103,6 +103,14 @@ def compare_command(context: typer.Context, study: StudyId, model: Model = None,
     _show(context, as_json, study_tables.comparison, compare, study, model)
 
 
+@app.command("coverage")
+def coverage_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
+    """What the trials can and cannot tell: directions, speeds, loads, repeats; which effects look alike in them."""
+    from bench.study.coverage import coverage
+
+    _show(context, as_json, study_tables.coverage, coverage, study, model)
+
+
 @app.command("simulate")
 def simulate_command(
     context: typer.Context,

@@ -10,6 +10,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.study.models.change import Changed
     from bench.study.models.closed_loop import ClosedLoop, LoopError
     from bench.study.models.comparison import AtRest, BreakawayError, Comparison, FittedParameter
+    from bench.study.models.coverage import Coverage
     from bench.study.models.ladder import Ladder, Rung
     from bench.study.models.study import Study
     from bench.study.refit import Refitted
@@ -44,6 +45,20 @@ def comparison(found: "Comparison") -> None:
         _at_rest(found.at_rest, unit)
     for note in found.notes:
         say(note)
+
+
+def coverage(found: "Coverage") -> None:
+    """What the trials can and cannot tell."""
+    rows = [(one.quantity, one.found, one.lacking or "-") for one in found.held]
+    table("What there is", ["of", "found", "what that leaves open"], rows)
+    effects = [
+        (one.effect, one.standing, one.reason or "-", ", ".join(one.rivals) or "-", percent(one.smallest))
+        for one in found.effects
+    ]
+    table("Effects beside the model", ["effect", "these trials", "why", "looks like", "shows from#"], effects)
+    trials = [(one.trial, len(one.effects) or "all", ", ".join(one.effects)) for one in found.advice]
+    table("What would help", ["trial", "opens#", "effects"], trials)
+    say(found.sentence)
 
 
 def _parameters(title: str, found: Sequence["FittedParameter"]) -> None:

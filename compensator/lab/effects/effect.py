@@ -14,6 +14,9 @@ from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
 Shape = tuple[float, ...]
 MotionRows = Literal["sliding", "moving"]
 EffectRows = Literal[MotionRows, "breakaway"]
+MOST_TURNS = (
+    10.0  # over all trials: beyond, nothing winds up with the shaft, and its position is the time it has turned
+)
 SESSION_START = "session_s"  # condition: time from the start of the session to that of the trial [s]
 
 
@@ -77,6 +80,17 @@ class Motion:
         """A numeric condition of the trial, or the default where it is not given."""
         value = self.conditions.get(name, default)
         return float(value) if isinstance(value, int | float) else default
+
+    @property
+    def turns_on(self) -> bool:
+        """Whether the shaft turns on and on: its angle in the turn is a place of the joint, its position is none."""
+        return self.facts.joint == "rotary" and self.position_span > MOST_TURNS * 2.0 * np.pi
+
+    @property
+    def place(self) -> FloatArray:
+        """Where the joint is: its position; of a shaft that turns on, its angle in the turn, 0 .. 2 pi; shape (n,)."""
+        found: FloatArray = self.position % (2.0 * np.pi) if self.turns_on else self.position
+        return found
 
     @cached_property
     def strokes(self) -> Strokes:
@@ -248,6 +262,7 @@ class Effect:
         misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
+        by_position: it goes by the position itself, which a shaft that turns on and on does not have.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
         ends_within_scan: what fits best at an upper end of its scan goes on beyond it, and is something else.
@@ -288,6 +303,7 @@ class Effect:
     provisional: bool = False
     misreads: Callable[[Motion, Shape], FloatArray] | None = None
     slope: Callable[[Motion, Shape], FloatArray] | None = None
+    by_position: bool = False
     told: Callable[[Facts, Shape], bool] = _nothing_told
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:

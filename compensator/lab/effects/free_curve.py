@@ -30,7 +30,7 @@ class _Variable:
 
 
 _VARIABLES = {
-    "position": _Variable("position", lambda motion: motion.position),
+    "position": _Variable("position", lambda motion: motion.place),
     "velocity": _Variable("velocity", lambda motion: motion.velocity),
     "acceleration": _Variable("acceleration", lambda motion: motion.acceleration),
     "load": _Variable("the predicted load", lambda motion: motion.load_effort, "load"),

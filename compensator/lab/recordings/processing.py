@@ -11,6 +11,7 @@ import numpy as np
 
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.driven import driven_from_outside
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
@@ -166,6 +167,7 @@ def _usable(
         good &= recording.channels["enabled"] > 0.5
     if "duty" in recording.channels:
         good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
+    good &= ~driven_from_outside(raw_time, position, effort)
     steps = np.diff(raw_time)
     before_gap = np.append(steps > LONGEST_GAP_PERIODS * typical_step_s(raw_time), False)
     after_gap = np.roll(before_gap, 1)

@@ -306,12 +306,22 @@ class Dataset:
         """The same rows, for a model that is still to be fitted: nothing bends."""
         return self.with_bend([np.zeros(len(trial.motion.time_s)) for trial in self.trials]) if self.is_bent else self
 
+    @property
+    def turns_on(self) -> bool:
+        """Whether the shaft turns on and on (see `Motion.turns_on`)."""
+        return any(trial.motion.turns_on for trial in self.trials)
+
     def check_applicable(self, effect: Effect) -> None:
         """Raise NotApplicableError, in words, where the recordings lack what the effect needs."""
         quantity = self.effort_definition.quantity
         if effect.efforts and quantity not in effect.efforts:
             raise NotApplicableError(
                 f"{effect.name} does not show in {self.effort_definition.title}; it does in {', '.join(effect.efforts)}"
+            )
+        if effect.by_position and self.turns_on:
+            raise NotApplicableError(
+                f"{effect.name} goes by the position, and the shaft turns on for "
+                f"{self.scales.position_span / (2.0 * np.pi):.0f} turns; record motion that comes back"
             )
         for fact in effect.facts:
             if getattr(self.facts, fact) is None:

@@ -23,5 +23,6 @@ EFFECT = Effect(
     source="Hooke",
     confused_with=("gravity", "offset"),
     carried=True,
+    by_position=True,
     breakaway=at_rest(columns, PARAMETERS, "position"),
 )

@@ -1,0 +1,104 @@
+"""`friction-bench explain FILE...`: from files of any bench to a report that says what the model lacks."""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from bench.cli.bench_session import session_of
+from bench.cli.lab.study_tables import ladder as show_ladder
+from bench.cli.output import FileError, console, say, table, write_whole
+from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, show
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from rich.progress import Progress
+
+    from bench.recording_set import RecordingSet
+    from bench.recording_set.guess import Guess
+    from bench.report import Section
+
+_HOLD_OUT = "Trials that judge the model instead of being fitted; repeatable. Without it, each is left out in turn."
+
+
+def explain(
+    context: typer.Context,
+    path: Annotated[
+        list[Path], typer.Argument(metavar="PATH...", help="Files of any bench, each a trial; or a folder or zip.")
+    ],
+    rig: Annotated[Path | None, typer.Option(help="rig.toml: what is known of motor, gear and arm.")] = None,
+    mapping: Annotated[Path | None, typer.Option(help="mapping.toml; without it, columns are guessed.")] = None,
+    take: Take = None,
+    counts_per_turn: CountsPerTurn = None,
+    rate_hz: RateHz = None,
+    supply_v: SupplyV = None,
+    hold_out: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_HOLD_OUT)] = None,
+    html: Annotated[Path | None, typer.Option(help="Report to write; without it explain-NAME.html.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name; without it, that of the files.")] = None,
+) -> None:
+    """Import files of any bench, say what a model of the joint lacks, and write a report for a colleague."""
+    from bench.recording_set import import_recording_set, read_mapping, read_recording_set, read_rig
+    from bench.recording_set.guess import read_unknown
+    from bench.study.explain import STEPS
+    from bench.study.explain import explain as explain_experiment
+
+    chosen_rig = None if rig is None else read_rig(rig)
+    guess = None
+    if mapping is not None:
+        recordings: RecordingSet = read_recording_set(path, read_mapping(mapping), chosen_rig)
+    else:
+        known = known_of(take, counts_per_turn, rate_hz, supply_v)
+        recordings, guess = read_unknown(path, chosen_rig, known)
+    called = name or recordings.name
+    report = html or Path(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}.html")
+    if report.exists():
+        raise FileError(f"{report}: is there already; name another file with --html, or remove it")
+    if guess is not None:
+        show(guess, recordings.notes)
+    with session_of(context).open_store() as store, _progress() as bar:
+        task = bar.add_task("import", total=len(STEPS) + 1)
+        experiment_id = import_recording_set(store, recordings, called)
+
+        def tell(step: str, number: int) -> None:
+            bar.update(task, description=step, completed=number + 1)
+
+        came_in = None if guess is None else _came_in(guess, recordings.notes)
+        found = explain_experiment(store, experiment_id, called, tell, hold_out or [], came_in)
+        bar.update(task, description="done", completed=len(STEPS) + 1)
+    table(
+        "What these data can and cannot tell",
+        ["of", "found", "what that leaves open"],
+        [(one.quantity, one.found, one.lacking or "-") for one in found.coverage.held],
+    )
+    say(found.coverage.sentence)
+    show_ladder(found.rungs)
+    for sentence in found.sentences:
+        say(sentence)
+    write_whole(report, [found.html.encode()])
+    say(f"written: {report}; kept as study {found.study_id}")
+
+
+def _progress() -> "Progress":
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    return Progress(*columns, TimeElapsedColumn(), console=console())
+
+
+def _came_in(guess: "Guess", notes: tuple[str, ...]) -> "Section":
+    """How the files were read, with a picture of each column that is used."""
+    from bench.report import Figure, Line, Section, Table
+
+    rows = [(one.column, one.channel or "-", one.unit, one.low, one.high, one.why) for one in guess.taken]
+    figures = [
+        Figure(
+            f"{one.column} as {one.channel}",
+            "sample",
+            f"{one.column} [{one.unit}]",
+            [Line("first file", list(range(len(one.outline))), one.outline)],
+        )
+        for one in guess.taken
+        if one.channel and one.channel != "time_s" and one.outline
+    ]
+    columns = ["column", "taken for", "in", "from#", "to#", "because"]
+    return Section("How the files were read", [*notes, *guess.notes], [Table("Columns", columns, rows)], figures)

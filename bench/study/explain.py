@@ -1,0 +1,129 @@
+"""From an experiment to a report for a colleague, in one go: base model, comparison, search, what to record next."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from bench.report import Figure, Line, Section, html_page
+from bench.store import Store
+from bench.study.compare import compare
+from bench.study.coverage import coverage
+from bench.study.create import create_study, describe
+from bench.study.diagnose import diagnose
+from bench.study.ladder import ladder
+from bench.study.models.comparison import Comparison, TrialError
+from bench.study.models.coverage import Coverage
+from bench.study.models.diagnosis import Diagnosis
+from bench.study.models.ladder import Ladder
+from bench.study.report.coverage_section import advice_section, coverage_section
+from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section
+from bench.study.report.head_section import head_section, summary
+from bench.study.report.model_sections import ladder_section, measured_section, model_section, residual_section
+from bench.study.search import search
+
+STEPS = ("base model", "what the data can tell", "comparison", "diagnosis", "search", "report")
+Tell = Callable[[str, int], None]
+
+
+@dataclass(frozen=True)
+class Explained:
+    """What came of it.
+
+    Attributes:
+        study_id: of the study that was made.
+        sentences: what was measured, what was missing, what is left.
+        rungs: error from model to model.
+        coverage: what the trials can and cannot tell.
+        html: the report, as one page that needs no network.
+    """
+
+    study_id: int
+    sentences: tuple[str, ...]
+    rungs: Ladder
+    coverage: Coverage
+    html: str
+
+
+def explain(
+    store: Store,
+    experiment_id: int,
+    name: str,
+    tell: Tell,
+    hold_out: Sequence[str] = (),
+    came_in: Section | None = None,
+) -> Explained:
+    """Study an experiment until nothing is missing that its trials can show.
+
+    Args:
+        store: with the experiment.
+        experiment_id: which one.
+        name: of the study.
+        tell: called with the name and number of each step as it begins.
+        hold_out: criteria `key=value` of the trials that judge; without any, each is left out in turn.
+        came_in: how the files were read, as a section of the report.
+
+    Raises:
+        StudyError: the trials cannot be used.
+    """
+    tell(STEPS[0], 0)
+    study_id = create_study(store, name, [experiment_id], hold_out).study_id
+    first = describe(store, study_id).model_id
+    tell(STEPS[1], 1)
+    told = coverage(store, study_id, first)
+    tell(STEPS[2], 2)
+    before = compare(store, study_id, first)
+    tell(STEPS[3], 3)
+    missing = diagnose(store, study_id, first)
+    tell(STEPS[4], 4)
+    found = search(store, study_id, first)
+    tell(STEPS[5], 5)
+    now = before if found.model_id == first else compare(store, study_id, found.model_id)
+    last = missing if found.model_id == first else diagnose(store, study_id, found.model_id)
+    rungs = ladder(store, study_id)
+    study = describe(store, study_id)
+    sections = [
+        head_section(study, rungs, last.sentence, store),
+        *([came_in] if came_in else []),
+        measured_section(study, store),
+        coverage_section(told),
+        ladder_section(rungs),
+        _before_and_after(before, now),
+        diagnosis_section("What was missing from the first model", missing, before),
+        *([diagnosis_section("What is left", last, now)] if last is not missing else []),
+        residual_section(before, now),
+        model_section(now),
+        advice_section(told, _separating(missing, last)),
+        provenance_section(study, store),
+    ]
+    return Explained(
+        study_id=study_id,
+        sentences=tuple(summary(study, rungs, last.sentence)),
+        rungs=rungs,
+        coverage=told,
+        html=html_page(f"What the model of {name} lacks", sections),
+    )
+
+
+def _separating(*found: Diagnosis) -> list[str]:
+    """What would tell effects apart that were named together."""
+    trials = [one.separating_trial for diagnosis in found for one in diagnosis.classes if len(one.effects) > 1]
+    return list(dict.fromkeys(trial for trial in trials if trial))
+
+
+def _before_and_after(before: Comparison, now: Comparison) -> Section:
+    """Measured against what the first and the last model predict, in the trial that the first one is worst in."""
+    worst: TrialError = max(before.trials, key=lambda one: one.rms if one.rms == one.rms else -1.0)
+    unit = f"{now.effort.name} [{now.effort.unit}]"
+    old, new = (next(s for s in one.series if s.trial_id == worst.trial_id) for one in (before, now))
+    lines = [Line("measured", old.time_s, old.measured), Line("first model", old.time_s, old.predicted)]
+    left = [Line("first model", old.time_s, old.residual)]
+    if now.model_id != before.model_id:
+        lines.append(Line("last model", new.time_s, new.predicted))
+        left.append(Line("last model", new.time_s, new.residual))
+    return Section(
+        "Before and after",
+        [f"Trial {worst.name}: of all trials the one in which the first model is worst."],
+        figures=[
+            Figure("Measured and predicted", "time [s]", unit, lines),
+            Figure("What the models leave", "time [s]", unit, left),
+        ],
+    )

@@ -1,0 +1,45 @@
+"""What the trials of a study can and cannot tell, before any diagnosis."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from bench.json_types import Number
+from bench.study.models.base import StudyModel
+
+
+class Held(StudyModel):
+    """What the trials hold of one quantity."""
+
+    quantity: str = Field(examples=["directions"])
+    found: str = Field(description="in words", examples=["54 % forward, 46 % backward"])
+    lacking: str = Field(description="what that leaves open; empty where nothing", examples=[""])
+
+
+class JudgedEffect(StudyModel):
+    """How the trials stand to one effect that the model does not have."""
+
+    effect: str = Field(examples=["load_friction"])
+    title: str
+    standing: Literal["judgeable", "confounded", "hidden", "not measured"]
+    reason: str = Field(description="what the trials lack, or where the effect hides; empty where nothing")
+    rivals: list[str] = Field(description="effects that look alike in these trials")
+    smallest: Number = Field(description="size that would show for sure, as a share of the effort (0..1)")
+
+
+class Advice(StudyModel):
+    """A trial that would help, and the effects that it would let be judged."""
+
+    trial: str = Field(examples=["the same motion with two other loads, one of them three times the other"])
+    effects: list[str] = Field(description="effects that it opens; empty where it serves all of them")
+
+
+class Coverage(StudyModel):
+    """What trials can and cannot tell."""
+
+    study_id: int
+    model_id: int
+    held: list[Held]
+    effects: list[JudgedEffect]
+    advice: list[Advice] = Field(description="the trial that opens most effects first")
+    sentence: str
