@@ -16,6 +16,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.place_locked import place_locked_hz
 from compensator.lab.recordings.processing import Signals, make_signals, sample_rate_hz, shortest_samples
 from compensator.lab.recordings.recording import FloatArray, Recording
 
@@ -25,6 +26,7 @@ MOTION_SHARE = 0.99
 SEGMENT_S = 4.0
 HARMONICS = 4.0
 BANDS_PER_OCTAVE = 2
+PASSED = 1.5  # times the frequency of a ripple: the filter lets most of it through
 MOST_RECORDINGS = 24  # enough to see a corner; keeps the cost bounded
 
 
@@ -32,7 +34,7 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
     """The final low-pass cut-off [Hz].
 
     Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the noise
-    corner, and within 2 Hz and a fifth of the sample rate.
+    corner; higher where the effort repeats with the place of the joint; within 2 Hz and a fifth of the sample rate.
 
     Raises:
         UnusableDataError: a recording with fewer than four samples a second, or one that `make_signals` refuses.
@@ -46,7 +48,9 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
     highest_hz = 0.2 * slowest_hz
     wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)
-    return max(noise_corner_hz(some, effort, facts, wanted_hz), LOWEST_HZ)
+    by_motion_hz = noise_corner_hz(some, effort, facts, wanted_hz)
+    by_place_hz = min(PASSED * place_locked_hz(some, effort, facts), highest_hz)
+    return max(by_motion_hz, by_place_hz, LOWEST_HZ)
 
 
 def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
