@@ -12,6 +12,7 @@ from compensator.lab.effects.effect import Effect
 from compensator.lab.effects.electrical import (
     back_emf_error,
     cogging,
+    cogging_orders,
     current_gain_asymmetry,
     dead_time,
     encoder_eccentricity,
@@ -24,6 +25,7 @@ from compensator.lab.effects.friction import (
     back_driving_friction,
     coulomb,
     coulomb_asymmetry,
+    coulomb_quadrant,
     coulomb_temperature,
     dwell_strengthening,
     frictional_lag,
@@ -35,6 +37,7 @@ from compensator.lab.effects.friction import (
     stribeck,
     viscous,
     viscous_asymmetry,
+    viscous_power,
     viscous_quadratic,
     viscous_temperature,
     warm_up,
@@ -64,15 +67,18 @@ _OURS = (
     coulomb_asymmetry,
     viscous_asymmetry,
     viscous_quadratic,
+    viscous_power,
     load_friction,
     load_friction_quadratic,
     weight_friction,
     back_driving_friction,
+    coulomb_quadrant,
     coulomb_temperature,
     viscous_temperature,
     warm_up,
     position_periodic_friction,
     cogging,
+    cogging_orders,
     spring,
     centre_of_mass_angle,
     torque_constant_saturation,
@@ -140,4 +146,5 @@ def candidates(present: Sequence[str], facts: Facts) -> list[Effect]:
     """Effects of the catalogue that a model does not have yet and that this joint can have."""
     impossible = {"gravity", "centre_of_mass_angle"} if facts.horizontal or facts.joint == "linear" else set()
     unknown = {*present, *impossible, *_WITHHELD.get()}
-    return [effect for name, effect in catalogue().items() if name not in unknown]
+    possible = [effect for name, effect in catalogue().items() if name not in unknown]
+    return [effect for effect in possible if set(effect.after) <= set(present)]

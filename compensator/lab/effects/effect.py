@@ -262,6 +262,8 @@ class Effect:
         misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
+        after: effects that a model must have before this one can be missing.
+        grows: its shape is a list of orders, 0 for none; each further one is taken as long as the rows pay for it.
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
@@ -304,6 +306,8 @@ class Effect:
     misreads: Callable[[Motion, Shape], FloatArray] | None = None
     slope: Callable[[Motion, Shape], FloatArray] | None = None
     by_position: bool = False
+    after: tuple[str, ...] = ()
+    grows: bool = False
     told: Callable[[Facts, Shape], bool] = _nothing_told
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:

@@ -17,6 +17,7 @@ from compensator.lab.rows.dataset import Dataset
 
 SWEEPS = 2  # the first shape is found while the others' are guesses
 REFINEMENTS = 24  # evaluations between the grid's values
+TINY = 1e-12
 STEP = 0.2  # of the logarithm, at first
 
 
@@ -52,7 +53,7 @@ def find_shapes(
             others = [dataset.columns(other, shapes.get(other.name, ())) for other in effects if other is not effect]
             fixed = np.concatenate(others, axis=1)[rows] if others else np.empty((int(rows.sum()), 0))
             search = _Search(dataset, effect, rows, fixed, weight[rows])
-            best = search.scan()
+            best = search.grow() if effect.grows else search.scan()
             shapes[effect.name] = search.refine(best) if effect.smooth_shape else best
     return shapes
 
@@ -82,8 +83,30 @@ class _Search:
 
     def scan(self) -> Shape:
         """The best shape of the effect's grid."""
-        powers = [self.explained(columns) for columns in self._dataset.columns_of_shapes(self._effect, self._grid)]
+        powers = [self.explained(columns) for columns in self._columns()]
         return self._grid[int(np.argmax(powers))]
+
+    def grow(self) -> Shape:
+        """One order after the other, each the best beside those before it, while the rows pay for it (BIC)."""
+        orders = [shape[0] for shape in self._grid]
+        weighted = [self._weight * one[self._rows][:, :2] for one in self._columns()]
+        basis, rest = self._basis, self._rest
+        grown: list[float] = []
+        while len(grown) < len(self._grid[0]):
+            blocks = [orthonormal(one - basis @ (basis.T @ one)) for one in weighted]
+            powers = [float(np.sum((block.T @ rest) ** 2)) for block in blocks]
+            best = int(np.argmax(powers))
+            left, count = float(rest @ rest), independent_rows(rest - blocks[best] @ (blocks[best].T @ rest))
+            price = 2.0 * np.log(count) + 2.0 * np.log(len(orders))
+            if grown and count * np.log(left / max(left - powers[best], TINY * left)) < price:
+                break
+            grown.append(orders[best])
+            basis = np.column_stack([basis, blocks[best]])
+            rest = rest - blocks[best] @ (blocks[best].T @ rest)
+        return tuple(grown + [0.0] * (len(self._grid[0]) - len(grown)))
+
+    def _columns(self) -> list[FloatArray]:
+        return self._dataset.columns_of_shapes(self._effect, self._grid)
 
     def refine(self, start: Shape) -> Shape:
         """The best shape between the grid's values, from a start."""
@@ -93,6 +116,15 @@ class _Search:
             return -self.explained(self._dataset.stack(motions))
 
         return between(self._grid, start, loss)
+
+
+def independent_rows(rest: FloatArray) -> float:
+    """How many rows what is left (n,) is worth: neighbours are alike, as those of an autoregression of first order."""
+    centred = rest - rest.mean()
+    power = float(centred @ centred)
+    alike = float(centred[1:] @ centred[:-1]) / power if power > 0.0 else 0.0
+    alike = min(max(alike, 0.0), 0.99)
+    return max(len(rest) * (1.0 - alike) / (1.0 + alike), 2.0)
 
 
 def power_within(column: FloatArray, rest: FloatArray, bounds: tuple[float, float]) -> float:

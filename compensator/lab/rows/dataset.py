@@ -345,7 +345,12 @@ class Dataset:
         return bool(np.ptp(values) > 0.0)
 
     def _filtered(self, trial: Trial, full_rate: FloatArray) -> FloatArray:
-        return low_pass(full_rate, self.cutoff_hz, trial.signals.rate_hz)[:, trial.picked]
+        found = np.zeros((len(full_rate), len(trial.picked)))
+        # orders that an effect does not use are rows of zeros
+        some = full_rate.any(axis=1)
+        if some.any():
+            found[some] = low_pass(full_rate[some], self.cutoff_hz, trial.signals.rate_hz)[:, trial.picked]
+        return found
 
 
 def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:

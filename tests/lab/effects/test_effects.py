@@ -103,6 +103,11 @@ def twisted(m: Motion) -> list[np.ndarray]:
     return [-0.1 * np.array(found)]
 
 
+def flank(m: Motion) -> np.ndarray:
+    """Which flank carries the load, unsure below a twentieth of the largest effort."""
+    return np.tanh((1.3 * np.sin(m.position) - 0.2) / (0.05 * 1.5))
+
+
 # one row per parameter, from the equation in the effect's file; shape values in its order
 EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray]]]] = {
     "inertia": ((), lambda m: [m.acceleration, LOAD_KG * ARM_M**2 * m.acceleration]),
@@ -114,6 +119,11 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "coulomb_asymmetry": ((), lambda m: [np.ones(41)]),
     "viscous_asymmetry": ((), lambda m: [np.abs(m.velocity)]),
     "viscous_quadratic": ((), lambda m: [np.sign(m.velocity) * m.velocity**2]),
+    "viscous_power": ((0.5,), lambda m: [np.sign(m.velocity) * np.sqrt(np.abs(m.velocity) / m.fast)]),
+    "coulomb_quadrant": (
+        (),
+        lambda m: [flank(m), flank(m) * np.sign(m.velocity)],
+    ),
     "load_friction": ((), lambda m: [np.abs(1.3 * np.sin(m.position) - 0.2) * np.sign(m.velocity)]),
     "load_friction_quadratic": ((), lambda m: [(1.3 * np.sin(m.position) - 0.2) ** 2 * np.sign(m.velocity)]),
     "weight_friction": ((), lambda m: [LOAD_KG * np.sign(m.velocity)]),
@@ -125,6 +135,10 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
     "back_driving_friction": ((), lambda m: [back_driven(m, 1.3 * np.sin(m.position) - 0.2)]),
     "cogging": ((9.0,), lambda m: over_a_sample(m, 9.0)),
+    "cogging_orders": (
+        (9.0, 4.0, 0.0, 0.0, 0.0, 0.0),
+        lambda m: [*over_a_sample(m, 9.0), *over_a_sample(m, 4.0), *np.zeros((8, 41))],
+    ),
     "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
     "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
     "dead_time": ((0.02,), lambda m: [np.tanh(predicted(m) / (0.02 * 1.5))]),

@@ -1,0 +1,54 @@
+"""`friction-bench import --guess` and `explain` on files that nobody described."""
+
+import json
+
+import pytest
+
+from tests.recording_set.foreign_files import FILES
+
+
+def test_a_guess_is_shown_written_and_can_be_imported(command, tmp_path):
+    (tmp_path / "log.csv").write_bytes(FILES["german excel, windows-1252"].data)
+    guessed = command("import", "--guess", "log.csv")
+    assert guessed.exit_code == 0, guessed.output
+    for words in ("Winkel [°]", "position_rad", "deg", "decimal comma", "Windows-1252", "then: friction-bench import"):
+        assert words in guessed.stdout
+    assert json.loads(command("experiments", "--json").stdout) == []  # nothing is imported by a guess
+    made = command("import", "log.csv", "--mapping", "mapping.toml", "--rig", "rig.toml", "--json")
+    assert json.loads(made.stdout)["rows"] == 400
+
+
+def test_what_is_not_sure_is_asked_and_nothing_is_written(command, tmp_path):
+    (tmp_path / "log.csv").write_bytes(FILES["duty of 50"].data)
+    result = command("import", "--guess", "log.csv")
+    assert result.exit_code == 3
+    assert "--take 'duty=duty[%]'" in result.stderr
+    assert not (tmp_path / "mapping.toml").exists()
+    answered = command("import", "--guess", "log.csv", "--take", "duty=duty[%]")
+    assert answered.exit_code == 0, answered.output
+    assert 'unit = "%"' in (tmp_path / "mapping.toml").read_text()
+
+
+@pytest.mark.parametrize("take", ["duty", "duty=warp", "duty=duty[parsec]", "nothing=current[A]"])
+def test_an_answer_that_is_none_is_explained(command, tmp_path, take):
+    (tmp_path / "log.csv").write_bytes(FILES["duty of 50"].data)
+    result = command("import", "--guess", "log.csv", "--take", take)
+    assert result.exit_code == 3
+    assert "--take" in result.stderr
+
+
+def test_a_report_is_not_written_over(command, tmp_path):
+    (tmp_path / "log.csv").write_bytes(FILES["plain"].data)
+    (tmp_path / "mine.html").write_text("mine")
+    result = command("explain", "log.csv", "--html", "mine.html")
+    assert result.exit_code == 3
+    assert "mine.html" in result.stderr
+    assert json.loads(command("experiments", "--json").stdout) == []
+
+
+def test_a_file_that_must_be_asked_about_is_not_explained(command, tmp_path):
+    (tmp_path / "log.csv").write_bytes(FILES["counts, not told"].data)
+    result = command("explain", "log.csv")
+    assert result.exit_code == 3
+    assert "--counts-per-turn" in result.stderr
+    assert json.loads(command("experiments", "--json").stdout) == []

@@ -1,0 +1,100 @@
+"""What trials can and cannot tell, before any diagnosis; and the report of `explain`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.config.rig import Rig
+from bench.recording_set import import_recording_set
+from bench.recording_set.recording_set import RecordingSet
+from bench.store import Store
+from bench.study.coverage import LOADS, RAMPS, REPEAT, WARMTH, coverage
+from bench.study.create import create_study
+from bench.study.explain import STEPS, explain
+from bench.study.models.coverage import Coverage
+from compensator.lab.recordings.recording import Recording
+from tests.lab.synthetic import plans
+from tests.study.conftest import imported
+
+FREE = Rig.model_validate({"name": "free shaft", "horizontal": True})
+
+
+def told(store: Store, experiment_id: int) -> Coverage:
+    return coverage(store, create_study(store, "x", [experiment_id]).study_id)
+
+
+def lacking(found: Coverage, quantity: str) -> str:
+    return next(one.lacking for one in found.held if one.quantity == quantity)
+
+
+def turning(sign: float, seed: int) -> Recording:
+    """A shaft that speeds up and turns on one way, for some hundred turns."""
+    random = np.random.default_rng(seed)
+    time_s = np.arange(0.0, 12.0, 0.005)
+    speed = sign * 150.0 * (1.0 - np.exp(-time_s / 3.0))
+    torque = 1e-4 * np.gradient(speed, time_s) + 1e-4 * speed + 0.01 * sign + 1e-4 * random.standard_normal(len(time_s))
+    channels = {"time_s": time_s, "position_rad": np.cumsum(speed) * 0.005, "torque_n_m": torque}
+    return Recording(f"{sign:+g} {seed}", "step", {"sign": sign, "repeat": float(seed)}, channels)
+
+
+def shaft(store: Store, signs: tuple[float, ...]) -> Coverage:
+    trials = [turning(sign, seed) for sign in signs for seed in (1, 2)]
+    return told(store, import_recording_set(store, RecordingSet("shaft", FREE, trials), "shaft"))
+
+
+def test_two_loads_both_ways_and_repeats(store: Store, experiment_id: int) -> None:
+    found = told(store, experiment_id)
+    assert lacking(found, "directions") == lacking(found, "repeats") == ""
+    assert "two loads" in lacking(found, "loads")
+    assert lacking(found, "temperature") == ""  # measured, and it warms up
+    advised = [one.trial for one in found.advice]
+    assert advised[0] == LOADS
+    assert not {WARMTH, REPEAT} & set(advised)
+
+
+def test_what_is_there_is_not_advised(store: Store) -> None:
+    found = told(store, imported(store, plans(loads_kg=(0.0, 0.2, 1.0), repeats=1)))
+    assert lacking(found, "loads") == ""
+    assert LOADS not in [one.trial for one in found.advice]
+    assert REPEAT in [one.trial for one in found.advice]
+
+
+def test_one_way_only_is_said(store: Store) -> None:
+    found = shaft(store, (1.0,))
+    assert lacking(found, "directions").startswith("one way only")
+    assert any("other way round" in one.trial for one in found.advice)
+
+
+def test_each_direction_a_trial_of_its_own_is_both_directions(store: Store) -> None:
+    found = shaft(store, (1.0, -1.0))
+    assert lacking(found, "directions") == ""
+    assert not any("other way round" in one.trial for one in found.advice)
+
+
+def test_a_shaft_that_turns_on_has_no_spring(store: Store) -> None:
+    found = shaft(store, (1.0, -1.0))
+    assert "turns on" in lacking(found, "position")
+    spring = next(one for one in found.effects if one.effect == "spring")
+    assert (spring.standing, "shaft turns on" in spring.reason) == ("not measured", True)
+
+
+def test_an_effect_that_hides_and_effects_that_look_alike(store: Store) -> None:
+    found = told(store, imported(store, plans(loads_kg=(0.1,), repeats=1)))
+    by_name = {one.effect: one for one in found.effects}
+    assert by_name["coulomb_asymmetry"].standing == "hidden"
+    assert "load_friction_quadratic" in by_name["load_friction"].rivals  # one load: a line and a curve are one
+    assert by_name["viscous_asymmetry"].standing == "judgeable"
+    assert by_name["rate_dependent_breakaway"].standing == "not measured"
+    assert RAMPS in [one.trial for one in found.advice] or by_name["rate_dependent_breakaway"].reason
+
+
+@pytest.mark.timeout(300)
+def test_explain_ends_in_a_report_of_one_page(store: Store, experiment_id: int, tmp_path: Path) -> None:
+    steps: list[tuple[str, int]] = []
+    found = explain(store, experiment_id, "known joint", lambda step, number: steps.append((step, number)))
+    assert steps == list(zip(STEPS, range(len(STEPS)), strict=True))
+    assert any("viscous asymmetry" in sentence for sentence in found.sentences)
+    for words in ("What these data can and cannot tell", "Before and after", "What to record next", "<script"):
+        assert words in found.html
+    assert "http://" not in found.html.split("<script")[0]
