@@ -77,7 +77,10 @@ def _read_rig(container: Container) -> Rig:
         return read_rig_of(container)
     if isinstance(container, Files):
         raise RecordingSetError(container.path.name, "a single file has no rig; name one with --rig rig.toml")
-    message = 'is not there; write one with at least: name = "...", or name a rig file of your own'
+    message = (
+        'is not there; write one with at least: name = "...", or name a rig file of your own. For files of another '
+        "bench `friction-bench import --guess` writes it, and POST /recording-sets/guess"
+    )
     raise RecordingSetError(place(container, RIG_FILE), message)
 
 

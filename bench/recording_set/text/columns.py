@@ -103,7 +103,7 @@ def _check_known(table: Headed, mapping: Mapping) -> None:
     if len(unknown) > 1:
         parts.append(f"Not known either: {', '.join(unknown[1:])}")
     parts.append(f"Known: {', '.join([*CHANNELS, EVENT_COLUMN])}. Map or ignore the column in a mapping file")
-    parts.append("`friction-bench import --guess` writes one")
+    parts.append("`friction-bench import --guess` writes one; a set may bring it along as mapping.toml")
     raise table.error(". ".join(parts), table.header_line, first)
 
 

@@ -2,14 +2,16 @@
 
 import tempfile
 from collections.abc import AsyncIterator
+from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import anyio
 from fastapi import APIRouter, Depends, HTTPException, Query, Request
 from pydantic import BaseModel, Field
 
 from bench.recording_set import import_recording_set, read_recording_set
+from bench.recording_set.guess import Known, guess_of, mapping_text, read_said, rig_text
 from bench.service.auth.access import require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_worker
@@ -29,6 +31,15 @@ ZIP_BODY = {
 }
 
 
+FILES_BODY = {
+    "requestBody": {
+        "required": True,
+        "description": "Zipped files of any bench, each a trial: CSV, MAT, NPZ, HDF5, Parquet, JSON lines.",
+        "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+
+
 class Imported(BaseModel):
     """What an import made."""
 
@@ -36,6 +47,41 @@ class Imported(BaseModel):
     name: str
     trials: int = Field(description="how many trials came in")
     rows: int = Field(description="how many rows came in, all trials together")
+
+
+class GuessedColumn(BaseModel):
+    """What a column of an unknown file is taken for."""
+
+    column: str = Field(description="its name")
+    channel: str = Field(description="channel of the recording; empty where it is not used")
+    unit: str = Field(description="of the column")
+    low: float | None = Field(description="of its values, in that unit; null of text")
+    high: float | None
+    why: str = Field(description="in words")
+    outline: list[float] = Field(description="some of its values over time; empty of text")
+
+
+EXAMPLE_COLUMN = GuessedColumn(
+    column="iq", channel="current_a", unit="mA", low=-830.0, high=790.0, why="its name", outline=[-830.0, 12.0, 790.0]
+).model_dump()
+
+
+class GuessedColumns(BaseModel):
+    """What files of an unknown bench may be."""
+
+    joint: Literal["rotary", "linear"] = Field(examples=["rotary"])
+    columns: list[GuessedColumn] = Field(examples=[[EXAMPLE_COLUMN]])
+    questions: list[str] = Field(
+        description="what has to be said first; empty where nothing is left open",
+        examples=[["'enc' is in counts: say --counts-per-turn N (of the joint), or --take 'enc=position[deg]'"]],
+    )
+    notes: list[str] = Field(
+        description="how the files were read", examples=[["set/a.csv: columns between ';', decimal comma"]]
+    )
+    mapping: str = Field(
+        description="the text of a mapping.toml", examples=['[columns.current_a]\nfrom = "iq"\nunit = "mA"\n']
+    )
+    rig: str = Field(description="the text of a rig.toml", examples=['name = "bench 3"\n'])
 
 
 @router.post(
@@ -54,17 +100,58 @@ async def import_set(
 ) -> Imported:
     """All or nothing: an error names file, line and column, what was found and what is wanted.
 
-    Files of other shapes need a mapping file: use `friction-bench import PATH --mapping mapping.toml`.
+    Files of other shapes need a `mapping.toml` in the zip: ask POST /recording-sets/guess for one.
     """
-    kind = request.headers.get("content-type", "").partition(";")[0].strip()
-    if kind not in {"application/zip", "application/x-zip-compressed", "application/octet-stream"}:
-        raise HTTPException(415, f"Content-Type is '{kind}'; wanted is application/zip")
+    _check_is_zip(request)
     with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
         path = Path(folder) / f"{_shortened(name)}.zip"  # errors name the set as its sender does
         await _receive(request.stream(), path)
         made = await in_worker(request, _import, store, path, name)
     note(request, f"imported experiment {made.experiment_id} ({name})")
     return made
+
+
+@router.post(
+    "/guess",
+    summary="What the columns of unknown files may be (zip)",
+    responses=problems(401, 413, 415, 422),
+    openapi_extra=FILES_BODY,
+)
+async def guess_set(
+    request: Request,
+    name: Annotated[
+        str, Query(min_length=1, max_length=100, pattern=r"^[^/\\\x00-\x1f]+$", examples=["bench 3, gear 12"])
+    ],
+    take: Annotated[list[str] | None, Query(description="what a column is: NAME=QUANTITY[UNIT]", max_length=50)] = None,
+    counts_per_turn: Annotated[float | None, Query(gt=0, description="of the joint, for columns in counts")] = None,
+    rate_hz: Annotated[float | None, Query(gt=0, description="samples a second, where no column is a time")] = None,
+    supply_v: Annotated[float | None, Query(description="supply voltage [V], where no column holds it")] = None,
+) -> GuessedColumns:
+    """Keeps nothing. Where no question is left, put `mapping` and `rig` into the zip as mapping.toml and rig.toml."""
+    _check_is_zip(request)
+    known = Known(read_said(take or []), counts_per_turn, rate_hz, supply_v)
+    with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
+        path = Path(folder) / f"{_shortened(name)}.zip"
+        await _receive(request.stream(), path)
+        return await in_worker(request, _guess, path, known)
+
+
+def _check_is_zip(request: Request) -> None:
+    kind = request.headers.get("content-type", "").partition(";")[0].strip()
+    if kind not in {"application/zip", "application/x-zip-compressed", "application/octet-stream"}:
+        raise HTTPException(415, f"Content-Type is '{kind}'; wanted is application/zip")
+
+
+def _guess(path: Path, known: Known) -> GuessedColumns:
+    guess, rig, notes = guess_of([path], None, known)
+    return GuessedColumns(
+        joint=guess.joint,
+        columns=[GuessedColumn(**{**asdict(one), "outline": list(one.outline)}) for one in guess.taken],
+        questions=list(guess.questions),
+        notes=[*notes, *guess.notes],
+        mapping=mapping_text(guess.mapping),
+        rig=rig_text(rig),
+    )
 
 
 def _shortened(name: str) -> str:

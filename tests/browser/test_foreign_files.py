@@ -1,0 +1,38 @@
+"""Files of another bench on the page: their columns are shown, questions answered, and they come in."""
+
+import pytest
+
+from tests.recording_set.foreign_files import FILES
+
+pytestmark = pytest.mark.browser
+
+
+def chosen(name: str) -> dict[str, object]:
+    return {"name": "bench 7.csv", "mimeType": "text/csv", "buffer": FILES[name].data}
+
+
+def test_a_german_spreadsheet_comes_in_once_its_columns_are_confirmed(service, open_page):
+    page = open_page("#trials")
+    page.get_by_text("Import a recording set, or files of any bench").click()
+    page.get_by_label("Recording set (.zip), or files").set_input_files([chosen("german excel, windows-1252")])
+    page.get_by_role("button", name="Import", exact=True).click()
+    page.get_by_role("region", name="Columns").get_by_text("position_rad").wait_for()
+    before = service.client.get("/experiments").json()["items"]
+    assert not any(one["kind"] == "import" for one in before)  # nothing comes in before somebody has looked
+    page.get_by_role("button", name="These columns are right").click()
+    page.get_by_text("Imported 1 trials").wait_for()
+    made = next(one for one in service.client.get("/experiments").json()["items"] if one["kind"] == "import")
+    trial = service.client.get("/trials", params={"experiment_id": made["experiment_id"]}).json()["items"][0]
+    assert trial["rows"] == 400
+
+
+def test_a_question_is_asked_and_answered(service, open_page):
+    page = open_page("#trials")
+    page.get_by_text("Import a recording set, or files of any bench").click()
+    page.get_by_label("Recording set (.zip), or files").set_input_files([chosen("counts, not told")])
+    page.get_by_role("button", name="Import", exact=True).click()
+    page.get_by_role("alert").get_by_text("--counts-per-turn").wait_for()
+    page.get_by_label("Counts per turn of the joint").fill("16384")
+    page.get_by_role("button", name="Answer").click()
+    page.get_by_role("button", name="These columns are right").click()
+    page.get_by_text("Imported 1 trials").wait_for()
