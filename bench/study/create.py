@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from bench.config.rig import Rig
 from bench.store import Store
 from bench.store.records import Trial
@@ -63,8 +65,9 @@ def definition_of(
     held = split(trials, hold_out)
     facts = _facts(store, experiment_ids)
     with lab_errors():
-        effects = _base_effects(base) if base else base_model(store, experiment_ids, facts)
         recordings = [store.recording(trial.id) for trial in trials]
+        told = all(LOAD in one.channels and bool(np.isfinite(one.channels[LOAD]).any()) for one in recordings)
+        effects = _base_effects(base) if base else base_model(store, experiment_ids, facts, told)
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
     return Definition(
         trial_ids=tuple(trial.id for trial in trials),
@@ -148,13 +151,16 @@ def _facts(store: Store, experiment_ids: Sequence[int]) -> Facts:
     return next(iter(found.values()))
 
 
+LOAD = "load_torque_n_m"
 SAMPLING_DELAY = "measurement_delay"
 CONTROL_LOOP = "recorded_by_control_loop"
 """Parameter of an imported experiment whose rows our own control loop recorded."""
 OWN_SOURCES = ("simulated", "real")
 
 
-def base_model(store: Store, experiment_ids: Sequence[int], facts: Facts) -> tuple[str, ...]:
+def base_model(
+    store: Store, experiment_ids: Sequence[int], facts: Facts, load_is_measured: bool = False
+) -> tuple[str, ...]:
     """Rigid joint with General Kinetic Friction; of our own control loop, with its sampling delay.
 
     The loop samples the position at the end of the cycle whose effort stands in the same row: on average the effort
@@ -164,7 +170,9 @@ def base_model(store: Store, experiment_ids: Sequence[int], facts: Facts) -> tup
         store: with the experiments.
         experiment_ids: whose trials are used.
         facts: of their rig.
+        load_is_measured: by a torque sensor, in every trial.
     """
     experiments = [store.experiment(number) for number in experiment_ids]
     own = all(one.source in OWN_SOURCES or CONTROL_LOOP in one.parameters for one in experiments)
-    return (*default_effects(facts), SAMPLING_DELAY) if own else default_effects(facts)
+    effects = default_effects(facts, load_is_measured)
+    return (*effects, SAMPLING_DELAY) if own else effects

@@ -32,6 +32,7 @@ CHANGES = [
     ("POST", "/campaigns"),
     ("POST", "/campaigns/plan"),
     ("POST", "/recording-sets?name=x"),
+    ("POST", "/recording-sets/guess?name=x"),
     ("POST", "/calibrations"),
     ("POST", "/calibrations/1/use"),
     ("DELETE", "/calibrations/in-use"),

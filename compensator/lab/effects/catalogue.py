@@ -49,6 +49,7 @@ from compensator.lab.effects.mechanics import (
     elasticity,
     gravity,
     inertia,
+    measured_load,
     offset,
     spring,
 )
@@ -60,6 +61,7 @@ ENTRY_POINT_GROUP = "friction_bench.effects"
 _OURS = (
     inertia,
     gravity,
+    measured_load,
     offset,
     coulomb,
     viscous,
@@ -123,10 +125,16 @@ def effect_named(name: str) -> Effect:
     raise UnknownEffectError(f"effect '{name}' is not in the catalogue; known are for instance: {', '.join(near)}")
 
 
-def default_effects(facts: Facts) -> tuple[str, ...]:
-    """The model a study starts from: rigid joint with the General Kinetic Friction of eq. (2)."""
-    gravity_names = () if facts.horizontal or facts.joint == "linear" else ("gravity",)
-    return ("inertia", *gravity_names, "offset", "coulomb", "viscous", "stribeck")
+def default_effects(facts: Facts, load_is_measured: bool = False) -> tuple[str, ...]:
+    """The model a study starts from: rigid joint with the General Kinetic Friction of eq. (2).
+
+    Args:
+        facts: of the joint.
+        load_is_measured: a torque sensor tells the load in every trial, weight and all.
+    """
+    weightless = facts.horizontal or facts.joint == "linear"
+    load = ("measured_load",) if load_is_measured else () if weightless else ("gravity",)
+    return ("inertia", *load, "offset", "coulomb", "viscous", "stribeck")
 
 
 _WITHHELD: ContextVar[frozenset[str]] = ContextVar("withheld", default=frozenset())
@@ -145,6 +153,7 @@ def withheld(names: Iterable[str]) -> Iterator[None]:
 def candidates(present: Sequence[str], facts: Facts) -> list[Effect]:
     """Effects of the catalogue that a model does not have yet and that this joint can have."""
     impossible = {"gravity", "centre_of_mass_angle"} if facts.horizontal or facts.joint == "linear" else set()
+    impossible |= {"measured_load"} if "gravity" in present else set()  # it holds the weight
     unknown = {*present, *impossible, *_WITHHELD.get()}
     possible = [effect for name, effect in catalogue().items() if name not in unknown]
-    return [effect for effect in possible if set(effect.after) <= set(present)]
+    return [effect for effect in possible if effect.looked_for and set(effect.after) <= set(present)]

@@ -45,6 +45,7 @@ class Motion:
         fast: 95 % quantile of speed over all trials.
         misread_acceleration: what the position sensor adds to the acceleration, as far as the model says; position and
             its rates are without it.
+        measured_load: of a torque sensor between gear and load [N m]; NaN where there is none.
         travelled: way from the start of the session to that of the trial, as far as the trials tell.
         usual_speed: way over time, of the whole session; 0 where nothing tells.
     """
@@ -73,6 +74,7 @@ class Motion:
     fast: float
     doubt: FloatArray | float = 0.0
     misread_acceleration: FloatArray | float = 0.0
+    measured_load: FloatArray | float = np.nan
     travelled: float = 0.0
     usual_speed: float = 0.0
 
@@ -262,6 +264,7 @@ class Effect:
         misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
+        looked_for: diagnoses look for it; False where only the sign tells it from another effect: added by hand then.
         after: effects that a model must have before this one can be missing.
         grows: its shape is a list of orders, 0 for none; each further one is taken as long as the rows pay for it.
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
@@ -306,6 +309,7 @@ class Effect:
     misreads: Callable[[Motion, Shape], FloatArray] | None = None
     slope: Callable[[Motion, Shape], FloatArray] | None = None
     by_position: bool = False
+    looked_for: bool = True
     after: tuple[str, ...] = ()
     grows: bool = False
     told: Callable[[Facts, Shape], bool] = _nothing_told

@@ -36,6 +36,7 @@ CHANNELS: dict[str, Channel] = {
         Channel("temperature_c", "degC", "temperature that the drive reports"),
         Channel("torque_n_m", "N m", "joint torque of the motor"),
         Channel("force_n", "N", "motor force of a linear joint"),
+        Channel("load_torque_n_m", "N m", "what a torque sensor measures between gear and load: the load on the joint"),
         Channel("enabled", "1", "power stage on (1) or off (0)"),
         Channel("age_s", "s", "age of the sample when it was received"),
         # of a pair: the others are the slave's

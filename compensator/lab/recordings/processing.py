@@ -36,7 +36,7 @@ class Signals:
         rate_hz: of the grid.
         position, velocity, acceleration, jerk: differentiated after the wide filter.
         effort: raw, on the grid.
-        temperature_c, supply_v: NaN where not measured.
+        temperature_c, supply_v, load: NaN where not measured; load: of a torque sensor [N m].
         usable: False in gaps, with the power stage off, in saturation, and at the ends.
     """
 
@@ -50,6 +50,7 @@ class Signals:
     effort: FloatArray
     temperature_c: FloatArray
     supply_v: FloatArray
+    load: FloatArray
     usable: BoolArray
 
 
@@ -129,6 +130,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         effort=_resample(time, raw_time, raw_effort),
         temperature_c=_optional(recording, "temperature_c", time),
         supply_v=_optional(recording, "supply_v", time),
+        load=_optional(recording, "load_torque_n_m", time),
         usable=_usable(recording, raw_time, raw_position, raw_effort, time, cutoff_hz),
     )
 

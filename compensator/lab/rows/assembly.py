@@ -44,18 +44,14 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
     usable = np.concatenate([s.usable for s in signals])
     if not usable.any():
+        _check_effort(np.concatenate([s.effort for s in signals]), effort)
         raise UnusableDataError(_no_usable(recordings, effort, facts))
     speed = np.abs(np.concatenate([s.velocity for s in signals]))[usable]
     position = np.concatenate([s.position for s in signals])[usable]
     fast, span = float(np.quantile(speed, 0.95)), float(np.ptp(position))
     if not span > CONSTANT * float(np.abs(position).max()):
         raise UnusableDataError(f"the joint does not move in any trial; {WANTED_MOTION}")
-    measured = np.concatenate([s.effort for s in signals])[usable]
-    if not float(np.ptp(measured)) > CONSTANT * float(np.abs(measured).max()):
-        raise UnusableDataError(
-            f"{' x '.join(effort.channels)} is {measured[0]:.3g} {effort.unit} all the time; check the channel's "
-            "mapping, or choose trials in which it is measured"
-        )
+    _check_effort(np.concatenate([s.effort for s in signals])[usable], effort)
     noise = _velocity_noise(signals, facts, cutoff)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))
@@ -96,6 +92,16 @@ def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]
             continue
         found.append(recording)
     return found
+
+
+def _check_effort(measured: FloatArray, effort: Effort) -> None:
+    """Raise where the effort is the same all the time: nobody measured it."""
+    known = measured[np.isfinite(measured)]
+    if len(known) and not float(np.ptp(known)) > CONSTANT * float(np.abs(known).max()):
+        raise UnusableDataError(
+            f"{' x '.join(effort.channels)} is {known[0]:.3g} {effort.unit} all the time; check the channel's "
+            "mapping, or choose trials in which it is measured"
+        )
 
 
 def _no_usable(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> str:
@@ -169,6 +175,7 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
         session_span_s=scales.session_span_s,
         slow=scales.slow,
         fast=scales.fast,
+        measured_load=signals.load,
     )
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)

@@ -82,7 +82,9 @@ def test_gravity_does_no_work_on_a_horizontal_or_linear_joint():
 
 def test_candidates_are_what_the_model_does_not_have():
     names = [effect.name for effect in candidates(default_effects(Facts()), Facts())]
-    assert sorted([*names, *default_effects(Facts()), "cogging_orders"]) == sorted(catalogue())
+    assert sorted([*names, *default_effects(Facts()), "cogging_orders", "measured_load", "viscous_power"]) == sorted(
+        catalogue()
+    )
 
 
 def test_further_orders_are_looked_for_once_there_is_a_first():

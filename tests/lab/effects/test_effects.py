@@ -45,6 +45,7 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
         session_span_s=60.0,
         slow=0.06,
         fast=2.9,
+        measured_load=0.9 * np.cos(q),
     )
 
 
@@ -112,6 +113,7 @@ def flank(m: Motion) -> np.ndarray:
 EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray]]]] = {
     "inertia": ((), lambda m: [m.acceleration, LOAD_KG * ARM_M**2 * m.acceleration]),
     "gravity": ((), lambda m: [np.sin(m.position), WEIGHT_N_M * np.sin(m.position)]),
+    "measured_load": ((), lambda m: [0.9 * np.cos(m.position)]),
     "offset": ((), lambda m: [np.ones(41)]),
     "coulomb": ((), lambda m: [np.sign(m.velocity)]),
     "viscous": ((), lambda m: [m.velocity]),
