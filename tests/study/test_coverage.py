@@ -9,9 +9,9 @@ from bench.config.rig import Rig
 from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.store import Store
-from bench.study.coverage import LOADS, RAMPS, REPEAT, WARMTH, coverage
 from bench.study.create import create_study
-from bench.study.explain import STEPS, explain
+from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, WARMTH, coverage
+from bench.study.explanation.explain import STEPS, explain
 from bench.study.models.coverage import Coverage
 from compensator.lab.recordings.recording import Recording
 from tests.lab.synthetic import plans

@@ -106,7 +106,7 @@ def compare_command(context: typer.Context, study: StudyId, model: Model = None,
 @app.command("coverage")
 def coverage_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """What the trials can and cannot tell: directions, speeds, loads, repeats; which effects look alike in them."""
-    from bench.study.coverage import coverage
+    from bench.study.explanation.coverage import coverage
 
     _show(context, as_json, study_tables.coverage, coverage, study, model)
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from bench.report import Figure, Line, Section, html_page
 from bench.store import Store
 from bench.study.compare import compare
-from bench.study.coverage import coverage
 from bench.study.create import create_study, describe
 from bench.study.diagnose import diagnose
+from bench.study.explanation.coverage import coverage
 from bench.study.ladder import ladder
 from bench.study.models.comparison import Comparison, TrialError
 from bench.study.models.coverage import Coverage
