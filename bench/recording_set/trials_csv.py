@@ -145,7 +145,7 @@ def _check_once(table: Table, entries: Sequence[TrialEntry]) -> None:
 _QUANTITIES = {"load_kg": "kg", "arm_m": "m"}
 _FLAGS = ("balanced",)
 # a name with another unit -> (the name that is known, factor)
-_OTHER_UNITS = {
+OTHER_UNITS = {
     "load_g": ("load_kg", 1e-3),
     "load_lb": ("load_kg", 0.45359237),
     "load_oz": ("load_kg", 0.028349523125),
@@ -157,8 +157,8 @@ _OTHER_UNITS = {
 def condition_problem(name: str, value: Condition) -> str | None:
     """What is wrong with a condition, what is wanted, and what to do; None where nothing is."""
     lower = name.lower()
-    if lower in _OTHER_UNITS:
-        known, factor = _OTHER_UNITS[lower]
+    if lower in OTHER_UNITS:
+        known, factor = OTHER_UNITS[lower]
         entry = f'trials_columns.{known} = {{ from = "{name}", scale = {factor:.10g} }}'
         return f"is not in SI; {known} is known. Convert with a mapping: {entry}"
     if name in _QUANTITIES and (isinstance(value, (bool, str)) or value < 0):

@@ -44,3 +44,14 @@ def test_the_mapping_that_is_written_reads_the_same(tmp_path: Path, what: str) -
     assert again.channels.keys() == first.channels.keys()
     for channel, values in first.channels.items():
         np.testing.assert_array_equal(again.channels[channel], values)
+
+
+def test_conditions_in_grams_and_files_under_another_name_are_mapped(tmp_path: Path) -> None:
+    (tmp_path / "run 1.csv").write_bytes(FILES["german excel, utf-8 mark"].data)
+    (tmp_path / "trials.csv").write_text("Datei;load_g;mode\nrun 1.csv;120,5;slow\n")
+    found, guess = read_unknown([tmp_path], None, FILES["plain"].known)
+    assert guess is not None
+    assert found.recordings[0].conditions == {"load_kg": pytest.approx(0.1205), "mode": "slow"}
+    (tmp_path / "mapping.toml").write_text(mapping_text(guess.mapping), encoding="utf-8")
+    again, _ = read_unknown([tmp_path], None, FILES["plain"].known)  # a set's own mapping is used
+    assert again.recordings[0].conditions == found.recordings[0].conditions

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.lab.study_tables import ladder as show_ladder
-from bench.cli.output import FileError, console, say, table, write_whole
+from bench.cli.output import FileError, console, percent, say, table, write_whole
 from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, show
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from rich.progress import Progress
 
-    from bench.recording_set import RecordingSet
     from bench.recording_set.guess import Guess
     from bench.report import Section
+    from bench.study.models.ladder import Rung
 
 _HOLD_OUT = "Trials that judge the model instead of being fitted; repeatable. Without it, each is left out in turn."
 
@@ -37,18 +36,15 @@ def explain(
     name: Annotated[str | None, typer.Option(help="Name; without it, that of the files.")] = None,
 ) -> None:
     """Import files of any bench, say what a model of the joint lacks, and write a report for a colleague."""
-    from bench.recording_set import import_recording_set, read_mapping, read_recording_set, read_rig
+    from bench.recording_set import import_recording_set, read_mapping, read_rig
     from bench.recording_set.guess import read_unknown
     from bench.study.explanation.explain import STEPS
     from bench.study.explanation.explain import explain as explain_experiment
+    from bench.study.report.model_sections import change_of
 
     chosen_rig = None if rig is None else read_rig(rig)
-    guess = None
-    if mapping is not None:
-        recordings: RecordingSet = read_recording_set(path, read_mapping(mapping), chosen_rig)
-    else:
-        known = known_of(take, counts_per_turn, rate_hz, supply_v)
-        recordings, guess = read_unknown(path, chosen_rig, known)
+    known = known_of(take, counts_per_turn, rate_hz, supply_v)
+    recordings, guess = read_unknown(path, chosen_rig, known, None if mapping is None else read_mapping(mapping))
     called = name or recordings.name
     report = html or Path(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}.html")
     if report.exists():
@@ -71,11 +67,22 @@ def explain(
         [(one.quantity, one.found, one.lacking or "-") for one in found.coverage.held],
     )
     say(found.coverage.sentence)
-    show_ladder(found.rungs)
+    table(
+        "Error from model to model",
+        ["model#", "change", "training#", "held out#", "90 % interval"],
+        [
+            (one.model_id, change_of(one), percent(one.training), percent(one.held_out), _interval(one))
+            for one in found.rungs.rungs
+        ],
+    )
     for sentence in found.sentences:
         say(sentence)
     write_whole(report, [found.html.encode()])
     say(f"written: {report}; kept as study {found.study_id}")
+
+
+def _interval(rung: "Rung") -> str:
+    return f"{percent(rung.held_out_low)} to {percent(rung.held_out_high)}"
 
 
 def _progress() -> "Progress":

@@ -9,7 +9,8 @@ from bench.recording_set.container import open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.guess.guess import Guess, Known, guess_mapping
 from bench.recording_set.guess.sheets import read_sheets
-from bench.recording_set.read import MAPPING_FILE, RIG_FILE, name_of_set, read_recording_set, read_rig_of
+from bench.recording_set.mapping import Mapping
+from bench.recording_set.read import MAPPING_FILE, RIG_FILE, name_of_set, own_mapping, read_recording_set, read_rig_of
 from bench.recording_set.recording_set import RecordingSet
 
 
@@ -27,22 +28,33 @@ def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gues
     own = rig or _own_rig(paths)
     if known.counts_per_turn is None and own is not None and own.sensor.counts_per_turn is not None:
         known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (own.gear.ratio or 1.0))
-    sheets, notes = read_sheets(paths)
+    sheets, renamed, notes = read_sheets(paths)
     guess = guess_mapping(sheets, known)
+    guess = replace(guess, mapping=guess.mapping.model_copy(update={"trials_columns": renamed}))
     return guess, own or Rig(name=name_of_set(list(paths)), joint=guess.joint), tuple(notes)
 
 
-def read_unknown(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[RecordingSet, Guess | None]:
-    """Files of any bench; a mapping that the set brings along is used, without one it is guessed.
+def read_unknown(
+    paths: Sequence[Path], rig: Rig | None, known: Known, mapping: Mapping | None = None
+) -> tuple[RecordingSet, Guess | None]:
+    """Files of any bench; without a mapping, given or brought along by the set, it is guessed. So is a missing rig.
+
+    Args:
+        paths: a folder, a zip, or files.
+        rig: of the joint, where it is known.
+        known: what a user tells.
+        mapping: of the columns, where somebody wrote one.
 
     Raises:
         RecordingSetError: what `guess_of` refuses, a question that has to be answered first, or a value at fault.
     """
     paths = [Path(one).absolute() for one in paths]
     with open_container(*paths) as container:
-        mapped = container.has(MAPPING_FILE)
-    if mapped:
-        return read_recording_set(paths, None, rig), None
+        mapping = mapping or (own_mapping(container) if container.has(MAPPING_FILE) else None)
+    if mapping is not None:
+        linear = any(f"{name}_m" in mapping.columns for name in ("position", "target"))
+        assumed = Rig(name=name_of_set(paths), joint="linear" if linear else "rotary")
+        return read_recording_set(paths, mapping, rig or _own_rig(paths) or assumed), None
     guess, rig, _ = guess_of(paths, rig, known)
     check_answered(guess, name_of_set(paths))
     return read_recording_set(paths, guess.mapping, rig), guess

@@ -12,6 +12,10 @@ from bench.study.models.study import Study
 from bench.study.report.model_sections import percent
 
 NOT_TOLD = "not told"
+_JUDGED_BY = {
+    "leave-one-trial-out": "each of which was left out in turn to judge the model",
+    "leave-one-block-out": "too few to leave one out; stretches of 2 s were left out instead",
+}
 
 
 def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store) -> Section:
@@ -50,9 +54,11 @@ def summary(study: Study, rungs: Ladder, diagnosis: str) -> list[str]:
         off = f"With {' and '.join(added)} the error goes from {percent(first.held_out)} to {error} of the effort"
     else:
         off = f"The model is off by {error} of the effort"
+    many = f"{len(study.trials)} trial{'s' if len(study.trials) != 1 else ''}"
+    judged = f"of which {held} judge the model" if held else _JUDGED_BY.get(last.held_out_kind, "")
     return [
-        f"{len(study.trials)} trials were measured, of which {held} judge the model.",
-        f"{off}, on trials that it was not fitted to.",
+        f"{many} {'were' if len(study.trials) != 1 else 'was'} measured{f', {judged}' if judged else ''}.",
+        f"{off}, on {'stretches' if 'block' in last.held_out_kind else 'trials'} that it was not fitted to.",
         diagnosis,
     ]
 
