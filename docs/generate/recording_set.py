@@ -17,5 +17,6 @@ def mapping() -> str:
     """The keys of `mapping.toml`, and those of one of its columns."""
     whole = Mapping.model_json_schema(by_alias=True)
     column = whole["$defs"]["Column"]
-    trial = whole["$defs"]["MappedTrial"]
-    return f"{keys(whole)}\nA `Column`:\n\n{keys(column)}\nA `MappedTrial`:\n\n{keys(trial)}"
+    renamed, trial = whole["$defs"]["Renamed"], whole["$defs"]["MappedTrial"]
+    parts = (("Column", column), ("Renamed", renamed), ("MappedTrial", trial))
+    return keys(whole) + "".join(f"\nA `{name}`:\n\n{keys(one)}" for name, one in parts)
