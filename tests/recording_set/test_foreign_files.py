@@ -1,6 +1,8 @@
 """Files as other labs write them: read right, or one sentence that names the mend; nothing half-imported."""
 
+import random
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -55,3 +57,17 @@ def test_conditions_in_grams_and_files_under_another_name_are_mapped(tmp_path: P
     (tmp_path / "mapping.toml").write_text(mapping_text(guess.mapping), encoding="utf-8")
     again, _ = read_unknown([tmp_path], None, FILES["plain"].known)  # a set's own mapping is used
     assert again.recordings[0].conditions == found.recordings[0].conditions
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_damaged_at_random_a_file_is_read_or_refused_in_words(tmp_path: Path, seed: int) -> None:
+    chance = random.Random(seed)
+    foreign = FILES[chance.choice(list(FILES))]
+    data = bytearray(foreign.data)
+    for _ in range(chance.choice([1, 2, 5, 30])):
+        place = chance.randrange(len(data) + 1)
+        more = chance.choice([b"\n", b",", b'"', b"#", b"1e999", b"\xff", b"\0", bytes(data[:20]), b""])
+        data[place : place + chance.choice([0, 1, 50])] = more
+    (tmp_path / foreign.name).write_bytes(bytes(data))
+    with suppress(RecordingSetError):  # any other error is a traceback that somebody would see
+        read_unknown([tmp_path / foreign.name], None, foreign.known)

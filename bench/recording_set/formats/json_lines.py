@@ -31,7 +31,7 @@ def read(place: str, data: bytes) -> ColumnTable:
 def _rows(place: str, text: str) -> list[Any] | JsonObject:
     try:
         whole = json.loads(text)
-    except json.JSONDecodeError:
+    except (json.JSONDecodeError, RecursionError):
         whole = None
     if isinstance(whole, dict | list):
         return whole
@@ -41,8 +41,8 @@ def _rows(place: str, text: str) -> list[Any] | JsonObject:
             continue
         try:
             rows.append(json.loads(line))
-        except json.JSONDecodeError as error:
-            message = f"is no JSON ({error.msg}); wanted one object a line, such as a number under each name"
+        except (json.JSONDecodeError, RecursionError) as error:
+            message = f"is no JSON ({error}); wanted one object a line, such as a number under each name"
             raise RecordingSetError(place, message, number) from error
     return rows
 

@@ -1,0 +1,62 @@
+"""What is looked at before recordings are kept: values outside physics, position, effort, wraps."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench.recording_set import Mapping, RecordingSetError, read_recording_set
+from bench.recording_set.mapping import Column
+from tests.recording_set.examples import write_set
+from tests.recording_set.foreign_files import CURRENT_A, POSITION_RAD, TIME_S, TURNING_RAD, rows
+
+GOOD = {"time_s": TIME_S, "position_rad": POSITION_RAD, "current_a": CURRENT_A}
+CONSTANT = np.ones(len(TIME_S))
+
+# what is wrong: the columns, and what the message must say
+ASKED = {
+    "position in degrees": ({"position_rad": np.degrees(POSITION_RAD)}, "Is the column in degrees?"),
+    "duty of 50": ({"duty": 50.0 * CURRENT_A}, "duty reaches"),
+    "supply of 24000": ({"supply_v": 24e3 * CONSTANT}, "supply_v reaches 24000 V; possible is"),
+    "current in milliamperes": ({"current_a": 3000.0 * CURRENT_A}, "Is the column in mA?"),
+    "temperature in kelvin": ({"temperature_c": 300.0 * CONSTANT}, "Is the column in K?"),
+    "time in milliseconds": ({"time_s": 1e3 * TIME_S}, "samples a second; possible is"),
+    "a wrap": ({"position_rad": (9.0 * TURNING_RAD) % 25.0}, "it wraps, every 25 rad; unwrap it in a mapping (period = 25"),
+    "no position": ({"position_rad": None}, "no trial has position_rad"),
+    "a linear joint": ({"position_rad": None, "position_m": POSITION_RAD}, 'say joint = "linear" in the rig'),
+    "no effort": ({"current_a": None}, "has no effort channel"),
+    "speed of another unit": ({"velocity_rad_s": np.degrees(np.gradient(POSITION_RAD, TIME_S))}, "differ by a factor of"),
+}  # fmt: skip
+
+
+def set_of(tmp_path: Path, **changes: np.ndarray | None) -> Path:
+    columns = {name: values for name, values in {**GOOD, **changes}.items() if values is not None}
+    return write_set(tmp_path / "set", {"run.csv": rows(columns)})
+
+
+@pytest.mark.parametrize("what", ASKED)
+def test_what_cannot_be_is_asked_about_before_anything_is_kept(tmp_path: Path, what: str) -> None:
+    changes, words = ASKED[what]
+    with pytest.raises(RecordingSetError) as caught:
+        read_recording_set(set_of(tmp_path, **changes))
+    assert words in str(caught.value)
+
+
+def test_what_can_be_comes_in(tmp_path: Path) -> None:
+    turning = set_of(tmp_path, position_rad=60.0 * TURNING_RAD)  # on and on, one way
+    assert len(read_recording_set(turning).recordings[0]) == len(TIME_S)
+
+
+def test_a_unit_that_is_stated_confirms_a_value(tmp_path: Path) -> None:
+    folder = set_of(tmp_path, position_rad=np.degrees(POSITION_RAD))
+    for unit, factor in (("rad", 1.0), ("deg", np.pi / 180.0)):
+        mapping = Mapping(columns={"position_rad": Column(source="position_rad", unit=unit)})
+        found = read_recording_set(folder, mapping).recordings[0].channels["position_rad"]
+        np.testing.assert_allclose(found, factor * np.degrees(POSITION_RAD), atol=1e-6)
+
+
+def test_a_wrap_of_any_period_is_taken_back_by_the_mapping(tmp_path: Path) -> None:
+    folder = set_of(tmp_path, position_rad=(9.0 * TURNING_RAD) % 25.0)
+    mapping = Mapping(columns={"position_rad": Column(source="position_rad", period=25.0)})
+    found = read_recording_set(folder, mapping).recordings[0].channels["position_rad"]
+    np.testing.assert_allclose(found, 9.0 * TURNING_RAD, atol=1e-5)
