@@ -56,16 +56,16 @@ def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping
     Raises:
         RecordingSetError: a value outside physics, no position or no effort in any trial, a wrap, two units.
     """
-    for recording in recordings:
-        if len(recording) < FEWEST_ROWS:
-            continue
-        for problem in (_rate(recording, mapping), _outside(recording, mapping), _degrees(recording, mapping)):
-            if problem:
-                raise RecordingSetError(f"trial '{recording.name}'", problem)
     judged = [one for one in recordings if len(one) >= FEWEST_ROWS]
+    for recording in judged:
+        if problem := _rate(recording, mapping) or _outside(recording, mapping):
+            raise RecordingSetError(f"trial '{recording.name}'", problem)
     if judged:
         facts = Facts(joint=rig.joint, horizontal=rig.horizontal, effort=rig.effort.quantity if rig.effort else None)
         _check_physics(judged, facts)
+    for recording in judged:  # a wrap goes to and fro, too, and was looked for before
+        if problem := _degrees(recording, mapping):
+            raise RecordingSetError(f"trial '{recording.name}'", problem)
 
 
 def question(channel: str, largest: float, smallest: float, unit: str) -> str:

@@ -8,7 +8,7 @@ import pytest
 from bench.recording_set import Mapping, RecordingSetError, read_recording_set
 from bench.recording_set.mapping import Column
 from tests.recording_set.examples import write_set
-from tests.recording_set.foreign_files import CURRENT_A, POSITION_RAD, TIME_S, TURNING_RAD, rows
+from tests.recording_set.foreign_files import CURRENT_A, POSITION_RAD, TIME_S, TURNING_RAD, VELOCITY_RAD_S, rows
 
 GOOD = {"time_s": TIME_S, "position_rad": POSITION_RAD, "current_a": CURRENT_A}
 CONSTANT = np.ones(len(TIME_S))
@@ -21,11 +21,11 @@ ASKED = {
     "current in milliamperes": ({"current_a": 3000.0 * CURRENT_A}, "Is the column in mA?"),
     "temperature in kelvin": ({"temperature_c": 300.0 * CONSTANT}, "Is the column in K?"),
     "time in milliseconds": ({"time_s": 1e3 * TIME_S}, "samples a second; possible is"),
-    "a wrap": ({"position_rad": (9.0 * TURNING_RAD) % 25.0}, "it wraps, every 25 rad; unwrap it in a mapping (period = 25"),
+    "a wrap": ({"position_rad": (9.0 * TURNING_RAD) % 25.0}, "every 25 rad; unwrap it in a mapping (period = 25"),
     "no position": ({"position_rad": None}, "no trial has position_rad"),
     "a linear joint": ({"position_rad": None, "position_m": POSITION_RAD}, 'say joint = "linear" in the rig'),
     "no effort": ({"current_a": None}, "has no effort channel"),
-    "speed of another unit": ({"velocity_rad_s": np.degrees(np.gradient(POSITION_RAD, TIME_S))}, "differ by a factor of"),
+    "speed of another unit": ({"velocity_rad_s": np.degrees(VELOCITY_RAD_S)}, "differ by a factor of"),
 }  # fmt: skip
 
 

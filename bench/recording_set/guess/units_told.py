@@ -187,7 +187,7 @@ class Units:
         if self._place == "rad" and values is not None and are_whole(values):
             self.why[name] = "whole numbers: counts"
             return UNITS["counts"]
-        if self._place == "rad" and values is not None and back_and_forth(values):
+        if self._place == "rad" and values is not None and back_and_forth(values) and self._period() is None:
             self._ask("position", f"goes back and forth between {_range(values)}, without a unit", ("deg", "rad"))
         return self._plain("position", self._place)
 
@@ -226,7 +226,9 @@ class Units:
     def _check_turns(self) -> None:
         """Radians by name that look like degrees."""
         values, sure = self._numbers("position"), self._is_sure("position") or "velocity" in self._assigned.columns
-        if self._units["position"].name == "rad" and not sure and values is not None and back_and_forth(values):
+        if sure or values is None or self._units["position"].name != "rad":
+            return
+        if back_and_forth(values) and self._period() is None:
             self._ask("position", f"goes back and forth between {_range(values)}", ("deg", "rad"))
 
     def _check_range(self) -> None:
