@@ -172,7 +172,7 @@ REFUSED = {
     "speed the other way": Bad(every(against), "position_rad and velocity_rad_s have opposite signs"),
     "a position that wraps": Bad(
         every(put("position_rad", lambda q: np.mod(q, 1.0))),
-        r"against the motion at .* it wraps, every (1|0\.99\d*|1\.00\d*) rad; unwrap it \(numpy.unwrap\(",
+        r"against the motion at .* it wraps, every (1|0\.99\d*|1\.00\d*) rad; unwrap it in a mapping \(",
     ),
     "a position that wraps once a turn": Bad(
         every(put("position_rad", lambda q: np.mod(10 * q, 2 * np.pi))), "it wraps, once a turn; unwrap it"
