@@ -62,9 +62,20 @@ class Access:
                 429, f"too many wrong tokens came from {address}; wait {wait_s} s", {"Retry-After": str(wait_s)}
             )
         self.attempts.failed(address)
+        await self._look_at_once()
+        return self.tokens.caller(presented)
+
+    async def knows(self, presented: str, address: str) -> bool:
+        """Whether it is a token of this service, asked before a body is read; a wrong one is counted by its route."""
+        if not presented or (self.tokens.caller(presented) is None and self.attempts.wait_s(address)):
+            return False
+        if self.tokens.caller(presented) is None:
+            await self._look_at_once()
+        return self.tokens.caller(presented) is not None
+
+    async def _look_at_once(self) -> None:
         with anyio.move_on_after(LOOK_AGAIN_S):
             await anyio.to_thread.run_sync(self.look_again, abandon_on_cancel=True, limiter=self._looking)
-        return self.tokens.caller(presented)
 
     def look_again(self) -> None:
         """Read the tokens of the store; where it cannot be read, those that were known stay."""
