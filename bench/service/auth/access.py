@@ -95,14 +95,26 @@ def is_loopback(host: str) -> bool:
         return False
 
 
-def check_bind(host: str, token_configured: bool) -> None:
-    """Refuse to listen beyond loopback without a token that somebody made or chose before.
+def check_bind(host: str, token_configured: bool, private: bool = True) -> None:
+    """Refuse to listen beyond loopback without a token that somebody made or chose before, or in the clear.
+
+    Args:
+        host: to listen on.
+        token_configured: whether there is a token.
+        private: the connection is encrypted, or its owner says that nobody else is on the line.
 
     Raises:
         ConfigurationError: names the address and the ways out.
     """
-    if is_loopback(host) or token_configured:
+    if is_loopback(host):
         return
+    if token_configured and private:
+        return
+    if token_configured:
+        raise ConfigurationError(
+            f"host is {host}, without TLS: whoever is on the network could read the tokens, and move the joint with "
+            "them. Give --tls-certificate and --tls-key; or say --plain-http where the network is the bench's own"
+        )
     raise ConfigurationError(
         f"host is {host}; allowed without a token is loopback only (127.0.0.1, ::1, localhost). "
         "Make one with: friction-bench token new NAME --role admin; or set FRICTION_BENCH_TOKEN"
