@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from bench.recording_set import RecordingSetError, read_mapping, read_recording_set
+from bench.recording_set.formats import column_table
 from bench.recording_set.guess import guess_of, mapping_text, read_unknown
 from tests.recording_set.foreign_files import FILES
 
@@ -46,6 +47,17 @@ def test_the_mapping_that_is_written_reads_the_same(tmp_path: Path, what: str) -
     assert again.channels.keys() == first.channels.keys()
     for channel, values in first.channels.items():
         np.testing.assert_array_equal(again.channels[channel], values)
+
+
+@pytest.mark.parametrize("ending", [".npz", ".mat", ".h5", ".parquet"])
+def test_what_would_fill_the_memory_is_refused_before_it_is_unpacked(
+    tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(column_table, "MOST_UNPACKED", 1000)
+    foreign = next(one for one in FILES.values() if one.name.endswith(ending) and not one.asks)
+    (tmp_path / foreign.name).write_bytes(foreign.data)
+    with pytest.raises(RecordingSetError, match="at most 1000 are read"):
+        read_unknown([tmp_path / foreign.name], None, foreign.known)
 
 
 def test_conditions_in_grams_and_files_under_another_name_are_mapped(tmp_path: Path) -> None:

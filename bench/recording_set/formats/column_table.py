@@ -11,6 +11,7 @@ from compensator.lab.recordings.recording import FloatArray
 Columns = dict[str, FloatArray | list[str]]
 Arrays = dict[str, NDArray[np.generic] | list[str]]
 FEWEST_ROWS = 2
+MOST_UNPACKED = 2 * 2**30  # bytes: a small file of these formats can hold any number of zeros
 MOST_COLUMNS = 64  # of an array of two dimensions
 
 
@@ -42,6 +43,17 @@ class ColumnTable:
     def error(self, message: str, line: int | None = None, column: str | None = None) -> RecordingSetError:
         """An error that names the file; these have rows, not lines."""
         return RecordingSetError(self.place, message if line is None else f"row {line}: {message}", None, column)
+
+
+def check_unpacked(place: str, size_bytes: int) -> None:
+    """Refuse what would not fit into memory, before it is unpacked.
+
+    Raises:
+        RecordingSetError: more than MOST_UNPACKED.
+    """
+    if size_bytes > MOST_UNPACKED:
+        message = f"unpacks to {size_bytes} bytes; at most {MOST_UNPACKED} are read. Split the trial into several files"
+        raise RecordingSetError(place, message)
 
 
 def table_of(place: str, arrays: Arrays) -> ColumnTable:

@@ -6,7 +6,7 @@ from types import ModuleType
 import numpy as np
 
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.formats.column_table import Arrays, ColumnTable, table_of
+from bench.recording_set.formats.column_table import Arrays, ColumnTable, check_unpacked, table_of
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -19,14 +19,19 @@ def read(place: str, data: bytes) -> ColumnTable:
     """
     h5py = _h5py(place)
     arrays: Arrays = {}
+    sizes: list[int] = []
 
     def take(name: str, item: object) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "biufSV" and "#refs#" not in name:
+            sizes.append(int(item.size) * int(item.dtype.itemsize))
+            check_unpacked(place, sum(sizes))
             arrays[name.replace("/", ".")] = np.asarray(item)
 
     try:
         with h5py.File(io.BytesIO(data), "r") as file:
             file.visititems(take)
+    except RecordingSetError:
+        raise
     except Exception as error:  # damaged bytes break the library anywhere
         raise RecordingSetError(place, f"is no HDF5 file, or a damaged one ({error}); save it again") from error
     return table_of(place, _without_common(arrays))

@@ -1,15 +1,16 @@
 """MATLAB files: those up to version 7 by scipy; those of version 7.3 are HDF5."""
 
 import io
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from scipy.io import loadmat
+from scipy.io import loadmat, whosmat
 
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats import hdf5
-from bench.recording_set.formats.column_table import ColumnTable, table_of
+from bench.recording_set.formats.column_table import ColumnTable, check_unpacked, table_of
 
 _HDF5 = b"MATLAB 7.3"
 
@@ -23,7 +24,10 @@ def read(place: str, data: bytes) -> ColumnTable:
     if data.startswith(_HDF5) or data[:8] == hdf5.SIGNATURE:
         return hdf5.read(place, data)
     try:
+        check_unpacked(place, 8 * sum(math.prod(shape) for _, shape, _ in whosmat(io.BytesIO(data))))
         found = loadmat(io.BytesIO(data), squeeze_me=True, struct_as_record=False, simplify_cells=True)
+    except RecordingSetError:
+        raise
     except Exception as error:  # damaged bytes break the library anywhere
         raise RecordingSetError(place, f"is no MATLAB file, or a damaged one ({error}); save it again") from error
     arrays = dict(_flat({name: value for name, value in found.items() if not name.startswith("__")}))

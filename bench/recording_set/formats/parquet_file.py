@@ -3,7 +3,7 @@
 import io
 
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.formats.column_table import Arrays, ColumnTable, table_of
+from bench.recording_set.formats.column_table import Arrays, ColumnTable, check_unpacked, table_of
 
 
 def read(place: str, data: bytes) -> ColumnTable:
@@ -19,7 +19,12 @@ def read(place: str, data: bytes) -> ColumnTable:
         message = "needs pyarrow; install it with: pip install 'friction-bench[formats]', or save as CSV"
         raise RecordingSetError(place, message) from error
     try:
-        found = parquet.read_table(io.BytesIO(data))
+        opened = parquet.ParquetFile(io.BytesIO(data))
+        groups = range(opened.metadata.num_row_groups)
+        unpacked = sum(opened.metadata.row_group(group).total_byte_size for group in groups)
+        # one value repeated packs to nothing, even before compression
+        check_unpacked(place, max(unpacked, 8 * opened.metadata.num_rows * opened.metadata.num_columns))
+        found = opened.read()
     except (pyarrow.ArrowException, OSError, ValueError) as error:
         raise RecordingSetError(place, f"is no Parquet file, or a damaged one ({error}); save it again") from error
     arrays: Arrays = {}
