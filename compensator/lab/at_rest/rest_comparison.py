@@ -148,9 +148,13 @@ def at_rest_in_words(found: RestComparison, unit: str) -> str:
         f"{chance_in_words(surest.chance)})"
     )
     if both:
-        return (
-            f"{told}: static friction is more than this model has; record breakaway ramps at several rates and rests."
+        # starts that tell the static friction are ramps, or as good
+        todo = (
+            "diagnose it from the starts that are there: it may grow with rest, load or rate"
+            if found.by_starts
+            else "record breakaway ramps at several rates and rests"
         )
+        return f"{told}: static friction is more than this model has; {todo}."
     return (
         f"{told}: that is no friction. Gravity, an offset or the constant that makes efforts of currents is wrong at "
         "rest, or the joint leans against a stop; hold it there, come from either side, and compare with the power off."
