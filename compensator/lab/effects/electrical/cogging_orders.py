@@ -6,8 +6,8 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
 MOST_ORDERS = 6  # beside the first
-HIGHEST_ORDER = 64  # per turn: poles times slots of small motors
-HIGHEST_CYCLES = 40  # over the travel of a linear joint
+HIGHEST_ORDER = 40  # per turn: poles times slots of small motors
+HIGHEST_CYCLES = 30  # over the travel of a linear joint
 _NUMBERS = ("second", "third", "fourth", "fifth", "sixth", "seventh")
 
 
