@@ -61,6 +61,6 @@ def test_a_joint_that_moves_during_that_trial_ends_it(tmp_path, monkeypatch) -> 
         monkeypatch.setattr(
             ObjectAccess, "read", lambda access, item: next(falls) if item == POSITION else read(access, item)
         )
-        with pytest.raises(WatchdogError, match="the joint moved by 0.314 rad while its watchdog was tried"):
+        with pytest.raises(WatchdogError, match=r"the joint moved by 0.314 rad while its watchdog was tried"):
             drive.enable(Mode.CURRENT)
         assert not running.device.axis.power.on
