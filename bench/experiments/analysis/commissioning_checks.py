@@ -12,6 +12,7 @@ from bench.control.cycle import Reading
 FloatArray = NDArray[np.float64]
 VELOCITY_BAND = (0.8, 1.25)  # filters and quantisation, but no wrong unit
 CONSTANT_BAND = (0.5, 2.0)  # data sheets and warm windings, but no factor of four from counting lines for counts
+MOVING_SHARE = 0.25  # of the highest speed
 SEEN_SIGMAS = 3.0  # that two mean currents have to differ by
 LEAST_SHARE = 0.2  # of the voltage that the back-EMF must make up to be told from the resistance's
 
@@ -72,7 +73,7 @@ def _sign_unseen(pushes: Sequence[Push]) -> Finding:
 
 def check_friction(pushes: Sequence[Push]) -> Finding:
     """There and back over one way: the measured currents differ by friction, which has the sign of the motion."""
-    there_a, back_a = (_column(push.driven, "current_a") for push in pushes)
+    there_a, back_a = (_column(_moving(push.driven), "current_a") for push in pushes)
     if np.isnan([*there_a, *back_a]).any():
         return Finding("current", None, "the drive measures no current; it is estimated by eq. (3)")
     means = float(np.mean(there_a)), float(np.mean(back_a))
@@ -154,6 +155,12 @@ def check_ratio(pushes: Sequence[Push], rig: Rig) -> Finding:
         "ratio", False, f"{text}. Correct sensor.counts_per_turn (counts are four per line), the motor's constants or "
         "the scale of the drive's current",
     )  # fmt: skip
+
+
+def _moving(readings: Sequence[Reading]) -> list[Reading]:
+    """Those of the way itself, without the wait at its ends."""
+    fastest_rad_s = max(abs(reading.velocity_rad_s) for reading in readings)
+    return [reading for reading in readings if abs(reading.velocity_rad_s) >= MOVING_SHARE * fastest_rad_s]
 
 
 def _column(readings: Sequence[Reading], name: str) -> FloatArray:
