@@ -17,6 +17,7 @@ from bench.errors import ConfigurationError
 from drivers.contract import Command, Mode
 from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
 from tests.control.fake_drive import ListSink
+from tests.devices.device_process import device_process
 
 PERIOD_S = 0.02
 NODES = (5, 6)
@@ -24,11 +25,11 @@ REST = Action(Command(Mode.CURRENT, 0.0))
 PUSH = Action(Command(Mode.CURRENT, 0.3))
 
 
-def bench_on(channel: str, master_node: int = NODES[1]):
+def bench_on(channel: str, master_node: int = NODES[1], **bus):
     values = default_configuration().model_dump(mode="json", exclude_none=True)
     values["control"]["period_s"] = PERIOD_S
     values["limits"]["sample_age_s"] = 1.0
-    usual = {"kind": "canopen", "interface": "virtual", "channel": channel, "watchdog_s": 0.4, "answer_s": 0.3}
+    usual = {"kind": "canopen", "interface": "virtual", "channel": channel, "watchdog_s": 0.4, "answer_s": 0.3} | bus
     values["drive"] = usual | {"node_id": NODES[0]}
     values["master"] = {"drive": usual | {"node_id": master_node}, "limits": {"sample_age_s": 1.0}}
     return parse_configuration(values, "bench.toml")
@@ -45,6 +46,16 @@ def bench(request):
 
 def test_both_drives_are_read_over_one_bus(bench) -> None:
     assert [(one.joint, one.state) for one in read_drives(bench)] == [("slave", "disabled"), ("master", "disabled")]
+
+
+def test_two_devices_in_processes_of_their_own_are_on_one_bus() -> None:
+    with ExitStack() as stack:
+        first = stack.enter_context(device_process("canopen", "--interface", "socketcand"))
+        second = ("--interface", "join", "--channel", first.port, "--node", str(NODES[1]))
+        stack.enter_context(device_process("canopen", *second))
+        host, port = first.port.split(":")
+        bench = bench_on("can0", interface="socketcand", host=host, port=int(port))
+        assert [one.state for one in read_drives(bench)] == ["disabled", "disabled"]
 
 
 def push_the_slave(cycles: int):
