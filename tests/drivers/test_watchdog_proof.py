@@ -11,6 +11,8 @@ from drivers.joint import JointScale
 from drivers.modbus.drive import ModbusDrive
 from drivers.modbus.map_file import parse_map
 from drivers.modbus.settings import ModbusSettings
+from sim_backend.devices.canopen.conduct import Conduct
+from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
 from sim_backend.devices.modbus.serve import ModbusSettings as SimulatedModbus
 from sim_backend.devices.modbus.serve import serve_modbus
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
@@ -53,7 +55,9 @@ def bench_of(limits=None, **drive):
     values = default_configuration().model_dump(mode="json", exclude_none=True)
     values["control"]["period_s"] = PERIOD_S
     values["limits"] |= {"sample_age_s": 1.0} | (limits or {})
-    return parse_configuration(values | {"drive": {"watchdog_s": 0.4, "answer_timeout_s": 0.3, **drive}}, "bench.toml")
+    drive = {"watchdog_s": 0.4, "answer_timeout_s": 0.3} | drive
+    told = {name: value for name, value in drive.items() if value is not None}
+    return parse_configuration(values | {"drive": told}, "bench.toml")
 
 
 FAKE = {"kind": "roboclaw", "port": "/dev/null"}  # a section that the fake drive stands for
@@ -114,6 +118,18 @@ def test_a_watchdog_that_reads_back_and_does_nothing_is_not(serve, monkeypatch):
         monkeypatch.setattr(device.device, "_watch", lambda: None)
         found = proven(**section_of(device))
     assert found.watchdog is Watchdog.NONE, found.sentence
+
+
+@pytest.mark.parametrize(("is_deaf", "watchdog"), [(False, Watchdog.PROVEN), (True, Watchdog.NONE)])
+def test_a_canopen_drive_that_takes_the_settings_and_never_watches_is_found_out(is_deaf, watchdog):
+    channel = f"proof-{is_deaf}"
+    settings = CanOpenSettings(interface="virtual", channel=channel, conduct=Conduct(deaf=is_deaf))
+    with serve_canopen(settings) as device:
+        found = proven(
+            kind="canopen", interface="virtual", channel=channel, node_id=5, answer_s=0.3, answer_timeout_s=None
+        )
+        assert found.watchdog is watchdog, found.sentence
+        assert not device.device.axis.power.on
 
 
 class Mute(FakeDrive):
