@@ -15,6 +15,9 @@ if TYPE_CHECKING:  # imported when needed: a bench needs no library of another k
     from drivers.canopen import CanopenDrive
 
 
+_UNHURRIED = {"watchdog_s": 1.0, "answer_s": 0.6}
+
+
 def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
     """The driver.
 
@@ -62,5 +65,8 @@ KIND = DriveKind(
     make=make,
     simulate=simulate,
     share=share,
-    conformance=(ConformanceBench("canopen", settings={"watchdog_s": 1.0, "answer_s": 0.6}),),
+    conformance=(
+        ConformanceBench("canopen", settings=_UNHURRIED),
+        ConformanceBench("canopen-socketcand", ("--interface", "socketcand"), _UNHURRIED, has_link=False),
+    ),
 )
