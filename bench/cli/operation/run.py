@@ -135,9 +135,9 @@ def _as_it_ended(found: "Experiment", status: "RunnerStatus") -> "Experiment":
 
 def _report(found: "Experiment", as_json: bool) -> None:
     if as_json:
-        from bench.service.routes.experiments import represent
+        from bench.service.records import experiment_record
 
-        print_json(represent(found).model_dump(mode="json"))
+        print_json(experiment_record(found).model_dump(mode="json"))
         return
     say(f"experiment {found.id}: {found.outcome}{f': {found.reason}' if found.reason else ''}")
     rows = [(name, value) for name, value in found.results.items() if isinstance(value, int | float | str)]
