@@ -1,6 +1,6 @@
 """What a kind of drive brings in: settings, driver, simulated device, and how the conformance tests set it up."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
@@ -49,6 +49,8 @@ class DriveKind(Generic[SettingsT]):
         make: makes the drive, not yet open, of the section and the rig. Raises `ConfigurationError`.
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.
         conformance: how the conformance tests run on it.
+        share: lets drives of one bench that are on one line use it together, before they are opened; raises
+            `ConfigurationError`. None: each has a line of its own.
     """
 
     title: str
@@ -56,6 +58,7 @@ class DriveKind(Generic[SettingsT]):
     make: Callable[[SettingsT, Rig], Drive]
     simulate: Callable[[], Simulate] | None = None
     conformance: tuple[ConformanceBench, ...] = ()
+    share: Callable[[Sequence[Any]], None] | None = None
 
     @property
     def name(self) -> str:

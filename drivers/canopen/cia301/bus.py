@@ -1,7 +1,9 @@
-"""Opening and closing a CAN bus of python-can in bounded time."""
+"""A CAN bus of python-can: opened and closed in bounded time, by the drives that are on it."""
 
 import socket
+from collections import Counter
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
 import can
 
@@ -9,6 +11,9 @@ from drivers.canopen.cia301.bounded import bounded
 from drivers.canopen.cia301.slcan_bus import SlcanBus
 from drivers.canopen.settings import BusSettings
 from drivers.errors import DriveConnectionError
+
+if TYPE_CHECKING:
+    from drivers.canopen.cia301.link import CanLink
 
 _OPEN_S = 3.0
 _CLOSE_S = 1.0
@@ -26,6 +31,42 @@ _WITHOUT_DRIVER = (
     AttributeError,
 )  # what interfaces raise where the vendor's library is missing
 _ANY_STEP = "is the adapter plugged in, its driver installed, and `channel` as python-can's documentation has it?"
+
+
+class BusPort:
+    """One bus, opened for the first link to it and closed with the last. All its links are used by one thread.
+
+    Args:
+        settings: how it is reached.
+
+    Attributes:
+        links: that are open.
+        echoes: frames sent that come back, by COB-ID and data; None where the interface echoes nothing.
+    """
+
+    def __init__(self, settings: BusSettings) -> None:
+        self.settings = settings
+        self.links: tuple[CanLink, ...] = ()
+        self.echoes: Counter[tuple[int, bytes]] | None = Counter() if settings.echoes else None
+        self._bus: can.BusABC | None = None
+
+    def join(self, link: "CanLink", device: str) -> can.BusABC:
+        """The bus, open.
+
+        Raises:
+            DriveConnectionError: it is not there, or does not open in time.
+        """
+        if self._bus is None:
+            self._bus = open_bus(self.settings, device)
+        self.links = (*self.links, link)
+        return self._bus
+
+    def leave(self, link: "CanLink") -> None:
+        """Close the bus, where no other link uses it. Never raises."""
+        self.links = tuple(one for one in self.links if one is not link)
+        if not self.links and self._bus is not None:
+            bus, self._bus = self._bus, None
+            close_bus(bus)
 
 
 def open_bus(settings: BusSettings, device: str) -> can.BusABC:

@@ -33,6 +33,7 @@ CHECKED = ("roboclaw", "modbus-rtu")  # a CRC in every packet; the serial leg of
 WRONG = {
     "roboclaw": {"address": 0x83},
     "canopen": {"node_id": 77},
+    "canopen-socketcand": {"node_id": 77},
     "modbus-rtu": {"unit": 9},
     "modbus-tcp": {"unit": 9},
 }

@@ -17,7 +17,7 @@ from drivers.errors import DriveConfigurationError, DriveError
 from tests.drivers.conformance.benches import PERIOD_S, configured, run
 from tests.drivers.conformance.test_faults import LAST_WORDS_S, MARGIN_S, Swinging, opens_again
 
-MODE_OF = {"roboclaw": Mode.POSITION, "canopen": Mode.POSITION, "modbus-rtu": Mode.DUTY, "modbus-tcp": Mode.DUTY}
+MODE_OF = {"roboclaw": Mode.POSITION, "canopen": Mode.POSITION, "modbus": Mode.DUTY}  # of each kind
 RAMP_A_S, RAMP_S = 0.2, 1.0
 FRESH_S = 0.1  # oldest sample that a bench at 100 Hz acts on, as in the configuration that comes with the package
 DELAY_S = 0.2  # of each answer: less than is waited for one, more than a fresh sample is old
@@ -36,7 +36,7 @@ def swing_then(mode):
 @pytest.mark.parametrize("_again", range(2))  # the first leaves nothing behind that would spoil the second
 def test_a_mode_that_is_refused_in_mid_motion(wired, _again):
     with wired.opened() as drive:
-        mode = MODE_OF[wired.name]
+        mode = MODE_OF[wired.configuration.drive.kind]
         if mode in drive.describe().modes:  # it would take it: here it does not
             wired.device.side.ask("fault", name="mode-refused", delay_s=0.2)
         began_s = time.monotonic()
@@ -116,7 +116,7 @@ def with_lines_for_counts(bench):
 
 
 def test_lines_counted_for_counts_do_not_pass_the_commissioning_move(wired):
-    if wired.name == "canopen":
+    if wired.configuration.drive.kind == "canopen":
         pytest.skip("it says itself how many it has: see the next test")
     bench = with_lines_for_counts(wired)
     wired.device.side.hang_load(0.0, False)  # puts the arm back to angle 0
@@ -130,7 +130,7 @@ def test_lines_counted_for_counts_do_not_pass_the_commissioning_move(wired):
 
 
 def test_a_drive_that_knows_its_encoder_is_not_opened_with_another(wired):
-    if wired.name != "canopen":
+    if wired.configuration.drive.kind != "canopen":
         pytest.skip("it does not say how many counts it has: see the test before")
     refusal = r"counts per motor turn are 4096 .* the rig says 1024"
     with with_lines_for_counts(wired).drive() as drive, pytest.raises(DriveConfigurationError, match=refusal):
