@@ -6,13 +6,15 @@ divided by the gear ratio. A quantity that the drive does not measure is NaN, ne
 
 A drive is used by one thread at a time. While it is disabled any time may pass between two
 calls: a person hangs a load, and the watchdog must not mind. While it is enabled it stops by
-itself where no command comes for `Description.watchdog_s`.
+itself where no command comes for `Description.watchdog_s`; one that has no watchdog says so, and nobody runs it
+unknowingly.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum, IntEnum, StrEnum
 from math import nan
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 
 class Mode(Enum):
@@ -150,7 +152,7 @@ class Description:
         measured: the names of the `Sample` fields that are measured (others are NaN).
         resolution: smallest step of a quantity, by `Sample` field name, in its unit.
         max_rate_hz: highest cycle rate that the drive sustains [Hz].
-        watchdog_s: time after the last command at which the drive stops by itself [s].
+        watchdog_s: time after the last command at which the drive stops by itself [s]; None where nothing stops it.
         longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
         watchdog: how sure it is that the drive stops by itself then.
         notes: what the user should know of line and host, and what to do; a sentence each.
@@ -167,7 +169,7 @@ class Description:
     measured: frozenset[str]
     resolution: dict[str, float]
     max_rate_hz: float
-    watchdog_s: float
+    watchdog_s: float | None
     longest_call_s: float = 0.0
     longest_open_s: float = 0.0
     watchdog: Watchdog = Watchdog.CONFIGURED
@@ -233,4 +235,20 @@ class Drive(Protocol):
             DriveStateError: motion was commanded in a mode that is not enabled.
             DriveConfigurationError: the command is not finite or outside the drive's range; nothing was sent.
             DriveConnectionError: no valid answer within the time limit.
+        """
+
+
+@runtime_checkable
+class BusDrive(Drive, Protocol):
+    """A drive on a bus that asks several of its drives in one exchange."""
+
+    @property
+    def bus(self) -> object | None:
+        """The bus that it shares; None while it is not open."""
+
+    def exchange_together(self, commands: Sequence[tuple[Drive, Command]]) -> list[Sample]:
+        """Send a command to each of some open drives on its bus, and return their samples in that order.
+
+        Raises:
+            DriveError: as `exchange`; where one does not answer, all of them are told to be off.
         """

@@ -26,6 +26,7 @@ class ControlledJoint:
         name: messages begin with it; "" where there is one joint only.
 
     Attributes:
+        drive: as given.
         action: of this cycle.
         reading: the last one.
         demanded: mode of the last command that the power stage was switched for.
@@ -33,7 +34,7 @@ class ControlledJoint:
     """
 
     def __init__(self, drive: Drive, guard: Guard, current_servo: CurrentServo | None = None, name: str = "") -> None:
-        self._drive = drive
+        self.drive = drive
         self._guard = guard
         self._current_servo = current_servo
         self.prefix = f"{name}: " if name else ""
@@ -86,19 +87,27 @@ class ControlledJoint:
         if stands:
             return False
         if wanted is _OFF:
-            self._drive.disable()
+            self.drive.disable()
         else:
-            self._drive.enable(wanted)
+            self.drive.enable(wanted)
         return True
 
     def exchange(self) -> None:
         """Send the action, in a mode that the drive closes itself, and take the reading that answers it."""
+        self.take(self.drive.exchange(self.wire_command()))
+
+    def wire_command(self) -> Command:
+        """The action's command, in a mode that the drive closes itself."""
         command, servo = self.action[0], self._current_servo
         if self._lacks_current_mode and command[0] is _CURRENT and servo is not None:
             _, previous, velocity_rad_s, _, _ = self.reading
-            command = Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
-        sample = self._drive.exchange(command)
+            return Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
+        return command
+
+    def take(self, sample: Sample) -> None:
+        """Make the reading of a sample."""
         time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _ = sample
+        servo = self._current_servo
         if velocity_rad_s != velocity_rad_s:  # NaN
             velocity_rad_s = self._derived_velocity(sample)
         estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
@@ -124,14 +133,14 @@ class ControlledJoint:
     def quick_stop(self) -> None:
         """Have the drive brake, where it is powered."""
         if self.is_powered:
-            self._drive.quick_stop()
+            self.drive.quick_stop()
 
     def power_off(self) -> list[str]:
         """Take the power away, and say what went wrong. Tried again when it fails or is interrupted."""
         notes = []
         for _ in range(POWER_OFF_TRIES):
             try:
-                self._drive.disable()
+                self.drive.disable()
                 break
             except BaseException as error:  # the power has to go, whatever happens meanwhile
                 notes.append(f"{self.prefix}power-off failed: {str(error) or type(error).__name__}")
@@ -155,6 +164,6 @@ class ControlledJoint:
         if status is Status.FAULT:
             self.exchange()  # a drive in fault refuses the command, and says what the fault is
         raise DriveStateError(
-            self._drive.describe().device,
+            self.drive.describe().device,
             f"{self.prefix}status is {status.name} during motion; ENABLED is wanted. See the drive's own display",
         )

@@ -16,6 +16,10 @@ _SMALL = {Mode.DUTY: 0.02, Mode.CURRENT: 0.05, Mode.POSITION: 0.0}  # friction h
 _SPOKEN_CYCLES = 5
 _MARGIN = 1.5
 _LEAST_S = 0.1
+_HAS_NONE = (
+    "it has none, and nothing was tried: where this host falls silent, the motor goes on with the last demand. Keep a "
+    "hand at the switch of its supply"
+)
 _GONE_SHARE = 0.1  # of the output before; less than that is none
 
 
@@ -26,10 +30,12 @@ class WatchdogProof:
     Attributes:
         watchdog: PROVEN; NONE where the output went on; CONFIGURED where neither state nor output could tell.
         sentence: what was found.
+        is_admitted: whether the drive says itself that it has none.
     """
 
     watchdog: Watchdog
     sentence: str
+    is_admitted: bool = False
 
 
 def prove_watchdog(configuration: BenchConfiguration) -> WatchdogProof:
@@ -53,6 +59,8 @@ def keep_silent(drive: Drive, period_s: float) -> WatchdogProof:
         DriveError: it cannot be powered, or asked afterwards.
     """
     description = drive.describe()
+    if description.watchdog_s is None:
+        return WatchdogProof(Watchdog.NONE, _HAS_NONE, is_admitted=True)
     mode = next(one for one in _SMALL if one in description.modes)
     drive.enable(mode)
     try:

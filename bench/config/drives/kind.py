@@ -6,7 +6,7 @@ from typing import Any, Generic, TypeVar
 
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig, Section
-from drivers.contract import Drive
+from drivers.contract import Drive, Mode
 
 
 class DriveSettings(Section):
@@ -28,12 +28,22 @@ class ConformanceBench:
         settings: keys of `[drive]`, beside those that the simulated device prints; short time limits do not fit a
             busy test machine.
         has_link: whether the device takes `--link`, so that its port comes back under the same name.
+        wrong_address: the key of `[drive]` and the address at which nobody answers.
+        refused_mode: a mode that it lacks, or that it can be made to refuse in motion.
+        is_checked: whether a flipped bit is seen in every packet; None: the transport never flips one.
+        knows_counts: whether it knows its encoder, and refuses a rig that says otherwise.
+        has_watchdog: whether it stops by itself when its host falls silent.
     """
 
     name: str
     device: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     has_link: bool = True
+    wrong_address: tuple[str, int] = ("", 0)
+    refused_mode: Mode = Mode.POSITION
+    is_checked: bool | None = True
+    knows_counts: bool = False
+    has_watchdog: bool = True
 
 
 SettingsT = TypeVar("SettingsT", bound=DriveSettings)
