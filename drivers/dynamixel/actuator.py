@@ -1,20 +1,21 @@
 """One servo on its bus: modes, goals, and the one piece that each exchange reads."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from math import nan
-from time import perf_counter, sleep
+from time import sleep
 
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.dynamixel import control_table as table
 from drivers.dynamixel import opening
-from drivers.dynamixel.bus import Bus
-from drivers.dynamixel.control_table import Item
-from drivers.dynamixel.frames import REBOOT, StatusPacket
+from drivers.dynamixel.frames import REBOOT, packet
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.errors import DriveConnectionError
 from drivers.joint import JointScale
 from drivers.serial_latency import latency_note
+from drivers.servos.actuator import ServoActuator
+from drivers.servos.bus import ServoBus
+from drivers.servos.frames import Item
 
 _MODES = {
     Mode.DUTY: (table.PWM_MODE, table.GOAL_PWM),
@@ -26,7 +27,7 @@ _REBOOT_S, _REBOOT_TRIES = 0.1, 20
 _WATCHDOG_FAULT = "its bus watchdog has stopped it: nothing was heard for too long"
 
 
-class DynamixelActuator:
+class DynamixelActuator(ServoActuator):
     """A servo, opened: off, its watchdog set.
 
     Args:
@@ -35,19 +36,19 @@ class DynamixelActuator:
         settings: which servo.
         joint: scales and signs.
 
-    Attributes:
-        piece: address of what each exchange reads.
-
     Raises:
         DriveError: at the first step that fails.
     """
 
-    def __init__(self, bus: Bus, settings: DynamixelSettings, joint: JointScale, leave: Callable[[], None]) -> None:
-        self.bus, self.servo_id = bus, settings.servo_id
-        self._settings, self._leave = settings, leave
-        self._mode = Mode.OFF
+    torque_enable = table.TORQUE_ENABLE
+
+    def __init__(
+        self, bus: ServoBus, settings: DynamixelSettings, joint: JointScale, leave: Callable[[], None]
+    ) -> None:
+        super().__init__(bus, settings.servo_id, leave)
+        self._settings = settings
         self.model, firmware, self.identity = opening.identify(bus, settings, joint)
-        self.piece = self.model.indirect_data(firmware)
+        self.piece = Item(self.model.indirect_data(firmware), table.LAYOUT.size, "what it measures")
         self._settle()
         self.notes = latency_note(settings.port, lambda: self._word(table.TORQUE_ENABLE)) + self._current_note()
 
@@ -74,10 +75,6 @@ class DynamixelActuator:
         }
         return found if self.model.current_a is None else found | {"current_a": self.model.current_a}
 
-    def begin(self) -> None:
-        """A call of the contract begins."""
-        self.bus.begin()
-
     def switch_on(self, mode: Mode, here: Reading) -> None:
         """Choose the mode, which can be done with the power off alone, and power the stage at a goal of rest."""
         number, _ = _MODES[mode]
@@ -92,32 +89,14 @@ class DynamixelActuator:
         self._write(table.TORQUE_ENABLE, 1)
         self._write_goal(mode, rest)  # of firmware that forgets it with the change of mode
 
-    def switch_off(self) -> None:
-        """Power off."""
-        self._mode = Mode.OFF
-        self._write(table.TORQUE_ENABLE, 0)
-
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Write the goal and read the piece, in one go."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
-
     def goal(self, mode: Mode, value: float) -> tuple[int, bytes]:
         """Where a demand goes, and its bytes."""
         item = _MODES[mode][1]
         return item.address, self._raw(mode, value).to_bytes(item.size, "little", signed=True)
 
-    def braking(self) -> tuple[Mode, float]:
-        """A goal of 0: a duty of 0 brakes, a current of 0 does not; a position is kept."""
-        return (Mode.OFF if self._mode is Mode.POSITION else self._mode), 0.0
-
-    def ask(self) -> Reading:
-        """The piece alone."""
-        return self.exchange(Mode.OFF, 0.0)
-
-    def reading(self, answer: StatusPacket, asked_s: float) -> Reading:
+    def reading(self, data: bytes, asked_s: float) -> Reading:
         """The piece in SI."""
-        pwm, current, velocity, position, is_on, error, watchdog, supply, temperature = table.LAYOUT.unpack(answer.data)
+        pwm, current, velocity, position, is_on, error, watchdog, supply, temperature = table.LAYOUT.unpack(data)
         fault = table.hardware_errors(error)
         if watchdog == table.WATCHDOG_TRIPPED:
             fault = fault or _WATCHDOG_FAULT
@@ -131,17 +110,9 @@ class DynamixelActuator:
         """Clear the bus watchdog; a hardware error is cleared by a reboot alone, after which all is settled anew."""
         self._write(table.BUS_WATCHDOG, 0)
         if self._word(table.HARDWARE_ERROR):
-            self.bus.instruct(self.servo_id, REBOOT, "reboot")
+            self.bus.instruct(self.servo_id, packet(self.servo_id, REBOOT), "reboot")
             self._wait_for_reboot()
         self._settle()
-
-    def shout_off(self) -> None:
-        """Power off, and wait for no answer."""
-        self.bus.shout(self.servo_id, table.TORQUE_ENABLE, 0)
-
-    def close(self) -> None:
-        """Give the port back, where nobody else uses it."""
-        self._leave()
 
     def _settle(self) -> None:
         """Everything that a reboot forgets."""
@@ -163,9 +134,6 @@ class DynamixelActuator:
             else:
                 return
 
-    def _write_goal(self, mode: Mode, value: float) -> None:
-        self._write(_MODES[mode][1], self._raw(mode, value))
-
     def _raw(self, mode: Mode, value: float) -> int:
         """A demand in steps of its item."""
         if mode is Mode.DUTY:
@@ -174,31 +142,7 @@ class DynamixelActuator:
             return round(value / self.model.current_a)
         return round(value)
 
-    def _write(self, item: Item, value: int) -> None:
-        self.bus.write(self.servo_id, item, value)
-
-    def _word(self, item: Item) -> int:
-        return self.bus.read(self.servo_id, item)
-
     def _current_note(self) -> tuple[str, ...]:
         if self.model.current_a is not None:
             return ()
         return (f"a {self.model.name} measures no current: the bench takes it from duty and speed, eq. (3)",)
-
-
-def exchange_all(demands: Sequence[tuple[DynamixelActuator, Mode, float]]) -> list[Reading]:
-    """Write the goals of servos on one bus, and read the piece of each, in one go.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-    """
-    first = demands[0][0]
-    goals: dict[int, dict[int, bytes]] = {}
-    for servo, mode, value in demands:
-        if mode is not Mode.OFF:
-            address, data = servo.goal(mode, value)
-            goals.setdefault(address, {})[servo.servo_id] = data
-    asked_s = perf_counter()
-    servo_ids = tuple(servo.servo_id for servo, _, _ in demands)
-    answers = first.bus.exchange(goals, servo_ids, first.piece, table.LAYOUT.size)
-    return [servo.reading(answer, asked_s) for (servo, _, _), answer in zip(demands, answers, strict=True)]

@@ -4,16 +4,8 @@ Source: ROBOTIS e-Manual, control tables of the X series; addresses compared wit
 """
 
 from struct import Struct
-from typing import NamedTuple
 
-
-class Item(NamedTuple):
-    """One item: where it is, and how long."""
-
-    address: int
-    size: int
-    name: str
-
+from drivers.servos.frames import Item
 
 MODEL_NUMBER = Item(0, 2, "Model Number")
 FIRMWARE = Item(6, 1, "Firmware Version")
@@ -38,7 +30,6 @@ DUTY_FULL = 885  # of Goal PWM and Present PWM
 VELOCITY_RPM = 0.229  # one step of Present Velocity
 COUNTS_PER_TURN = 4096
 SUPPLY_V = 0.1
-ALERT = 0x80  # in the error byte of a status packet
 
 # what each exchange asks for, gathered by indirect addresses into one piece
 GATHERED = (
@@ -51,18 +42,8 @@ GATHERED = (
 LAYOUT = Struct("<hhiiBBBHB")
 
 _ERRORS = {0: "input voltage", 2: "overheating", 3: "motor encoder", 4: "electrical shock", 5: "overload"}
-_REFUSALS = {
-    1: "it failed to do it", 2: "it does not know the instruction", 3: "the CRC was wrong", 4: "out of range",
-    5: "of another length", 6: "beyond its limit", 7: "not to be written now",
-}  # fmt: skip
 
 
 def hardware_errors(word: int) -> str:
     """The hardware errors by the names of the manual; "" for none."""
     return ", ".join(f"{_ERRORS.get(bit, f'bit {bit}')} error" for bit in range(8) if word & 1 << bit)
-
-
-def refusal(error: int) -> str:
-    """What an error byte says, the alert aside; "" where it refuses nothing."""
-    number = error & ~ALERT
-    return _REFUSALS.get(number, f"error {number}") if number else ""

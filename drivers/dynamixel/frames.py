@@ -8,13 +8,14 @@ neither reflected nor inverted) over everything before it.
 Source: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0".
 """
 
-from typing import NamedTuple
+from drivers.servos.frames import Frames, StatusPacket
 
 HEADER = b"\xff\xff\xfd\x00"
 HEAD_BYTES = 7  # header, id, length
 STATUS_BYTES = 11  # of a status packet without parameters
 BROADCAST = 0xFE
 PING, READ, WRITE, REBOOT, STATUS, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x08, 0x55, 0x82, 0x83
+ALERT = 0x80  # in the error byte: there is a hardware error
 _CRC_BYTES = 2
 _STUFFED, _STUFFING = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
 
@@ -27,20 +28,6 @@ def _of_byte(byte: int) -> int:
 
 
 _TABLE = tuple(_of_byte(byte) for byte in range(256))
-
-
-class StatusPacket(NamedTuple):
-    """What a servo answers.
-
-    Attributes:
-        servo_id: of whom.
-        error: the error byte; 0x80 is the alert of its hardware error status.
-        data: the parameters.
-    """
-
-    servo_id: int
-    error: int
-    data: bytes
 
 
 def crc16(data: bytes) -> int:
@@ -96,3 +83,21 @@ def status(reply: bytes) -> StatusPacket | None:
         return None
     body = reply[HEAD_BYTES + 1 : -_CRC_BYTES].replace(_STUFFING, _STUFFED)
     return StatusPacket(reply[4], body[0], body[1:])
+
+
+_REFUSALS = {
+    1: "it failed to do it", 2: "it does not know the instruction", 3: "the CRC was wrong", 4: "out of range",
+    5: "of another length", 6: "beyond its limit", 7: "not to be written now",
+}  # fmt: skip
+
+
+def refusal(error: int) -> str:
+    """What an error byte says, the alert aside; "" where it refuses nothing."""
+    number = error & ~ALERT
+    return _REFUSALS.get(number, f"error {number}") if number else ""
+
+
+PROTOCOL_2 = Frames(
+    STATUS_BYTES, read_packet, write_packet, sync_read_packet, sync_write_packet, packet_bytes, status, refusal,
+    lambda servo_id: packet(servo_id, PING), BROADCAST,
+)  # fmt: skip

@@ -2,17 +2,18 @@
 
 from drivers.actuator.reading import Identity
 from drivers.dynamixel import control_table as table
-from drivers.dynamixel.bus import Bus
-from drivers.dynamixel.control_table import Item
 from drivers.dynamixel.models import MODELS, Model
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.errors import DriveConfigurationError, DriveError, DriveStateError, WatchdogError
 from drivers.joint import JointScale
+from drivers.servos.bus import ServoBus
+from drivers.servos.frames import Item
+from drivers.servos.opening import check_counts
 
 SIMULATED_FIRMWARE = 255  # of our own simulated device; ROBOTIS counts from 0, and was at some 50 in 2026
 
 
-def identify(bus: Bus, settings: DynamixelSettings, joint: JointScale) -> tuple[Model, int, Identity]:
+def identify(bus: ServoBus, settings: DynamixelSettings, joint: JointScale) -> tuple[Model, int, Identity]:
     """Ask who answers.
 
     Raises:
@@ -27,19 +28,13 @@ def identify(bus: Bus, settings: DynamixelSettings, joint: JointScale) -> tuple[
             settings.device,
             f"its model number is {number}, which is none of the X series with a bus watchdog; check drive.servo_id",
         )
-    if joint.counts_per_turn != table.COUNTS_PER_TURN:
-        raise DriveConfigurationError(
-            settings.device,
-            f"counts per turn of a {model.name} are {table.COUNTS_PER_TURN} at its output; the rig says "
-            f"{joint.counts_per_turn:g}. Set sensor.counts_per_turn to {table.COUNTS_PER_TURN}, and gear.ratio to what "
-            "is behind the servo (1 where the arm is on its horn)",
-        )
+    check_counts(settings.device, model.name, table.COUNTS_PER_TURN, joint)
     firmware = bus.read(settings.servo_id, table.FIRMWARE)
     simulated = firmware == SIMULATED_FIRMWARE
     return model, firmware, Identity("ROBOTIS", model.name, str(firmware), "", simulated)
 
 
-def switch_off(bus: Bus, settings: DynamixelSettings) -> None:
+def switch_off(bus: ServoBus, settings: DynamixelSettings) -> None:
     """Power off, and have every packet answered from now on."""
     bus.begin()
     bus.write(settings.servo_id, table.STATUS_RETURN, table.ANSWERS_ALL)
@@ -47,7 +42,7 @@ def switch_off(bus: Bus, settings: DynamixelSettings) -> None:
     bus.write(settings.servo_id, table.RETURN_DELAY, 0)
 
 
-def set_watchdog(bus: Bus, settings: DynamixelSettings) -> None:
+def set_watchdog(bus: ServoBus, settings: DynamixelSettings) -> None:
     """Clear the bus watchdog, set it, and see that it is set.
 
     Raises:
@@ -69,7 +64,7 @@ def set_watchdog(bus: Bus, settings: DynamixelSettings) -> None:
         )
 
 
-def set_current_limit(bus: Bus, settings: DynamixelSettings, model: Model) -> None:
+def set_current_limit(bus: ServoBus, settings: DynamixelSettings, model: Model) -> None:
     """Set the highest motor current where one is wanted, and see that it is set.
 
     Raises:
@@ -85,7 +80,7 @@ def set_current_limit(bus: Bus, settings: DynamixelSettings, model: Model) -> No
     _set(bus, settings, table.CURRENT_LIMIT, wanted, f"{settings.current_limit_a:g} A")
 
 
-def gather(bus: Bus, settings: DynamixelSettings) -> None:
+def gather(bus: ServoBus, settings: DynamixelSettings) -> None:
     """Put what each exchange asks for into one piece of indirect data.
 
     Raises:
@@ -97,7 +92,7 @@ def gather(bus: Bus, settings: DynamixelSettings) -> None:
         _set(bus, settings, item, address, str(address))
 
 
-def _set(bus: Bus, settings: DynamixelSettings, item: Item, value: int, words: str) -> None:
+def _set(bus: ServoBus, settings: DynamixelSettings, item: Item, value: int, words: str) -> None:
     bus.begin()
     try:
         bus.write(settings.servo_id, item, value)

@@ -99,16 +99,16 @@ def opens_again(bench, drive):
 
 
 @pytest.mark.parametrize("name", ["disconnect", "silent", "drop"])
-def test_the_cable_comes_out_in_mid_motion(wired, name):
-    with wired.opened() as drive:
-        outcome, on_s = broken(wired, drive, "link", name=name)
+def test_the_cable_comes_out_in_mid_motion(watched, name):
+    with watched.opened() as drive:
+        outcome, on_s = broken(watched, drive, "link", name=name)
         assert outcome.outcome == "failed"
         assert any(
             word in outcome.reason
             for word in ("gone", "found", "answer", "heartbeat", "SYNC", "heard", "bus", "receiving")
         )
-        assert on_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
-        opens_again(wired, drive)
+        assert on_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
+        opens_again(watched, drive)
 
 
 def _corrupt_three(bench, drive):
@@ -143,13 +143,13 @@ def test_a_corrupted_packet_of_a_line_without_a_check_at_most_trips_a_limit(wire
         opens_again(wired, drive)
 
 
-def test_a_line_that_corrupts_everything_ends_in_power_off(wired):
-    with wired.opened() as drive:
-        outcome, on_s = broken(wired, drive, "link", name="corrupt")
+def test_a_line_that_corrupts_everything_ends_in_power_off(watched):
+    with watched.opened() as drive:
+        outcome, on_s = broken(watched, drive, "link", name="corrupt")
         # where no packet has a check, a flipped bit may read as a value beyond a limit first
-        assert outcome.outcome in (("failed",) if wired.variant.is_checked else ("failed", "tripped"))
-        assert on_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
-        opens_again(wired, drive)
+        assert outcome.outcome in (("failed",) if watched.variant.is_checked else ("failed", "tripped"))
+        assert on_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
+        opens_again(watched, drive)
 
 
 @pytest.mark.parametrize("name", ["over-current", "drive-failed", "supply-lost"])
@@ -220,13 +220,13 @@ def test_every_call_is_bounded_while_the_device_is_silent(wired):
         opens_again(wired, drive)
 
 
-def test_a_host_that_is_killed_in_mid_motion(wired, tmp_path):
+def test_a_host_that_is_killed_in_mid_motion(watched, tmp_path):
     """SIGKILL: nobody says good-bye. The drive stops by itself; the record says so when the store is opened again."""
     url = f"sqlite:///{tmp_path / 'bench.sqlite'}"
     configuration = tmp_path / "bench.toml"
-    configuration.write_text(tomli_w.dumps(wired.configuration.model_dump(mode="json", exclude_none=True)))
+    configuration.write_text(tomli_w.dumps(watched.configuration.model_dump(mode="json", exclude_none=True)))
     with Store.open(url) as store:
-        runner = Runner(wired.configuration, store)
+        runner = Runner(watched.configuration, store)
         runner.start("commissioning", {})
         while not runner.wait(0.02):
             if (prompt := runner.status().prompt) is not None:
@@ -240,20 +240,20 @@ def test_a_host_that_is_killed_in_mid_motion(wired, tmp_path):
     try:
         host.stdin.write(b"\n")
         host.stdin.flush()
-        wired.device.wait_for_power(True, timeout_s=60.0)
+        watched.device.wait_for_power(True, timeout_s=60.0)
         time.sleep(0.3)
         killed_s = time.monotonic()
         os.kill(host.pid, signal.SIGKILL)
         host.wait(10.0)
-        off_s = wired.device.wait_for_power(False)
+        off_s = watched.device.wait_for_power(False)
     finally:
         host.kill()
         host.stdin.close()
         host.wait()
-    assert off_s - killed_s < wired.watched_s + MARGIN_S, "the drive's watchdog did not stop it"
+    assert off_s - killed_s < watched.watched_s + MARGIN_S, "the drive's watchdog did not stop it"
     with Store.open(url) as store:
         newest = store.experiments()[0]
         assert (newest.kind, newest.outcome) == ("steps", "interrupted")
-    with wired.opened() as drive:
+    with watched.opened() as drive:
         assert drive.exchange(OFF).status is Status.DISABLED, "the next start would need somebody to clear a fault"
-        opens_again(wired, drive)
+        opens_again(watched, drive)

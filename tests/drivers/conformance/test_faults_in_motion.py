@@ -94,17 +94,17 @@ def test_answers_that_come_late_trip_the_limit_of_the_samples_age(wired):
         opens_again(wired, drive)
 
 
-def test_answers_that_come_too_late_are_no_answers(wired):
-    with wired.opened() as drive:
-        swinging = Swinging(wired, drive)
+def test_answers_that_come_too_late_are_no_answers(watched):
+    with watched.opened() as drive:
+        swinging = Swinging(watched, drive)
         before_s = time.monotonic()
-        wired.device.side.ask("link", name="delay", amount_s=3.0, direction="from-device")
+        watched.device.side.ask("link", name="delay", amount_s=3.0, direction="from-device")
         outcome = swinging.join()
         assert outcome.outcome == "failed"
         assert any(word in outcome.reason for word in ("found", "answer", "heartbeat", "SYNC"))
-        assert wired.device.wait_for_power(False) - before_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
+        assert watched.device.wait_for_power(False) - before_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
         time.sleep(3.0)  # what is still under way comes in, and must not be taken for an answer
-        opens_again(wired, drive)
+        opens_again(watched, drive)
 
 
 def with_lines_for_counts(bench):

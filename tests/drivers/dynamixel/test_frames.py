@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.dynamixel import frames
+from drivers.servos.frames import StatusPacket
 from sim_backend.devices.dynamixel import packets
 
 # e-Manual, "DYNAMIXEL Protocol 2.0": instruction packets and the status packets that answer them
@@ -47,7 +48,7 @@ def test_packets_of_the_manual(name):
 
 
 def test_an_answer_of_the_manual():
-    assert frames.status(ANSWER) == frames.StatusPacket(1, 0, bytes.fromhex("a6 00 00 00"))
+    assert frames.status(ANSWER) == StatusPacket(1, 0, bytes.fromhex("a6 00 00 00"))
     assert packets.status(1, 0, bytes.fromhex("a6 00 00 00")) == ANSWER
 
 
@@ -70,7 +71,7 @@ def test_packets_are_those_of_the_makers_library(data):
 def test_answers_survive_stuffing_both_ways(data):
     answer = packets.status(7, 0x80, data)
     assert frames.packet_bytes(answer) == len(answer)
-    assert frames.status(answer) == frames.StatusPacket(7, 0x80, data)
+    assert frames.status(answer) == StatusPacket(7, 0x80, data)
 
 
 @given(BYTES)
