@@ -2,9 +2,9 @@
 
 import pytest
 
-from sim_backend.devices.canopen.frame import Frame
-from sim_backend.devices.canopen.transport.slcan import SlcanAdapter
-from sim_backend.devices.canopen.transport.socketcand import SocketcandSession
+from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.slcan import SlcanAdapter
+from sim_backend.devices.can.socketcand import SocketcandSession
 
 
 def _opened() -> SlcanAdapter:

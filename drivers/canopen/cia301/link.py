@@ -13,8 +13,8 @@ from time import perf_counter
 import can
 import canopen
 
-from drivers.canopen.cia301.bus import close_bus, open_bus
-from drivers.canopen.settings import BusSettings
+from drivers.can_bus.bus import close_bus, open_bus
+from drivers.can_bus.settings import BusSettings
 from drivers.errors import DriveConnectionError
 
 _SEND_S = 0.02  # longest wait for room in the transmit buffer

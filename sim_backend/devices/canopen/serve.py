@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.can.bus_port import BusPort
+from sim_backend.devices.can.stream_port import SlcanPort, SocketcandPort
 from sim_backend.devices.canopen.conduct import GOOD, Conduct
 from sim_backend.devices.canopen.drive import ServoDrive
 from sim_backend.devices.canopen.eds import eds_text
@@ -13,8 +15,6 @@ from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.family import Family, Rating
 from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.objects.generic import GENERIC
-from sim_backend.devices.canopen.transport.bus_port import BusPort
-from sim_backend.devices.canopen.transport.stream_port import SlcanPort, SocketcandPort
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.process import Port, RunningDevice, Workplace

@@ -6,7 +6,7 @@
 import time
 from collections.abc import Callable
 
-from sim_backend.devices.canopen.frame import Frame
+from sim_backend.devices.can.frame import Frame
 
 _OK = b"< ok >"
 _LONGEST = 256

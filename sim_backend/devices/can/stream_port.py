@@ -5,11 +5,11 @@ import socket
 from abc import abstractmethod
 from pathlib import Path
 
-from sim_backend.devices.canopen.frame import Frame
-from sim_backend.devices.canopen.transport.can_device import CanDevice
-from sim_backend.devices.canopen.transport.slcan import SlcanAdapter
-from sim_backend.devices.canopen.transport.socketcand import SocketcandSession
-from sim_backend.devices.canopen.transport.stream import Stream
+from sim_backend.devices.can.can_device import CanDevice
+from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.slcan import SlcanAdapter
+from sim_backend.devices.can.socketcand import SocketcandSession
+from sim_backend.devices.can.stream import Stream
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.port import LOOK_UP_S, PortThread
 from sim_backend.devices.link.pseudo_terminal import PseudoTerminal, Unwritten

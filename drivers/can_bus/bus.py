@@ -5,9 +5,9 @@ from contextlib import suppress
 
 import can
 
-from drivers.canopen.cia301.bounded import bounded
-from drivers.canopen.cia301.slcan_bus import SlcanBus
-from drivers.canopen.settings import BusSettings
+from drivers.can_bus.bounded import bounded
+from drivers.can_bus.settings import BusSettings
+from drivers.can_bus.slcan_bus import SlcanBus
 from drivers.errors import DriveConnectionError
 
 _OPEN_S = 3.0

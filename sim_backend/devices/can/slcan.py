@@ -4,7 +4,7 @@ Sn  bit rate        O  open     L  open, listen only     C  close     V  version
 tiiildd..  frame with 11-bit identifier, answered by z CR       riiil  remote request
 """
 
-from sim_backend.devices.canopen.frame import Frame
+from sim_backend.devices.can.frame import Frame
 
 OK, REFUSED = b"\r", b"\a"
 _LONGEST_LINE = 32

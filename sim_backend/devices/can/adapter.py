@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from sim_backend.devices.canopen.frame import Frame
+from sim_backend.devices.can.frame import Frame
 
 
 class Adapter(Protocol):

@@ -5,8 +5,8 @@ from typing import Any
 
 import can
 
-from sim_backend.devices.canopen.frame import Frame
-from sim_backend.devices.canopen.transport.can_device import CanDevice
+from sim_backend.devices.can.can_device import CanDevice
+from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.wall_time import WallTime
 
 _LOOK_UP_S = 0.05  # how soon the thread notices that it shall end

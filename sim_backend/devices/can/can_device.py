@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from sim_backend.devices.canopen.frame import Frame
+from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.node import Node
 from sim_backend.devices.device import Device
 
