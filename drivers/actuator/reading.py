@@ -28,6 +28,7 @@ class Reading(NamedTuple):
         temperature_c: highest that it tells [deg C].
         is_on: whether it says that its power stage is on.
         fault: what has switched it off, in words; "" where nothing has.
+        time_s: when it was measured, by the actuator's own clock, without wraps [s]; NaN: it tells none.
         slow_s: when supply and temperature were asked for [s]; NaN: with the rest.
     """
 
@@ -41,4 +42,5 @@ class Reading(NamedTuple):
     temperature_c: float = nan
     is_on: bool = False
     fault: str = ""
+    time_s: float = nan
     slow_s: float = nan

@@ -181,7 +181,7 @@ class ActuatorSession(Generic[ActuatorT]):
         age_s = now_s - reading.asked_s
         slow_s = age_s if isnan(reading.slow_s) else now_s - reading.slow_s
         return Sample(
-            reading.asked_s, age_s,
+            reading.asked_s if isnan(reading.time_s) else reading.time_s, age_s,
             joint.position_rad(reading.counts), joint.velocity_rad_s(reading.counts_s),
             joint.motor_sign * reading.duty, joint.motor_sign * reading.current_a,
             reading.supply_v, reading.temperature_c, self.state,

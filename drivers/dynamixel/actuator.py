@@ -6,6 +6,7 @@ from time import sleep
 
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
+from drivers.drive_clock import DriveClock
 from drivers.dynamixel import control_table as table
 from drivers.dynamixel import opening
 from drivers.dynamixel.frames import REBOOT, packet
@@ -47,6 +48,7 @@ class DynamixelActuator(ServoActuator):
     ) -> None:
         super().__init__(bus, settings.servo_id, leave)
         self._settings = settings
+        self._clock = DriveClock(table.TICK_S, table.TICK_BITS)
         self.model, firmware, self.identity = opening.identify(bus, settings, joint)
         self.piece = Item(self.model.indirect_data(firmware), table.LAYOUT.size, "what it measures")
         self._settle()
@@ -96,14 +98,14 @@ class DynamixelActuator(ServoActuator):
 
     def reading(self, data: bytes, asked_s: float) -> Reading:
         """The piece in SI."""
-        pwm, current, velocity, position, is_on, error, watchdog, supply, temperature = table.LAYOUT.unpack(data)
+        pwm, current, velocity, position, is_on, error, watchdog, tick, supply, temperature = table.LAYOUT.unpack(data)
         fault = table.hardware_errors(error)
         if watchdog == table.WATCHDOG_TRIPPED:
             fault = fault or _WATCHDOG_FAULT
         return Reading(
             asked_s, position, velocity * _COUNTS_S, pwm / table.DUTY_FULL,
             nan if self.model.current_a is None else current * self.model.current_a, nan,
-            supply * table.SUPPLY_V, temperature, bool(is_on), fault,
+            supply * table.SUPPLY_V, temperature, bool(is_on), fault, self._clock.follow(tick * table.TICK_S),
         )  # fmt: skip
 
     def clear_fault(self) -> None:

@@ -30,6 +30,7 @@ DUTY_FULL = 885  # of Goal PWM and Present PWM
 VELOCITY_RPM = 0.229  # one step of Present Velocity
 COUNTS_PER_TURN = 4096
 SUPPLY_V = 0.1
+TICK_S, TICK_BITS = 1e-3, 15  # of Realtime Tick
 
 # what each exchange asks for, gathered by indirect addresses into one piece
 GATHERED = (
@@ -37,9 +38,10 @@ GATHERED = (
     TORQUE_ENABLE.address,
     HARDWARE_ERROR.address,
     BUS_WATCHDOG.address,
+    *range(120, 122),  # Realtime Tick
     *range(144, 147),  # Present Input Voltage, Temperature
 )
-LAYOUT = Struct("<hhiiBBBHB")
+LAYOUT = Struct("<hhiiBBBHHB")
 
 _ERRORS = {0: "input voltage", 2: "overheating", 3: "motor encoder", 4: "electrical shock", 5: "overload"}
 
