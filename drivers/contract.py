@@ -23,6 +23,7 @@ class Mode(Enum):
     OFF = "off"  # power stage off; the value is ignored
     DUTY = "duty"  # signed PWM duty, -1 .. 1 of the supply
     CURRENT = "current"  # motor current [A]
+    TORQUE = "torque"  # torque at the motor side of the joint's gear [N m]
     POSITION = "position"  # joint position [rad], closed by the drive itself
 
 
@@ -93,6 +94,8 @@ class Sample(NamedTuple):
         ages: of each quantity.
         number: of the measurement since opening, where the drive is asked for each (CANopen: of the SYNC); two
             samples of one number are one measurement, handed over twice because the next one has not come in time.
+        torque_n_m: torque that the drive says it gives, at the motor side of the joint's gear [N m]; NaN where it
+            says nothing of it.
     """
 
     time_s: float
@@ -106,6 +109,7 @@ class Sample(NamedTuple):
     status: Status
     ages: Ages = ALL_NEW
     number: int = 0
+    torque_n_m: float = nan
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from drivers.errors import DriveError
 from drivers.host_time import CycleTime, Lateness, measure_cycle
 from drivers.refusal import check_demand, check_mode, not_cleared, not_enabled, not_open, switched_itself_off
 
-_LIMITS = {Mode.DUTY: (1.0, ""), Mode.CURRENT: (1e3, "A"), Mode.POSITION: (1e3, "rad")}
+_LIMITS = {Mode.DUTY: (1.0, ""), Mode.CURRENT: (1e3, "A"), Mode.TORQUE: (1e3, "N m"), Mode.POSITION: (1e3, "rad")}
 _OFF = Command(Mode.OFF)
 
 

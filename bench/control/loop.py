@@ -236,7 +236,13 @@ def _power_off(joints: Sequence[ControlledJoint]) -> list[str]:
 
 
 def joint_loop(
-    drive: Drive, clock: Clock, guard: Guard, period_s: float, current_servo: CurrentServo | None = None
+    drive: Drive,
+    clock: Clock,
+    guard: Guard,
+    period_s: float,
+    current_servo: CurrentServo | None = None,
+    torque_constant_n_m_a: float = nan,
 ) -> ControlLoop[Action, Reading]:
     """The loop of one joint; the arguments are those of `ControlledJoint` and `ControlLoop`."""
-    return ControlLoop(SingleJoint(ControlledJoint(drive, guard, current_servo)), clock, period_s)
+    joint = ControlledJoint(drive, guard, current_servo, torque_constant_n_m_a=torque_constant_n_m_a)
+    return ControlLoop(SingleJoint(joint), clock, period_s)

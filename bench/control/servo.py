@@ -1,6 +1,6 @@
 """The position servo, and the current servo of drives without a current mode."""
 
-from math import isnan
+from math import isnan, nan
 
 from bench.config.rig import Rig
 from bench.config.sections import ServoSettings
@@ -137,3 +137,8 @@ def check_modes(settings: ServoSettings, drive: Description) -> None:
             f"servo.closed_by is 'drive', and drive '{drive.device}' has no position mode (it has {names}); "
             "set servo.closed_by = 'bench'"
         )
+
+
+def torque_constant_n_m_a(rig: Rig) -> float:
+    """What makes a torque of a current, for drives that take torques [N m/A]; NaN where the rig leaves it out."""
+    return nan if rig.motor.torque_constant_n_m_a is None else rig.motor.torque_constant_n_m_a

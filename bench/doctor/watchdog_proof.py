@@ -12,7 +12,12 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import make_equipment
 from drivers.contract import Command, Description, Drive, Inspection, Mode, Status, Watchdog
 
-_SMALL = {Mode.DUTY: 0.02, Mode.CURRENT: 0.05, Mode.POSITION: 0.0}  # friction holds most joints against it
+_SMALL = {
+    Mode.DUTY: 0.02,
+    Mode.CURRENT: 0.05,
+    Mode.TORQUE: 0.002,
+    Mode.POSITION: 0.0,
+}  # friction holds most joints against it
 _SPOKEN_CYCLES = 5
 _MARGIN = 1.5
 _LEAST_S = 0.1

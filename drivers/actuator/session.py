@@ -186,4 +186,5 @@ class ActuatorSession(Generic[ActuatorT]):
             joint.motor_sign * reading.duty, joint.motor_sign * reading.current_a,
             reading.supply_v, reading.temperature_c, self.state,
             Ages(age_s, age_s, age_s, age_s, slow_s, slow_s, age_s),
+            torque_n_m=joint.motor_sign * reading.torque_n_m,
         )  # fmt: skip

@@ -31,7 +31,8 @@ class ConformanceBench:
         wrong_address: the key of `[drive]` and the address at which nobody answers.
         refused_mode: a mode that it lacks, or that it can be made to refuse in motion.
         is_checked: whether a flipped bit is seen in every packet; None: the transport never flips one.
-        knows_counts: whether it knows its encoder, and refuses a rig that says otherwise.
+        knows_counts: whether it knows its encoder, and refuses a rig that says otherwise; None: its position needs
+            no counts, for it is told in turns.
         has_watchdog: whether it stops by itself when its host falls silent.
     """
 
@@ -42,7 +43,7 @@ class ConformanceBench:
     wrong_address: tuple[str, int] = ("", 0)
     refused_mode: Mode = Mode.POSITION
     is_checked: bool | None = True
-    knows_counts: bool = False
+    knows_counts: bool | None = False
     has_watchdog: bool = True
 
 

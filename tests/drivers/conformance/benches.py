@@ -15,7 +15,7 @@ from bench.control.drive_factory import make_equipment
 from bench.control.ending import Outcome
 from bench.control.limits import Guard
 from bench.control.loop import joint_loop
-from bench.control.servo import current_servo
+from bench.control.servo import current_servo, torque_constant_n_m_a
 from drivers.contract import Drive
 from tests.control.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
@@ -133,5 +133,5 @@ def run(bench: Bench, drive: Drive, procedure: Any, stop: Any) -> tuple[Outcome,
     sink = ListSink()
     configuration = bench.configuration
     guard, servo = Guard(configuration.limits), current_servo(configuration.rig)
-    loop = joint_loop(drive, bench.clock(), guard, PERIOD_S, servo)
+    loop = joint_loop(drive, bench.clock(), guard, PERIOD_S, servo, torque_constant_n_m_a(configuration.rig))
     return loop.run(procedure, sink, stop), sink

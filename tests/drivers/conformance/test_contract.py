@@ -11,7 +11,7 @@ from drivers.errors import DriveConfigurationError, DriveError, DriveFault, Driv
 from tests.drivers.conformance.benches import PERIOD_S
 
 OFF = Command(Mode.OFF)
-PUSHES = {Mode.DUTY: 0.15, Mode.CURRENT: 0.3}  # enough to move the joint without load, gently
+PUSHES = {Mode.DUTY: 0.15, Mode.CURRENT: 0.3, Mode.TORQUE: 0.015}  # enough to move the joint without load, gently
 
 
 def push_mode(drive):
@@ -157,7 +157,7 @@ def test_an_impossible_demand_is_refused(bench, value):
 
 def test_a_mode_that_it_does_not_have_is_refused(bench):
     with bench.opened() as drive:
-        for mode in {Mode.DUTY, Mode.CURRENT, Mode.POSITION} - drive.describe().modes:
+        for mode in {Mode.DUTY, Mode.CURRENT, Mode.TORQUE, Mode.POSITION} - drive.describe().modes:
             with pytest.raises(DriveConfigurationError, match=mode.value):
                 drive.enable(mode)
 
