@@ -23,6 +23,14 @@ class Heard(NamedTuple):
     number: int
 
 
+def prepare(can_id: int, data: bytes = b"", remote: bool = False, is_extended: bool = False) -> can.Message:
+    """A frame, which may be sent often."""
+    return can.Message(
+        arbitration_id=can_id, data=data, is_extended_id=is_extended, is_remote_frame=remote,
+        dlc=8 if remote else len(data),
+    )  # fmt: skip
+
+
 class CanPort:
     """An open bus, and the last frame of each identifier.
 
@@ -52,10 +60,14 @@ class CanPort:
         Raises:
             DriveConnectionError: there is none in time, or the adapter is gone.
         """
-        message = can.Message(
-            arbitration_id=can_id, data=data, is_extended_id=is_extended, is_remote_frame=remote,
-            dlc=8 if remote else len(data),
-        )  # fmt: skip
+        self.send_prepared(prepare(can_id, data, remote, is_extended))
+
+    def send_prepared(self, message: can.Message) -> None:
+        """The same of a frame that was made before.
+
+        Raises:
+            DriveConnectionError: as `send`.
+        """
         end_s = time.perf_counter() + _SEND_S
         while True:
             try:

@@ -6,7 +6,7 @@ from struct import Struct
 from time import perf_counter
 
 from drivers.actuator.reading import Identity, Reading
-from drivers.can_bus.port import CanPort
+from drivers.can_bus.port import CanPort, prepare
 from drivers.contract import Mode
 from drivers.errors import DriveConnectionError, DriveStateError, WatchdogError
 from drivers.host_time import host_was_away
@@ -43,6 +43,9 @@ class OdriveActuator:
         self.bus = port
         self._settings, self._leave = settings, leave
         self._counts_per_turn = joint.counts_per_turn
+        self._questions = {
+            command: prepare(can_id(settings.node_id, command), remote=True) for command in (*_QUICK, *_SLOW)
+        }
         self._slow = dict.fromkeys(_SLOW, (nan, nan))
         self._slow_s = perf_counter()
         self._cycle = 0
@@ -134,10 +137,11 @@ class OdriveActuator:
         self._cycle += 1
         slow = _SLOW[self._cycle // self._settings.slow_every % len(_SLOW)]
         commands = (*_QUICK, slow) if self._cycle % self._settings.slow_every == 0 else _QUICK
-        before = {can_id(self._settings.node_id, command): 0 for command in commands}
-        for identifier in before:
-            before[identifier] = self.bus.number(identifier)
-            self.bus.send(identifier, remote=True)
+        before = {}
+        for command in commands:
+            question = self._questions[command]
+            before[question.arbitration_id] = self.bus.number(question.arbitration_id)
+            self.bus.send_prepared(question)
         if slow in commands:
             self._slow_s = perf_counter()
         return before

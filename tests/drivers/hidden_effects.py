@@ -3,8 +3,8 @@
     python -m tests.drivers.hidden_effects KIND [DEVICE OPTION ...]
 
 Each effect: the same joint once in process and once behind the simulated device of a kind, in a process of its own; the
-same trials (3 loads, 2 repeats, some 4 minutes by the wall clock), the same base model without the effect. The lab
-names what is missing; it is added; the error on the trials held out (50 g) is what is compared.
+same trials (3 loads, 3 motions, 2 repeats: some 3 minutes by the wall clock), the same base model without the effect.
+The lab names what is missing; it is added; the error on the trials held out (50 g) is what is compared.
 """
 
 import sys
@@ -28,7 +28,7 @@ from tests.drivers.conformance.paced import paced_drives
 
 SENSED = {"current_sensor": {"present": True}, "current_loop": {"present": True}, "heat": {"present": True}}
 KNOWN = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck")
-EXCITATION = Measurement("excitation", {})
+EXCITATION = Measurement("excitation", {"waveforms": ("slow-sine", "multisine", "triangles")})
 MOST_DIFFERENCE = 0.1
 OWN_CLOCK = ("dynamixel",)  # stamps are the device's; of others they count cycles, as in the conformance tests
 
@@ -77,13 +77,13 @@ def diagnosed(configuration: BenchConfiguration, hidden: Hidden) -> Found:
 
 
 def _study(store: Store, recorded: int, base: tuple[str, ...]) -> int:
-    return create_study(store, "hidden", [recorded], hold_out=["load_kg=0.05"], base=base).study_id
+    return create_study(store, "hidden", [recorded], hold_out=["load_kg=0.05"], base=base, rows="moving").study_id
 
 
 def on_bench(drive: dict[str, Any], **sections: Any) -> BenchConfiguration:
     """The bench of the package with a drive."""
     values = default_configuration().model_dump(mode="json", exclude_none=True)
-    values["control"]["period_s"] = 0.01
+    values["control"]["period_s"] = 0.005
     values["servo"] |= {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_rad": 0.3}
     values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
     values["drive"] = drive
@@ -98,7 +98,7 @@ def through_wire(kind: str, options: list[str], hidden: Hidden) -> Found:
     with tempfile.TemporaryDirectory() as folder:
         plant = Path(folder) / "plant.toml"
         plant.write_text(tomli_w.dumps(hidden.plant))
-        words = [*variant.device, "--plant", str(plant), "--patience", "0.012", *options]
+        words = [*variant.device, "--plant", str(plant), "--patience", "0.006", *options]
         with device_process(kind, *words) as device, nullcontext() if kind in OWN_CLOCK else paced_drives():
             return diagnosed(on_bench(device.drive | dict(variant.settings)), hidden)
 

@@ -14,6 +14,7 @@ from tests.devices.turns import turns
 from tests.drivers import serial_rates
 from tests.drivers.canopen import rates as canopen
 from tests.drivers.dynamixel import rates as dynamixel
+from tests.drivers.odrive import rates as odrive
 from tests.drivers.rate_rows import heading
 
 if __name__ == "__main__":
@@ -21,7 +22,8 @@ if __name__ == "__main__":
         print(f"load of the machine before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
         print(heading())
         serial_rates.report()
-        for line in dynamixel.rows():
-            print(line, flush=True)
+        for kind in (dynamixel, odrive):
+            for line in kind.rows():
+                print(line, flush=True)
         canopen.report(float(sys.argv[1]) if len(sys.argv) > 1 else 60.0)
         print(f"load of the machine after: {os.getloadavg()[0]:.1f}, the benchmark's own included")
