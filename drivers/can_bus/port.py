@@ -94,7 +94,7 @@ class CanPort:
             DriveConnectionError: the adapter is gone.
         """
         for _ in range(_MOST_WAITING):
-            if not self._take(0.0):
+            if self._take(0.0) is None:
                 return
 
     def wait_for(self, can_ids: Collection[int], limit_s: float) -> list[int]:
@@ -109,36 +109,36 @@ class CanPort:
     def wait_beyond(self, before: dict[int, int], limit_s: float) -> list[int]:
         """The same, counted from numbers that were taken before something was asked for."""
         end_s = time.perf_counter() + limit_s
-        missing = [can_id for can_id, number in before.items() if self.number(can_id) == number]
+        missing = {can_id for can_id, number in before.items() if self.number(can_id) == number}
         while missing:
             left_s = end_s - time.perf_counter()
-            if left_s <= 0.0 and not self._take(0.0):
-                return missing
-            self._take(max(left_s, 0.0))
-            missing = [can_id for can_id in missing if self.number(can_id) == before[can_id]]
-        return missing
+            taken = self._take(max(left_s, 0.0))
+            if taken is None and left_s <= 0.0:
+                break
+            missing.discard(-1 if taken is None else taken)
+        return sorted(missing)
 
     def heard_ids(self) -> list[int]:
         """Every identifier of which a frame has come."""
         return sorted(self._heard)
 
-    def _take(self, timeout_s: float) -> bool:
-        """Take in one frame; False where none has come in time [s]."""
+    def _take(self, timeout_s: float) -> int | None:
+        """Take in one frame. Returns its identifier, -1 where it is none to be kept; None where none has come [s]."""
         try:
             message = self._bus.recv(timeout_s)
         except (ValueError, IndexError):  # a line that is no frame
             self.garbled += 1
-            return True
+            return -1
         except (can.CanError, OSError, TypeError) as error:
             raise self._lost("receiving", error) from error
         if message is None:
-            return False
-        if message.is_error_frame:
-            self.garbled += 1
-        elif not message.is_remote_frame and message.is_rx:
-            number = self.number(message.arbitration_id) + 1
-            self._heard[message.arbitration_id] = Heard(bytes(message.data), time.perf_counter(), number)
-        return True
+            return None
+        if message.is_error_frame or message.is_remote_frame or not message.is_rx:
+            self.garbled += message.is_error_frame
+            return -1
+        can_id: int = message.arbitration_id
+        self._heard[can_id] = Heard(bytes(message.data), time.perf_counter(), self.number(can_id) + 1)
+        return can_id
 
     def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
         return DriveConnectionError(

@@ -43,11 +43,13 @@ class OdriveActuator:
         self.bus = port
         self._settings, self._leave = settings, leave
         self._counts_per_turn = joint.counts_per_turn
+        self._base = can_id(settings.node_id, Command.GET_VERSION)
         self._questions = {
             command: prepare(can_id(settings.node_id, command), remote=True) for command in (*_QUICK, *_SLOW)
         }
-        self._slow = dict.fromkeys(_SLOW, (nan, nan))
+        self._supply_v = self._temperature_c = nan
         self._slow_s = perf_counter()
+        self._has_asked_slow = False
         self._cycle = 0
         if not settings.watchdog_is_set_in_drive:
             raise WatchdogError(
@@ -60,7 +62,8 @@ class OdriveActuator:
         self.switch_off()
         self._forgive_lost_host()
         for command in _SLOW:
-            self._ask_slow(command)
+            self._ask(command)
+        self._keep_slow()
 
     @property
     def steps(self) -> dict[str, float]:
@@ -142,22 +145,20 @@ class OdriveActuator:
             question = self._questions[command]
             before[question.arbitration_id] = self.bus.number(question.arbitration_id)
             self.bus.send_prepared(question)
-        if slow in commands:
-            self._slow_s = perf_counter()
+        self._has_asked_slow = slow in commands
         return before
 
     def reading(self, asked_s: float) -> Reading:
         """What was heard last, in SI."""
-        for command in _SLOW:
-            self._slow[command] = self._pair(command)
+        if self._has_asked_slow:
+            self._keep_slow()
         turns, turns_s = self._pair(Command.GET_ENCODER_ESTIMATES)
         _, current_a = self._pair(Command.GET_IQ)
         active, disarmed_for = self._heard(Command.GET_ERROR, protocol.ERRORS, (0, 0))
-        supply_v, _ = self._slow[Command.GET_BUS]
         fault = error_names(int(active) | int(disarmed_for))
         return Reading(
             asked_s, turns * self._counts_per_turn, turns_s * self._counts_per_turn, nan, current_a, nan,
-            supply_v, max(self._slow[Command.GET_TEMPERATURE]),
+            self._supply_v, self._temperature_c,
             self._state() == protocol.CLOSED_LOOP and not fault, fault, slow_s=self._slow_s,
         )  # fmt: skip
 
@@ -174,8 +175,9 @@ class OdriveActuator:
         if active | disarmed_for == protocol.WATCHDOG_TIMER_EXPIRED:
             self.clear_fault()
 
-    def _ask_slow(self, command: Command) -> None:
-        self._ask(command)
+    def _keep_slow(self) -> None:
+        self._supply_v, _ = self._pair(Command.GET_BUS)
+        self._temperature_c = max(self._pair(Command.GET_TEMPERATURE))
         self._slow_s = perf_counter()
 
     def _ask(self, command: Command) -> bytes:
@@ -200,7 +202,7 @@ class OdriveActuator:
 
     def _heard(self, command: Command, layout: Struct, absent: tuple[float, ...]) -> tuple[float, ...]:
         """The last of a message; what is there instead where none has come, or one that is too short."""
-        heard = self.bus.last(can_id(self._settings.node_id, command))
+        heard = self.bus.last(self._base | command)
         return absent if heard is None or len(heard.data) < layout.size else layout.unpack_from(heard.data)
 
     def _send(self, command: Command, data: bytes) -> None:

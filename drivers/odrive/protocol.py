@@ -57,6 +57,8 @@ def can_id(node_id: int, command: Command) -> int:
 
 def error_names(word: int) -> str:
     """The errors by name; "" for none."""
+    if not word:  # as in nearly every cycle
+        return ""
     names = [name for bit, name in _ERRORS.items() if word & bit]
     unknown = word & ~sum(_ERRORS)
     return ", ".join([*names, *([f"{unknown:#x}"] if unknown else [])])
