@@ -1,8 +1,7 @@
 """The drive contract on one axis of an ODrive."""
 
 from drivers.actuator.drive import ActuatorDrive, Family
-from drivers.actuator.open_buses import OpenBuses
-from drivers.can_bus.port import CanPort
+from drivers.can_bus.shared import on_bus
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
@@ -12,7 +11,6 @@ from drivers.odrive.settings import OdriveSettings
 _MODES = frozenset({Mode.TORQUE})
 _OPENING_QUESTIONS = 8
 _STATE_S = 1.0  # longest wait for a change of state, and for the heartbeat that shows it
-_PORTS: OpenBuses[CanPort] = OpenBuses()  # axes on one bus share it
 
 
 class OdriveDrive(ActuatorDrive[OdriveActuator]):
@@ -39,10 +37,4 @@ def _opened(settings: OdriveSettings, joint: JointScale) -> OdriveActuator:
             f"python-can sends no remote frames over {settings.bus.interface}, and CANSimple asks with them; use "
             "socketcan or slcan",
         )
-    key = str(settings.bus)
-    port = _PORTS.enter(key, lambda: CanPort(settings.bus))
-    try:
-        return OdriveActuator(port, settings, joint, lambda: _PORTS.leave(key))
-    except BaseException:
-        _PORTS.leave(key)
-        raise
+    return on_bus(settings.bus, lambda port, leave: OdriveActuator(port, settings, joint, leave))

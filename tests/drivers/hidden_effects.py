@@ -48,7 +48,7 @@ HIDDEN = (
     Hidden("backlash", {"gear": {"backlash_rad": 0.05}}, ("backlash",), WHOLE),
     Hidden(
         "thermal",
-        {"lubricant": {"vogel_k": 900.0}, "heat": {"present": True, "winding_j_k": 5.0, "housing_j_k": 20.0}},
+        {"lubricant": {"vogel_k": 1500.0}, "heat": {"present": True, "winding_j_k": 3.0, "housing_j_k": 6.0}},
         ("viscous_temperature",),
         WHOLE,
     ),

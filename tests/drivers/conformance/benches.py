@@ -84,10 +84,11 @@ class Bench:
         return True
 
     def repair(self) -> None:
-        """Put right whatever a test has broken, and wait until the motor is off."""
+        """Put right whatever a test has broken, wait until the motor is off, and put the arm back to angle 0."""
         if self.device is not None:
             self.device.side.ask("repair")
             self.device.wait_for_power(False)
+            self.device.side.hang_load(0.0, False)
 
 
 def configured(**drive: Any) -> BenchConfiguration:
