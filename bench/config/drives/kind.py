@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
+from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig, Section
 from drivers.contract import Drive, Mode
@@ -60,6 +61,7 @@ class DriveKind(Generic[SettingsT]):
         make: makes the drive, not yet open, of the section and the rig. Raises `ConfigurationError`.
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.
         conformance: how the conformance tests run on it.
+        scan_serial, scan_can: import the function that says which drives of the kind answer on a port or a bus.
     """
 
     title: str
@@ -67,6 +69,8 @@ class DriveKind(Generic[SettingsT]):
     make: Callable[[SettingsT, Rig], Drive]
     simulate: Callable[[], Simulate] | None = None
     conformance: tuple[ConformanceBench, ...] = ()
+    scan_serial: Callable[[], SerialScan] | None = None
+    scan_can: Callable[[], CanScan] | None = None
 
     @property
     def name(self) -> str:

@@ -3,6 +3,7 @@
 from bench.config.drives.can_bus import can_values
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import joint_scale
+from bench.config.drives.scanning import CanScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.damiao.settings import DamiaoDriveSettings
@@ -24,11 +25,19 @@ def simulate() -> Simulate:
     return simulate
 
 
+def scan() -> CanScan:
+    """What says which ones answer."""
+    from bench.drives.damiao.scan import scan
+
+    return scan
+
+
 KIND = DriveKind(
     title="Damiao actuator, MIT protocol",
     settings=DamiaoDriveSettings,
     make=make,
     simulate=simulate,
+    scan_can=scan,
     conformance=(
         ConformanceBench(
             "damiao",

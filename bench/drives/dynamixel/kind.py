@@ -2,6 +2,7 @@
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
+from bench.config.drives.scanning import SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.dynamixel.settings import DynamixelDriveSettings
@@ -23,11 +24,19 @@ def simulate() -> Simulate:
     return simulate
 
 
+def scan() -> SerialScan:
+    """What says which ones answer."""
+    from bench.drives.dynamixel.scan import scan
+
+    return scan
+
+
 KIND = DriveKind(
     title="Dynamixel X servo, protocol 2.0",
     settings=DynamixelDriveSettings,
     make=make,
     simulate=simulate,
+    scan_serial=scan,
     conformance=(
         ConformanceBench(
             "dynamixel",

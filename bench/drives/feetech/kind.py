@@ -2,6 +2,7 @@
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
+from bench.config.drives.scanning import SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.feetech.settings import FeetechDriveSettings
@@ -23,11 +24,19 @@ def simulate() -> Simulate:
     return simulate
 
 
+def scan() -> SerialScan:
+    """What says which ones answer."""
+    from bench.drives.feetech.scan import scan
+
+    return scan
+
+
 KIND = DriveKind(
     title="Feetech STS servo, SCS protocol",
     settings=FeetechDriveSettings,
     make=make,
     simulate=simulate,
+    scan_serial=scan,
     conformance=(
         ConformanceBench(
             "feetech",

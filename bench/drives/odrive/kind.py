@@ -3,6 +3,7 @@
 from bench.config.drives.can_bus import can_values
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import joint_scale
+from bench.config.drives.scanning import CanScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.odrive.settings import OdriveDriveSettings
@@ -24,11 +25,19 @@ def simulate() -> Simulate:
     return simulate
 
 
+def scan() -> CanScan:
+    """What says which ones answer."""
+    from bench.drives.odrive.scan import scan
+
+    return scan
+
+
 KIND = DriveKind(
     title="ODrive axis, CANSimple",
     settings=OdriveDriveSettings,
     make=make,
     simulate=simulate,
+    scan_can=scan,
     conformance=(
         ConformanceBench(
             "odrive",
