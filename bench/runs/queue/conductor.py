@@ -143,9 +143,9 @@ class Conductor:
         return self._carry_out(item)
 
     def _carry_out(self, item: QueueItem) -> float:
-        self.table.begin(item.id)
-        self.running = item
+        self.running = item  # before it waits no longer: at no moment does it seem that there is nothing to do
         try:
+            self.table.begin(item.id)
             experiment_id = self._start(item)
             if experiment_id is None:
                 return BUSY_S

@@ -38,7 +38,9 @@ class QueueState:
 
 def queue_state(conductor: Conductor, runner: BenchControl) -> QueueState:
     """The queue of a bench, now."""
-    running, waiting, status = conductor.running, conductor.table.items(WAITING), runner.status()
+    waiting = conductor.table.items(WAITING)
+    running, status = conductor.running, runner.status()
+    waiting = [item for item in waiting if running is None or item.id != running.id]
     changes = load_changes([*([running] if running else []), *waiting]) - (len(running.loads[:1]) if running else 0)
     hanging_s = HANG_S * changes if has_hardware(runner.configuration) else 0.0
     coming_s = sum(item.duration_s for item in waiting) + hanging_s

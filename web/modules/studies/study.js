@@ -39,7 +39,8 @@ class Study {
     this.series = null;
   }
 
-  async open(place) {
+  // told(): what is to be said once the study is there, before anything is fitted: later it would take the reader away
+  async open(place, told) {
     const answer = h("div");
     if (place) replace(place, answer);
     const study = await attempt(answer, () => get(this.path));
@@ -51,6 +52,7 @@ class Study {
     if (place) this.#layOut(place);
     replace(this.parts.head, heading(study, this.path));
     this.#record();
+    told?.();
     const wanted = this.wanted.model;
     const known = !wanted || (await get(`${this.path}/ladder`)).rungs.some((one) => one.model_id === wanted);
     await this.select(wanted && known ? wanted : study.model_id);
@@ -98,8 +100,7 @@ class Study {
   }
 
   async extended(sentence) {
-    await this.open();
-    this.told(h("div", { class: "good", role: "status" }, sentence));
+    await this.open(null, () => this.told(h("div", { class: "good", role: "status" }, sentence)));
   }
 
   async searched(model_id, tell) {
