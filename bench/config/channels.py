@@ -58,14 +58,6 @@ JOINT_CHANNELS = (
         "reading.current_estimate_a",
         plotted=True,
     ),
-    Channel(
-        "actuator_torque_n_m",
-        "N m",
-        "actuator's torque",
-        "torque that the drive says it gives, at the motor side of the gear",
-        "sample.torque_n_m",
-        exported=False,
-    ),
     Channel("current_command_a", "A", "current asked for", "motor current asked for", "command.current_a"),
     Channel(
         "current_load_a",

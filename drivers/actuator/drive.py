@@ -5,15 +5,17 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Generic
 
-from drivers.actuator.reading import Identity
-from drivers.actuator.session import ActuatorSession
-from drivers.actuator.together import ActuatorT, ExchangeAll, exchange_all
+from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.session import ActuatorSession, ActuatorT
 from drivers.contract import Command, Description, Drive, Mode, Sample, Watchdog
+from drivers.errors import DriveConnectionError
 from drivers.host_time import CycleTime, Lateness
 from drivers.joint import JointScale
 from drivers.polled_drive import PolledDrive
 
 _IN_COUNTS = frozenset({"position_rad", "velocity_rad_s"})
+ExchangeAll = Callable[[Sequence[tuple[ActuatorT, Mode, float]]], list[Reading]]
+"""What a kind brings whose bus asks several actuators in one go. It raises `DriveConnectionError`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +94,7 @@ class ActuatorDrive(PolledDrive[ActuatorSession[ActuatorT]], Generic[ActuatorT])
         told = [command for _, command in commands]
         sessions = [drive._ready(command) for drive, command in zip(drives, told, strict=True)]
         sent_s = perf_counter()
-        samples = exchange_all(sessions, told, self._exchange_all)
+        samples = _exchange_all(sessions, told, self._exchange_all)
         for drive in drives:
             drive._lateness.told(sent_s)
         return samples
@@ -123,3 +125,24 @@ def _describe(
         watchdog=Watchdog.NONE if family.watchdog_s is None else Watchdog.CONFIGURED,
         notes=tuple(filter(None, notes)),
     )
+
+
+def _exchange_all(
+    sessions: Sequence[ActuatorSession[ActuatorT]], commands: Sequence[Command], exchange: ExchangeAll[ActuatorT]
+) -> list[Sample]:
+    """One cycle of several sessions, whose commands have been found to be allowed.
+
+    Raises:
+        DriveConnectionError: one of them does not answer; each is told once to be off.
+    """
+    demands = [
+        (session.actuator, *session.demand(command.mode, command.value))
+        for session, command in zip(sessions, commands, strict=True)
+    ]
+    try:
+        readings = exchange(demands)
+    except DriveConnectionError:
+        for session in sessions:
+            session.give_up()
+        raise
+    return [session.take(reading) for session, reading in zip(sessions, readings, strict=True)]

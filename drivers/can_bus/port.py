@@ -1,11 +1,12 @@
 """A bus as a driver of short frames uses it: send, and take in what has come, in the thread that calls."""
 
 import time
-from collections.abc import Collection
-from typing import NamedTuple
+from collections.abc import Callable, Collection
+from typing import NamedTuple, TypeVar
 
 import can
 
+from drivers.actuator.open_buses import OpenBuses
 from drivers.can_bus.bus import close_bus, open_bus
 from drivers.can_bus.settings import BusSettings
 from drivers.errors import DriveConnectionError
@@ -146,3 +147,26 @@ class CanPort:
             f"{doing} failed: the adapter is gone, the bus is off, or nobody acknowledges ({error}); check cable, "
             "termination and bit rate, then open the drive again",
         )
+
+
+MadeT = TypeVar("MadeT")
+_PORTS: OpenBuses[CanPort] = OpenBuses()  # actuators on one bus share it
+
+
+def on_bus(settings: BusSettings, make: Callable[[CanPort, Callable[[], None]], MadeT]) -> MadeT:
+    """An actuator on a bus, which is opened where no other actuator has it open.
+
+    Args:
+        settings: how the bus is reached.
+        make: makes the actuator of the port and of what gives the port back.
+
+    Raises:
+        DriveError: the bus does not open, or the actuator cannot be opened; the port is given back then.
+    """
+    key = settings.interface, str(settings)
+    port = _PORTS.enter(key, lambda: CanPort(settings))
+    try:
+        return make(port, lambda: _PORTS.leave(key))
+    except BaseException:
+        _PORTS.leave(key)
+        raise

@@ -1,7 +1,7 @@
 """The drive contract on one Damiao actuator."""
 
 from drivers.actuator.drive import ActuatorDrive, Family
-from drivers.can_bus.shared import on_bus
+from drivers.can_bus.port import on_bus
 from drivers.contract import Mode
 from drivers.damiao.actuator import DamiaoActuator, exchange_all
 from drivers.damiao.settings import DamiaoSettings

@@ -6,7 +6,6 @@ from time import sleep
 
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
-from drivers.drive_clock import DriveClock
 from drivers.dynamixel import control_table as table
 from drivers.dynamixel import opening
 from drivers.dynamixel.frames import REBOOT, packet
@@ -17,6 +16,7 @@ from drivers.serial_latency import latency_note
 from drivers.servos.actuator import ServoActuator
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
+from drivers.wraps import DriveClock
 
 _MODES = {
     Mode.DUTY: (table.PWM_MODE, table.GOAL_PWM),

@@ -9,12 +9,12 @@ from drivers.errors import DriveConfigurationError, WatchdogError
 from drivers.feetech import memory
 from drivers.feetech.frames import signed, with_sign
 from drivers.feetech.settings import FeetechSettings
-from drivers.feetech.turns import Turns
 from drivers.joint import JointScale
 from drivers.serial_latency import latency_note
 from drivers.servos.actuator import ServoActuator
 from drivers.servos.bus import ServoBus
 from drivers.servos.opening import check_counts
+from drivers.wraps import Turns
 
 _MODES = {Mode.DUTY: memory.OPEN_LOOP_MODE, Mode.POSITION: memory.POSITION_MODE}
 _NO_WATCHDOG = (

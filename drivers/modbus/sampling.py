@@ -4,10 +4,10 @@ import time
 from math import nan
 
 from drivers.contract import Ages, Sample, Status
-from drivers.drive_clock import DriveClock
 from drivers.joint import JointScale
 from drivers.modbus.power_stage import Values
 from drivers.modbus.register_map import RegisterMap
+from drivers.wraps import DriveClock
 
 _SAMPLE_NAMES = {
     "time_s": "time_s",

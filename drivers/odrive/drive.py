@@ -1,7 +1,7 @@
 """The drive contract on one axis of an ODrive."""
 
 from drivers.actuator.drive import ActuatorDrive, Family
-from drivers.can_bus.shared import on_bus
+from drivers.can_bus.port import on_bus
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale

@@ -1,6 +1,7 @@
 """The serial bus: packets in bounded time, one servo or several in one exchange."""
 
 import time
+from collections.abc import Iterator
 
 from drivers.errors import DriveConnectionError, DriveStateError
 from drivers.host_time import host_was_away
@@ -8,6 +9,8 @@ from drivers.serial_port import SerialPort
 from drivers.servos.frames import Frames, Item, StatusPacket
 
 ATTEMPTS = 2
+_ALONE_S = 0.006  # longest wait for the answer to a ping of one servo
+_ALL_S = 0.1  # of a further one, where everybody was asked
 RESYNC_S = 0.005  # no servo is in the middle of an answer by then
 
 
@@ -183,3 +186,26 @@ def _seen(reply: bytes, start: int) -> str:
     if len(reply) <= start:
         return "nothing"
     return f"{len(reply) - start} bytes that are no answer: noise, another baud rate, or two servos of one id"
+
+
+def answering(port: str, baud_rate: int, frames: Frames, servo_ids: range | None) -> Iterator[StatusPacket]:
+    """The answers to pings, which move nothing.
+
+    Args:
+        port: "/dev/ttyUSB0".
+        baud_rate: of the line.
+        frames: of the protocol.
+        servo_ids: asked one after the other; None: everybody at once, where the protocol lets them answer in turn.
+
+    Raises:
+        DriveConnectionError: the port is not there, or in use.
+    """
+    bus = ServoBus(port, baud_rate, _ALONE_S if servo_ids else _ALL_S, frames)
+    try:
+        if servo_ids is None:
+            yield from bus.listen(frames.ping(frames.broadcast), _ALL_S)
+            return
+        for servo_id in servo_ids:
+            yield from (one for one in bus.listen(frames.ping(servo_id), _ALONE_S) if one.servo_id == servo_id)
+    finally:
+        bus.close()

@@ -54,9 +54,9 @@ def _found(port: str, baud_rates: tuple[int, ...], bus: str, bitrate: int) -> "I
     interface, _, channel = bus.partition(":")
     for kind in drive_kinds().values():
         if port and kind.scan_serial is not None:
-            yield from kind.scan_serial()(SerialPlace(port, baud_rates))
+            yield from kind.scan_serial(SerialPlace(port, baud_rates))
         if bus and kind.scan_can is not None:
-            yield from kind.scan_can()(CanPlace(interface, channel, bitrate))
+            yield from kind.scan_can(CanPlace(interface, channel, bitrate))
 
 
 def _show(found: "FoundDrive") -> None:

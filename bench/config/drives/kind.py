@@ -61,7 +61,7 @@ class DriveKind(Generic[SettingsT]):
         make: makes the drive, not yet open, of the section and the rig. Raises `ConfigurationError`.
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.
         conformance: how the conformance tests run on it.
-        scan_serial, scan_can: import the function that says which drives of the kind answer on a port or a bus.
+        scan_serial, scan_can: say which drives of the kind answer on a port or a bus.
     """
 
     title: str
@@ -69,8 +69,8 @@ class DriveKind(Generic[SettingsT]):
     make: Callable[[SettingsT, Rig], Drive]
     simulate: Callable[[], Simulate] | None = None
     conformance: tuple[ConformanceBench, ...] = ()
-    scan_serial: Callable[[], SerialScan] | None = None
-    scan_can: Callable[[], CanScan] | None = None
+    scan_serial: SerialScan | None = None
+    scan_can: CanScan | None = None
 
     @property
     def name(self) -> str:

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from bench.config.drives.can_bus import CanDriveSettings
+from bench.config.drives.real import CanDriveSettings
 from bench.config.quantities import quantity
 
 Model = Literal[

@@ -1,12 +1,16 @@
 """The Dynamixel as a kind of drive."""
 
+from collections.abc import Iterator
+
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
-from bench.config.drives.scanning import SerialScan
+from bench.config.drives.scanning import FoundDrive, SerialPlace
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.dynamixel.settings import DynamixelDriveSettings
 from drivers.contract import Drive
+
+_BAUD_RATES = (57600, 1_000_000, 2_000_000, 4_000_000, 115200)
 
 
 def make(settings: DynamixelDriveSettings, rig: Rig) -> Drive:
@@ -24,11 +28,19 @@ def simulate() -> Simulate:
     return simulate
 
 
-def scan() -> SerialScan:
-    """What says which ones answer."""
-    from bench.drives.dynamixel.scan import scan
+def scan(place: SerialPlace) -> Iterator[FoundDrive]:
+    """Ask everybody, at each baud rate."""
+    from drivers.dynamixel.frames import PROTOCOL_2
+    from drivers.dynamixel.models import MODELS
+    from drivers.servos.bus import answering
 
-    return scan
+    for baud_rate in place.baud_rates or _BAUD_RATES:
+        for found in answering(place.port, baud_rate, PROTOCOL_2, None):
+            number = int.from_bytes(found.data[:2], "little")
+            name = MODELS[number].name if number in MODELS else f"model {number}, not one of the X series"
+            yield FoundDrive(f"Dynamixel {name}, firmware {found.data[2]}", {
+                "kind": "dynamixel", "port": place.port, "baud_rate": baud_rate, "servo_id": found.servo_id,
+            })  # fmt: skip
 
 
 KIND = DriveKind(

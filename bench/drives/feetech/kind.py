@@ -1,12 +1,17 @@
 """The Feetech STS servo as a kind of drive."""
 
+from collections.abc import Iterator
+
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
-from bench.config.drives.scanning import SerialScan
+from bench.config.drives.scanning import FoundDrive, SerialPlace
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.feetech.settings import FeetechDriveSettings
 from drivers.contract import Drive
+
+_BAUD_RATES = (1_000_000, 115200)
+_IDS = range(254)
 
 
 def make(settings: FeetechDriveSettings, rig: Rig) -> Drive:
@@ -24,11 +29,17 @@ def simulate() -> Simulate:
     return simulate
 
 
-def scan() -> SerialScan:
-    """What says which ones answer."""
-    from bench.drives.feetech.scan import scan
+def scan(place: SerialPlace) -> Iterator[FoundDrive]:
+    """Ask one id after the other, at each baud rate: where all are asked, all answer at once."""
+    from drivers.feetech.frames import SCS
+    from drivers.servos.bus import answering
 
-    return scan
+    for baud_rate in place.baud_rates or _BAUD_RATES:
+        for found in answering(place.port, baud_rate, SCS, _IDS):
+            yield FoundDrive("Feetech servo; IT HAS NO WATCHDOG, see the guide before you accept that", {
+                "kind": "feetech", "port": place.port, "baud_rate": baud_rate, "servo_id": found.servo_id,
+                "accept_no_watchdog": False,
+            })  # fmt: skip
 
 
 KIND = DriveKind(

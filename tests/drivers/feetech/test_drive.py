@@ -8,8 +8,8 @@ from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, WatchdogError
 from drivers.feetech.drive import FeetechDrive
 from drivers.feetech.settings import FeetechSettings
-from drivers.feetech.turns import Turns
 from drivers.joint import JointScale
+from drivers.wraps import Turns
 from tests.devices.device_process import device_process
 
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
