@@ -1,5 +1,6 @@
 """`friction-bench export` and `import`: recording sets leave and enter."""
 
+from enum import Enum
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,14 @@ import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.output import Json, print_json, say, write_whole
+
+
+class Effort(Enum):
+    """What a JointState's effort is."""
+
+    TORQUE = "torque_n_m"
+    CURRENT = "current_a"
+    DUTY = "duty"
 
 
 def export(
@@ -27,19 +36,44 @@ def export(
 
 def import_(
     context: typer.Context,
-    path: Annotated[Path, typer.Argument(help="Folder or .zip with rig.toml, trials.csv and one CSV per trial.")],
+    path: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder or .zip with rig.toml, trials.csv and one CSV per trial; with --joint, a ROS 2 bag (.mcap), "
+            "or a folder of them."
+        ),
+    ],
     rig: Annotated[Path | None, typer.Option(help="rig.toml, where the set has none or another is wanted.")] = None,
     mapping: Annotated[
         Path | None, typer.Option(help="mapping.toml, for files whose columns have other names.")
     ] = None,
     name: Annotated[str | None, typer.Option(help="Name of the import; without it, that of the set.")] = None,
+    joint: Annotated[
+        str, typer.Option(help="Joint of the JointState messages of a ROS 2 bag; --rig says what it is.")
+    ] = "",
+    topic: Annotated[str, typer.Option(help="Topic of these messages; else the only one there is.")] = "",
+    effort: Annotated[
+        Effort, typer.Option(help="What their publisher puts into 'effort'; ROS says torque.")
+    ] = Effort.TORQUE,
     as_json: Json = False,
 ) -> None:
     """Read trials of any bench into the store: all of them, or none and the file, line and column at fault."""
-    from bench.recording_set import import_recording_set, read_mapping, read_recording_set, read_rig
+    from bench.recording_set import (
+        import_recording_set,
+        read_mapping,
+        read_recording_set,
+        read_rig,
+        read_ros2_bags,
+    )
 
-    chosen_mapping = None if mapping is None else read_mapping(mapping)
-    recording_set = read_recording_set(path, chosen_mapping, None if rig is None else read_rig(rig))
+    chosen_rig = None if rig is None else read_rig(rig)
+    if joint and chosen_rig is not None and mapping is None:
+        recording_set = read_ros2_bags(path, chosen_rig, joint, effort.value, topic)
+    elif joint:
+        raise typer.BadParameter("--joint is of a ROS 2 bag: it goes with --rig rig.toml, and without --mapping")
+    else:
+        chosen_mapping = None if mapping is None else read_mapping(mapping)
+        recording_set = read_recording_set(path, chosen_mapping, chosen_rig)
     with session_of(context).open_store() as store:
         experiment_id = import_recording_set(store, recording_set, name or recording_set.name)
     rows = sum(len(recording) for recording in recording_set.recordings)
