@@ -1,9 +1,8 @@
 """How quick the Dynamixel driver is beside ROBOTIS' library, and how much of a line it uses (`tests.drivers.rates`)."""
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
-from time import perf_counter
 
 from dynamixel_sdk import COMM_SUCCESS, GroupSyncRead, GroupSyncWrite, PacketHandler, PortHandler
 
@@ -14,23 +13,22 @@ from drivers.dynamixel.frames import STATUS_BYTES, sync_read_packet, sync_write_
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.joint import JointScale
 from tests.devices.device_process import device_process
-from tests.drivers.rate_rows import ratio_row, row
+from tests.drivers.rate_rows import Cycle, quickest, ratio_row, row, seconds_a_cycle
 
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
-CYCLES, ROUNDS = 60, 25
+ROUNDS = 25
 BAUD_RATE, LEAST_SHARE = 1_000_000, 0.85
 JOINTS = (1, 4, 7)
 PERIOD_S = 0.02
 GOAL_PWM, PIECE = 100, 224
 PUSH = Command(Mode.DUTY, 0.0)
-Cycle = Callable[[], object]
 
 
 def rows() -> Iterator[str]:
     """The rows."""
     for joints in (1, 4):
         with device_process("dynamixel", "--joints", str(joints), "--baud", "0") as device:
-            bare, driver = _quickest(partial(_library, device.port, joints), partial(_driver, device.port, joints))
+            bare, driver = quickest(partial(_library, device.port, joints), partial(_driver, device.port, joints))
         yield ratio_row(f"Dynamixel, {joints} on a pty / dynamixel-sdk", bare, driver)
     for joints in JOINTS:
         yield _line_row(joints)
@@ -43,7 +41,7 @@ def _line_row(joints: int) -> str:
         device_process("dynamixel", "--joints", str(joints), "--baud", str(BAUD_RATE)) as device,
         _driver(device.port, joints) as cycle,
     ):
-        cycle_s = min(_round(cycle, 100) for _ in range(ROUNDS))
+        cycle_s = min(seconds_a_cycle(cycle, 100) for _ in range(ROUNDS))
     share = line_s / cycle_s
     return row(
         f"Dynamixel, {joints} joint{'s' if joints > 1 else ''}, line paced as {BAUD_RATE} baud",
@@ -97,22 +95,3 @@ def _driver(path: str, joints: int) -> Iterator[Cycle]:
     yield (lambda: drives[0].exchange_together(commands)) if joints > 1 else lambda: drives[0].exchange(PUSH)
     for drive in drives:
         drive.close()
-
-
-def _quickest(*ways: Callable[[], AbstractContextManager[Cycle]]) -> tuple[float, ...]:
-    """Seconds a cycle of each way, in rounds in turn."""
-    best = [1.0] * len(ways)
-    for _ in range(ROUNDS):
-        for place, way in enumerate(ways):
-            with way() as cycle:
-                best[place] = min(best[place], _round(cycle, CYCLES))
-    return tuple(best)
-
-
-def _round(cycle: Cycle, count: int) -> float:
-    """Seconds a cycle."""
-    cycle()
-    began_s = perf_counter()
-    for _ in range(count):
-        cycle()
-    return (perf_counter() - began_s) / count

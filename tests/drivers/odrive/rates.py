@@ -1,9 +1,9 @@
 """How quick the ODrive driver is beside python-can used barely (`tests.drivers.rates`)."""
 
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from time import perf_counter
+from functools import partial
 
 import can
 
@@ -14,24 +14,19 @@ from drivers.joint import JointScale
 from drivers.odrive.drive import OdriveDrive
 from drivers.odrive.settings import OdriveSettings
 from tests.devices.device_process import device_process
-from tests.drivers.rate_rows import ratio_row
+from tests.drivers.rate_rows import Cycle, quickest, ratio_row
 
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
-CYCLES, ROUNDS, NEVER = 60, 15, 1_000_000
+NEVER = 1_000_000
 ANSWERS = (0x09, 0x14, 0x03)
-Cycle = Callable[[], object]
 
 
 def rows() -> Iterator[str]:
     """The rows: an adapter (slcan) on a pty, two processes."""
     with device_process("odrive", "--watchdog", "2.0") as device:
         bus = BusSettings("slcan", device.drive["channel"])
-        best = {barely: 1.0, driver: 1.0}
-        for _ in range(ROUNDS):
-            for way in best:
-                with way(bus) as cycle:
-                    best[way] = min(best[way], _round(cycle))
-    yield ratio_row("ODrive, slcan on a pty / python-can", best[barely], best[driver])
+        bare, driven = quickest(partial(barely, bus), partial(driver, bus), rounds=15)
+    yield ratio_row("ODrive, slcan on a pty / python-can", bare, driven)
 
 
 @contextmanager
@@ -66,12 +61,3 @@ def driver(settings: BusSettings) -> Iterator[Cycle]:
     drive.enable(Mode.TORQUE)
     yield lambda: drive.exchange(Command(Mode.TORQUE, 0.0))
     drive.close()
-
-
-def _round(cycle: Cycle) -> float:
-    """Seconds a cycle."""
-    cycle()
-    began_s = perf_counter()
-    for _ in range(CYCLES):
-        cycle()
-    return (perf_counter() - began_s) / CYCLES
