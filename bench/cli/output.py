@@ -26,6 +26,13 @@ NO_SHARE = 1e-7  # less is rounding
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
 
 
+def shown(sentence: str) -> str:
+    """Text from outside, as a terminal may see it: control signs, which can move its cursor, are replaced."""
+    from rich.markup import escape
+
+    return escape("".join(sign if sign.isprintable() or sign in "\n\t" else "\ufffd" for sign in sentence))
+
+
 def console() -> "Console":
     """The terminal. Made at each call, because stdout may have been exchanged since the last."""
     from rich.console import Console
@@ -37,29 +44,25 @@ def console() -> "Console":
 
 def say(sentence: str) -> None:
     """One sentence."""
-    from rich.markup import escape
-
-    console().print(escape(sentence), highlight=False)
+    console().print(shown(sentence), highlight=False)
 
 
 def complain(sentence: str) -> None:
     """One error, on stderr."""
     from rich.console import Console
-    from rich.markup import escape
 
-    Console(stderr=True, soft_wrap=True).print(f"[bold red]error:[/] {escape(sentence)}", highlight=False)
+    Console(stderr=True, soft_wrap=True).print(f"[bold red]error:[/] {shown(sentence)}", highlight=False)
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """A table; columns whose name ends in '#' hold numbers and stand to the right."""
-    from rich.markup import escape
     from rich.table import Table
 
-    made = Table(title=escape(title), title_justify="left", header_style="bold")
+    made = Table(title=shown(title), title_justify="left", header_style="bold")
     for name in columns:
-        made.add_column(escape(name.removesuffix("#")), justify="right" if name.endswith("#") else "left")
+        made.add_column(shown(name.removesuffix("#")), justify="right" if name.endswith("#") else "left")
     for row in rows:
-        made.add_row(*(escape(text(cell)) for cell in row))
+        made.add_row(*(shown(text(cell)) for cell in row))
     console().print(made)
 
 

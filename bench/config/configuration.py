@@ -21,6 +21,7 @@ from bench.config.sections import (
     ServoSettings,
     StoreSettings,
 )
+from bench.config.toml_text import read_toml
 from bench.config.validation import problems
 from bench.errors import ConfigurationError
 
@@ -89,10 +90,10 @@ def read_configuration(path: Path) -> BenchConfiguration:
     Raises:
         ConfigurationError: naming the file, each key, its value, what is allowed and the unit.
     """
-    values = _read_toml(path)
+    values = read_toml(path)
     for table in (values, values.get("master")):
         if isinstance(table, dict) and isinstance(table.get("rig"), str):
-            table["rig"] = _read_toml(path.parent / table["rig"])
+            table["rig"] = read_toml(path.parent / table["rig"])
     return parse_configuration(values, str(path))
 
 
@@ -118,12 +119,3 @@ def parse_configuration(values: dict[str, Any], source: str) -> BenchConfigurati
         raise ConfigurationError(
             "\n".join(f"{source}: {problem}" for problem in problems(error, model=BenchConfiguration))
         ) from error
-
-
-def _read_toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"{path}: is no TOML: {error}") from error

@@ -1,6 +1,5 @@
 """The options that every `friction-bench simulate-device KIND` has beside its own."""
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
+from bench.config.toml_text import read_toml
 from bench.errors import ConfigurationError
 from bench.json_types import Values
 
@@ -58,12 +58,7 @@ class DeviceOptions:
     def _plant_tables(self) -> Values:
         if self.plant is None:
             return {}
-        try:
-            return tomllib.loads(self.plant.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise ConfigurationError(f"{self.plant}: cannot be read: {error.strerror}") from error
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise ConfigurationError(f"{self.plant}: is no TOML: {error}") from error
+        return read_toml(self.plant)
 
 
 def started(make: Callable[[], Made]) -> Made:

@@ -79,11 +79,22 @@ def note(event: str, level: int = logging.INFO, **facts: Any) -> None:
     _log.log(level, event, extra={"facts": facts})
 
 
+class _OwnersFileHandler(WatchedFileHandler):
+    """A log that only its owner reads: it names people, addresses and what they did."""
+
+    def _open(self) -> Any:
+        return open(self.baseFilename, self.mode, encoding=self.encoding, opener=_new_for_owner)
+
+
+def _new_for_owner(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
+
+
 def _handler(target: str) -> logging.Handler:
     if target == STDERR:
         return logging.StreamHandler(sys.stderr)
     try:
-        return WatchedFileHandler(target, encoding="utf-8")
+        return _OwnersFileHandler(target, encoding="utf-8")
     except OSError as error:
         raise ConfigurationError(
             f"the log {target} cannot be written: {error.strerror or error}; "

@@ -35,11 +35,13 @@ class Address(NamedTuple):
         host: address or name to bind.
         port: TCP port; 0: any free one.
         names: further host names that browsers may use.
+        plain: without TLS beyond loopback, too.
     """
 
     host: str
     port: int
     names: tuple[str, ...] = ()
+    plain: bool = False
 
 
 class BenchServer(uvicorn.Server):
@@ -100,7 +102,8 @@ def serve_bench(
     url = configuration.store.url
     chosen = chosen_token(token_file(url))
     with Store.open(url) as store:
-        check_bind(address.host, token_configured=chosen is not None or has_valid_token(store))
+        known = chosen is not None or has_valid_token(store)
+        check_bind(address.host, token_configured=known, private=tls is not None or address.plain)
         with listen(address) as listener:
             port = listener.getsockname()[1]
             tokens = first_token(store, chosen)

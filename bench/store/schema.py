@@ -137,7 +137,8 @@ SAMPLE_BLOCK = Table(
     _parent("trial", "trial_id", primary_key=True),
     Column("first_row", Integer, primary_key=True, autoincrement=False),
     Column("rows", Integer, nullable=False),
-    Column("data", LargeBinary, nullable=False),  # see blocks.py
+    Column("data", LargeBinary, nullable=False),  # see tables/samples.py
+    Column("crc32", BigInteger, nullable=True),  # of the data; NULL: written by a version without
 )
 
 SAMPLE_OVERVIEW = Table(
@@ -147,6 +148,7 @@ SAMPLE_OVERVIEW = Table(
     Column("first_row", Integer, primary_key=True, autoincrement=False),
     Column("rows", Integer, nullable=False),  # of the trial that it stands for
     Column("data", LargeBinary, nullable=False),  # as a block, with two more columns before it: see overview.py
+    Column("crc32", BigInteger, nullable=True),
 )
 
 EVENT = Table(

@@ -30,6 +30,7 @@ from bench.store.upkeep import owner
 WAL_LIMIT_BYTES = 64 * 2**20  # the log is cut back to this after a large import
 PAGE_BYTES = 16_384  # of a new file: blocks are read 1.6 times as fast as with SQLite's 4096, measured
 RETRY_S = 0.01
+OWNERS_MODE = 0o600  # of a new file: who may read the bench's records is its owner's to say
 WRITES = "writes"  # execution option of connections that are going to write
 
 
@@ -127,6 +128,7 @@ def file_of(url: URL) -> Path:
 
 
 def _engine(path: Path, busy_timeout_s: float) -> Engine:
+    fresh = not path.exists()
     engine = create_engine(
         URL.create("sqlite", database=str(path)),
         connect_args={"timeout": busy_timeout_s},  # set as the connection opens: before any statement can meet a lock
@@ -138,6 +140,8 @@ def _engine(path: Path, busy_timeout_s: float) -> Engine:
         connection.isolation_level = None  # transactions are begun by _begin, not by Python's module
         connection.execute(f"PRAGMA page_size = {PAGE_BYTES}")
         _use_wal(connection, busy_timeout_s)
+        if fresh:
+            path.chmod(OWNERS_MODE)
         connection.execute("PRAGMA synchronous = NORMAL")
         connection.execute("PRAGMA foreign_keys = ON")
         connection.execute(f"PRAGMA journal_size_limit = {WAL_LIMIT_BYTES}")

@@ -63,7 +63,7 @@ def parse_map(text: str, source: str) -> RegisterMap:
     """
     try:
         values = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
         raise MapError(f"{source}: is no TOML: {error}") from error
     try:
         return _Reader(values).read()

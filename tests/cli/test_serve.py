@@ -120,7 +120,7 @@ def test_the_token_is_shown_once(command, monkeypatch):
 def test_beyond_loopback_with_a_token_of_the_store(command, monkeypatch):
     monkeypatch.setattr(server, "_serve", lambda *_: None)
     assert command("token", "new", "boss", "--role", "admin").exit_code == 0
-    shown = command("serve", "--host", "0.0.0.0", "--port", str(_free_port()))
+    shown = command("serve", "--host", "0.0.0.0", "--plain-http", "--port", str(_free_port()))
     assert shown.exit_code == 0, shown.output
     assert "in the clear" in shown.stdout
 
@@ -129,6 +129,10 @@ def test_what_serve_refuses(command):
     beyond = command("serve", "--host", "0.0.0.0")
     assert beyond.exit_code == 3
     assert "FRICTION_BENCH_TOKEN" in beyond.stderr
+    assert command("token", "new", "boss", "--role", "admin").exit_code == 0
+    clear = command("serve", "--host", "0.0.0.0")
+    assert clear.exit_code == 3
+    assert "--tls-certificate" in clear.stderr
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         result = command("serve", "--port", port)

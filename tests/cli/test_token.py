@@ -57,3 +57,9 @@ def test_the_audit_log_has_its_retention(command, tmp_path):
     pruned = command("--config", config, "store", "prune", "--delete")
     assert pruned.exit_code == 0, pruned.output
     assert "0 entries of the audit log removed" in pruned.stdout
+
+
+def test_a_token_that_would_open_nothing_is_not_made(command):
+    refused = command("token", "new", "ada", "--expires-days", "0")
+    assert refused.exit_code == 2
+    assert json.loads(command("token", "list", "--json").stdout) == []

@@ -121,3 +121,11 @@ def test_a_gain_without_bounds_is_refused():
         parse_configuration(
             {"name": "x", "rig": {"name": "x"}, "servo": {"proportional_a_rad": float("inf")}}, "bench.toml"
         )
+
+
+@pytest.mark.parametrize("text", ["period_s = " + "9" * 5000, "x = " + "[" * 5000])
+def test_a_file_beyond_any_use_is_refused_with_its_name(tmp_path, text):
+    file = tmp_path / "bench.toml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigurationError, match=r"bench\.toml: is no TOML"):
+        read_configuration(file)

@@ -59,3 +59,10 @@ def test_an_error_keeps_its_traceback_on_one_line():
     assert "\n" not in line
     assert json.loads(line) | {"event": "failed: so", "level": "error"} == json.loads(line)
     assert "ValueError: two\nlines" in json.loads(line)["error"]
+
+
+def test_only_its_owner_reads_a_new_log(tmp_path):
+    file = tmp_path / "bench.log"
+    handler = event_log._handler(str(file))
+    handler.close()
+    assert file.stat().st_mode & 0o777 == 0o600

@@ -50,6 +50,13 @@ def test_a_damaged_database_is_named(url: str) -> None:
         Store.open(url).trials()
 
 
+def test_only_its_owner_reads_a_new_store(tmp_path: Path) -> None:
+    file = tmp_path / "bench.sqlite"
+    with Store.open(f"sqlite:///{file}"):
+        found = {one.name: one.stat().st_mode & 0o777 for one in tmp_path.iterdir()}
+    assert set(found.values()) == {0o600}, found
+
+
 @pytest.mark.parametrize(
     ("url", "message"),
     [

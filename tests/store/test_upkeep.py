@@ -10,6 +10,7 @@ from sqlalchemy import text, update
 from bench.store import Store
 from bench.store.errors import StoreFileError, StoreFullError, StoreStateError
 from bench.store.schema import EXPERIMENT
+from bench.store.tables.samples import damaged_blocks
 from bench.store.upkeep.retention import Policy
 from bench.store.upkeep.space import SpaceNeed
 from tests.databases import PostgresqlServer
@@ -147,3 +148,22 @@ def test_a_trial_that_does_not_fit_on_the_disk_is_refused_with_numbers() -> None
         need.check(500 * 10**6, 10, "bench.sqlite")
     assert "reserve of 200 MB need 1074 MB" in str(told.value)
     assert "friction-bench store prune" in str(told.value)
+
+
+def test_every_flipped_bit_of_a_block_is_found_and_its_trial_named(store: Store) -> None:
+    fill(store)
+    random = np.random.default_rng(5)
+    with store._database.writing() as connection:
+        blocks = connection.execute(text("SELECT trial_id, first_row, data FROM sample_block")).all()
+        for trial, first_row, data in (blocks[index] for index in random.integers(len(blocks), size=1000)):
+            damaged = bytearray(data)
+            damaged[int(random.integers(len(data)))] ^= 1 << int(random.integers(8))
+            change = text("UPDATE sample_block SET data = :data WHERE trial_id = :trial AND first_row = :first")
+            at = {"trial": trial, "first": first_row}
+            connection.execute(change, {"data": bytes(damaged), **at})
+            [(what, named, first, _)] = damaged_blocks(connection)
+            assert (what, named, first) == ("samples", trial, first_row)
+            connection.execute(change, {"data": data, **at})
+        connection.execute(text("UPDATE sample_block SET crc32 = crc32 + 1 WHERE trial_id = 1 AND first_row = 0"))
+    [problem] = store.upkeep.check()
+    assert "trial 1: its samples of rows 0 .." in problem

@@ -12,7 +12,7 @@ from bench.cli.output import say
 def serve(
     context: typer.Context,
     host: Annotated[
-        str, typer.Option(help="Address to listen on; beyond loopback only when there is a token.")
+        str, typer.Option(help="Address to listen on; beyond loopback only with a token and TLS.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8000,
     allow_host: Annotated[
@@ -22,10 +22,13 @@ def serve(
         Path | None, typer.Option(help="Certificate in PEM, for https; those of its authorities may follow in it.")
     ] = None,
     tls_key: Annotated[Path | None, typer.Option(help="Its private key in PEM, without a password.")] = None,
+    plain_http: Annotated[
+        bool, typer.Option("--plain-http", help="No TLS beyond loopback: the network is the bench's own.")
+    ] = False,
 ) -> None:
     """Serve the page and the REST interface for the bench, until Ctrl-C. Stops the joint when it ends."""
     from bench.service.auth.tls import certificate
     from bench.service.server import Address, serve_bench
 
     tls = certificate(tls_certificate, tls_key)
-    serve_bench(session_of(context).configuration(), Address(host, port, tuple(allow_host or ())), say, tls)
+    serve_bench(session_of(context).configuration(), Address(host, port, tuple(allow_host or ()), plain_http), say, tls)

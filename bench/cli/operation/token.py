@@ -37,7 +37,7 @@ def new(
         RoleName, typer.Option(help="viewer: reads and stops. operator: runs and changes. admin: may all.")
     ] = RoleName.OPERATOR,
     expires_days: Annotated[
-        float | None, typer.Option(min=0, max=36500, help="After so many days it opens nothing; without it, never.")
+        float | None, typer.Option(min=1e-3, max=36500, help="After so many days it opens nothing; without it, never.")
     ] = None,
     as_json: Json = False,
 ) -> None:

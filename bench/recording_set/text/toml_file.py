@@ -35,13 +35,13 @@ def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
     except UnicodeDecodeError as error:
         message = f"found byte 0x{data[error.start]:02X}, which is not UTF-8; save the file as UTF-8"
         raise RecordingSetError(file, message, data.count(b"\n", 0, error.start) + 1) from error
-    except tomllib.TOMLDecodeError as error:
-        raise RecordingSetError(file, f"is no TOML: {error}") from error
     except ValidationError as error:
         lines = [line_of(text, detail["loc"]) for detail in error.errors(include_url=False)]
         first, *others = problems(error, model=model)
         more = "".join(f"\n{file}, line {line}: {problem}" for line, problem in zip(lines[1:], others, strict=True))
         raise RecordingSetError(file, first + more, lines[0]) from error
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
+        raise RecordingSetError(file, f"is no TOML: {error}") from error
 
 
 def line_of(text: str, location: tuple[int | str, ...]) -> int:

@@ -1,7 +1,6 @@
 """A campaign: one kind of experiment over a grid of parameters, as items in an order that spares the person."""
 
 import random
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from bench.config.configuration import BenchConfiguration
+from bench.config.toml_text import read_toml
 from bench.config.validation import problems
 from bench.control.drive_factory import has_hardware
 from bench.errors import ConfigurationError, ParameterError
@@ -154,12 +154,7 @@ def read_campaign(path: Path) -> Campaign:
     Raises:
         ConfigurationError: naming the file, each key, what was found and what is wanted.
     """
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"{path}: is no TOML: {error}") from error
+    values = read_toml(path)
     try:
         return Campaign.model_validate({"name": path.stem} | values)
     except ValidationError as error:

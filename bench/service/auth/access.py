@@ -62,9 +62,20 @@ class Access:
                 429, f"too many wrong tokens came from {address}; wait {wait_s} s", {"Retry-After": str(wait_s)}
             )
         self.attempts.failed(address)
+        await self._look_at_once()
+        return self.tokens.caller(presented)
+
+    async def knows(self, presented: str, address: str) -> bool:
+        """Whether it is a token of this service, asked before a body is read; a wrong one is counted by its route."""
+        if not presented or (self.tokens.caller(presented) is None and self.attempts.wait_s(address)):
+            return False
+        if self.tokens.caller(presented) is None:
+            await self._look_at_once()
+        return self.tokens.caller(presented) is not None
+
+    async def _look_at_once(self) -> None:
         with anyio.move_on_after(LOOK_AGAIN_S):
             await anyio.to_thread.run_sync(self.look_again, abandon_on_cancel=True, limiter=self._looking)
-        return self.tokens.caller(presented)
 
     def look_again(self) -> None:
         """Read the tokens of the store; where it cannot be read, those that were known stay."""
@@ -84,14 +95,26 @@ def is_loopback(host: str) -> bool:
         return False
 
 
-def check_bind(host: str, token_configured: bool) -> None:
-    """Refuse to listen beyond loopback without a token that somebody made or chose before.
+def check_bind(host: str, token_configured: bool, private: bool = True) -> None:
+    """Refuse to listen beyond loopback without a token that somebody made or chose before, or in the clear.
+
+    Args:
+        host: to listen on.
+        token_configured: whether there is a token.
+        private: the connection is encrypted, or its owner says that nobody else is on the line.
 
     Raises:
         ConfigurationError: names the address and the ways out.
     """
-    if is_loopback(host) or token_configured:
+    if is_loopback(host):
         return
+    if token_configured and private:
+        return
+    if token_configured:
+        raise ConfigurationError(
+            f"host is {host}, without TLS: whoever is on the network could read the tokens, and move the joint with "
+            "them. Give --tls-certificate and --tls-key; or say --plain-http where the network is the bench's own"
+        )
     raise ConfigurationError(
         f"host is {host}; allowed without a token is loopback only (127.0.0.1, ::1, localhost). "
         "Make one with: friction-bench token new NAME --role admin; or set FRICTION_BENCH_TOKEN"

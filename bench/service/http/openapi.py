@@ -35,6 +35,7 @@ DETAILS = {
     403: "token 'ada' has the role viewer; this takes the role operator",
     404: "trial 77 is not in the store; list the trials to see which are",
     409: "the bench is held by Ada, room 12 (token 'ada') for another 41 s; wait, or ask an admin to take it over",
+    408: "the body was not here after 10 s; send it at once",
     413: "the upload is larger than 2147483648 bytes; split the set, or import its path",
     415: "Content-Type is 'text/plain'; wanted is application/zip",
     421: "Host is 'evil.example'; this service answers to 127.0.0.1, ::1, localhost. Add a name with --allow-host",
@@ -86,6 +87,8 @@ def _complete(path: str, method: str, route: Document, schemas: Document) -> Non
                 said["example"] = example
     statuses = {int(status) for status in responses if int(status) >= 400}
     statuses |= {421, 503}
+    if "requestBody" in route:
+        statuses |= {408, 413}
     if route.get("security"):
         statuses |= {*READING} if method == "get" else {*READING, 403}
     for status in sorted(statuses):

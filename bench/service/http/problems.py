@@ -20,6 +20,7 @@ from compensator.errors import CompensatorError
 from drivers.errors import DriveError
 
 MEDIA_TYPE = "application/problem+json"
+LONGEST_FOUND = 200  # characters that are said back of what was sent
 
 
 class ProblemResponse(JSONResponse):
@@ -71,8 +72,9 @@ MEANINGS = {
     401: "the token is missing or wrong",
     403: "the role of the token does not allow it, or the request comes from another web page",
     404: "there is no such thing",
+    408: "the body did not come in time",
     409: "it does not fit the present state (an experiment is running, somebody else has the bench)",
-    413: "the upload is too large",
+    413: "the body, or the upload, is too large",
     415: "the body is not of the wanted type",
     421: "the service does not answer to the name in `Host`",
     422: "a value is missing, of the wrong type or outside its range; nothing has moved",
@@ -127,7 +129,9 @@ def _field_problem(error: Any, prefix: str, location: tuple[int | str, ...]) -> 
     name = ".".join(str(part) for part in (*([prefix] if prefix else []), *location))
     allowed = {key: value for key, value in error.get("ctx", {}).items() if isinstance(value, int | float | str)}
     found = error.get("input")
-    if not isinstance(found, int | float | str | bool | None):
+    if isinstance(found, str) and len(found) > LONGEST_FOUND:
+        found = f"{found[:LONGEST_FOUND]} … ({len(found)} characters)"
+    elif not isinstance(found, int | float | str | bool | None):
         found = type(found).__name__
     unit = next((unit_of(part) for part in reversed(location) if isinstance(part, str)), "")
     return FieldProblem(field=name, message=error["msg"], found=found, allowed=allowed, unit=unit)

@@ -23,7 +23,7 @@ from bench.store import Store
 from bench.store.errors import StoreError
 
 PERIOD_S = 0.025  # shorter than a block of the recorder: each is told by itself
-STATUS_LOOKED_AT = 2  # periods: whether it is new
+LISTENER_S = 2e-4  # of the event loop, for telling one listener
 STATUS_EVERY_S = 0.5  # in between, only what is new is sent
 ALL_ROWS = 10**6  # more than the live buffer keeps
 FEW_ROWS = 200  # that the event loop writes itself, in a millisecond or two
@@ -60,6 +60,8 @@ class LiveEvents:
         self.state, self.store, self.runner, self.lease = state, store, runner, lease
         self._rows: OrderedDict[tuple[object, ...], str] = OrderedDict()
         self._status = _Told(-inf, "", "")
+        self._listeners = 0
+        self._look: asyncio.Future[None] | None = None
 
     async def stream(self, after_row: int, limit: int, last_event_id: str | None) -> AsyncIterator[str]:
         """Events as text, until the listener goes or the service ends."""
@@ -72,19 +74,45 @@ class LiveEvents:
             yield event
 
     async def _coming(self, after_row: int, limit: int) -> AsyncIterator[str]:
-        shown, period, told_s = "", 0, -inf
-        while not self.state.ending:
-            found = self.runner.live(after_row, limit)
-            if len(found.rows) or (found.restarted and found.last_row != after_row):
-                after_row = found.last_row
-                yield await self._rows_event(found)
-            if period % STATUS_LOOKED_AT == 0:
+        shown, told_s = "", -inf
+        self._listeners += 1
+        try:
+            while not self.state.ending:
+                known = self._newest()
+                found = self.runner.live(after_row, limit)
+                if len(found.rows) or (found.restarted and found.last_row != after_row):
+                    after_row = found.last_row
+                    yield await self._rows_event(found)
                 status = self._status_now()
                 if status.key != shown or time.monotonic() - told_s >= STATUS_EVERY_S:
                     shown, told_s = status.key, time.monotonic()
                     yield status.event
-            period += 1
-            await asyncio.sleep(PERIOD_S)
+                await self._news(known)
+        finally:
+            self._listeners -= 1
+
+    async def _news(self, known: tuple[int, str]) -> None:
+        """Until something is newer than what is known, or a status is due: one look for all listeners together."""
+        if self._newest() != known:
+            await asyncio.sleep(self._period_s())
+            return
+        if self._look is None or self._look.done():
+            self._look = asyncio.ensure_future(self._look_out(known))
+        await asyncio.shield(self._look)
+
+    async def _look_out(self, known: tuple[int, str]) -> None:
+        end_s = time.monotonic() + STATUS_EVERY_S
+        while not self.state.ending and time.monotonic() < end_s:
+            await asyncio.sleep(self._period_s())
+            if self._newest() != known:
+                return
+
+    def _newest(self) -> tuple[int, str]:
+        return self.runner.live(-1, 1).last_row, self._status_now().key
+
+    def _period_s(self) -> float:
+        """Of telling: many listeners hear less often, so that what they cost together is bounded."""
+        return max(PERIOD_S, LISTENER_S * self._listeners)
 
     async def _missed(self, last_event_id: str, now: LiveRows) -> AsyncIterator[str]:
         """What came between an event and the live row `now`."""

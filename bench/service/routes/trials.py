@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, FiniteFloat
 
 from bench.json_types import Json
 from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
@@ -165,8 +165,8 @@ def samples(
     points: Annotated[
         int, Query(ge=10, le=200_000, description="about how many rows at most; the extremes of every channel are kept")
     ] = 4000,
-    from_s: Annotated[float | None, Query(description="begin of a stretch; without: of the trial [s]")] = None,
-    to_s: Annotated[float | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
+    from_s: Annotated[FiniteFloat | None, Query(description="begin of a stretch; without: of the trial [s]")] = None,
+    to_s: Annotated[FiniteFloat | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
 ) -> Response:
     """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
     found = store.trial(trial_id)

@@ -1,6 +1,7 @@
 """Samples of a trial: blocks in, arrays out. Each function works inside the caller's transaction."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,8 +63,7 @@ def add(
     blocks, pieces = [], []
     for start in range(0, len(rows), BLOCK_ROWS):
         columns = columns_of(rows[start : start + BLOCK_ROWS])
-        at = {"trial_id": trial_id, "first_row": first_row + start, "rows": columns.shape[1]}
-        blocks.append({**at, "data": encode(columns)})
+        blocks.append(_block(trial_id, first_row + start, columns.shape[1], encode(columns)))
         piece, pending = _overview(trial_id, first_row + start, columns, pending)
         pieces += piece
     if blocks:
@@ -86,7 +86,22 @@ def _overview(
     if not found.covered:
         return [], rest
     data = encode(np.vstack([found.rows, found.asked_by, found.columns]))
-    return [{"trial_id": trial_id, "first_row": first_row, "rows": found.covered, "data": data}], rest
+    return [_block(trial_id, first_row, found.covered, data)], rest
+
+
+def _block(trial_id: int, first_row: int, rows: int, data: bytes) -> dict[str, object]:
+    return {"trial_id": trial_id, "first_row": first_row, "rows": rows, "data": data, "crc32": crc32(data)}
+
+
+def damaged_blocks(connection: Connection) -> Iterator[tuple[str, int, int, int]]:
+    """Blocks whose data are not what was written: what they are of, their trial, first row and count of rows."""
+    for what, table in (("samples", SAMPLE_BLOCK), ("overview", SAMPLE_OVERVIEW)):
+        own = table.c
+        query = select(own.trial_id, own.first_row, own.rows, own.data, own.crc32).where(own.crc32.is_not(None))
+        found = connection.execute(
+            query.order_by(own.trial_id, own.first_row), execution_options={"yield_per": FETCHED_BLOCKS}
+        )
+        yield from ((what, trial, first, rows) for trial, first, rows, data, told in found if crc32(data) != told)
 
 
 def read(connection: Connection, trial: Trial, channels: Sequence[str]) -> dict[str, FloatArray]:

@@ -11,7 +11,7 @@ from bench.store.errors import StoreFullError, StoreStateError
 from bench.store.migration import HEAD
 from bench.store.schema import EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
 from bench.store.tables.experiments import unfinished
-from bench.store.tables.samples import SAMPLE_BYTES
+from bench.store.tables.samples import SAMPLE_BYTES, damaged_blocks
 from bench.store.upkeep.copying import copy_into, sqlite_copy
 
 
@@ -61,7 +61,7 @@ class Upkeep:
 
     def check(self) -> list[str]:
         """Read all of it, and say what is wrong; nothing is an empty list."""
-        return [*self._database.backend.check(), *self._incomplete_trials()]
+        return [*self._database.backend.check(), *self._incomplete_trials(), *self._damaged_blocks()]
 
     def backup(self, target: str) -> None:
         """Copy the store while it is in use: what was committed when the copy began.
@@ -106,6 +106,15 @@ class Upkeep:
         alive = [str(number) for number, token, _ in found if self._database.backend.lives(token)]
         if alive:
             raise StoreStateError(f"experiment {', '.join(alive)} is being recorded or imported; wait for its end")
+
+    def _damaged_blocks(self) -> list[str]:
+        """Blocks whose checksum says that they are not what was written."""
+        with self._database.reading() as connection:
+            return [
+                f"trial {trial}: its {what} of rows {first} .. {first + rows - 1} are not what was written (checksum); "
+                "restore them from a backup, the other trials are not touched by it"
+                for what, trial, first, rows in damaged_blocks(connection)
+            ]
 
     def _incomplete_trials(self) -> list[str]:
         """Trials whose blocks do not make up their rows."""

@@ -1,0 +1,149 @@
+"""What a request may bring: how much, how deep, how fast. Refused before anything is parsed, so that STOP stays quick.
+
+A body of JSON is small here; recordings are streamed into a file by their own route, and not looked at in this place.
+"""
+
+import asyncio
+import re
+from dataclasses import dataclass
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from bench.service.auth.access import Access
+from bench.service.http.guard import SAFE_METHODS
+from bench.service.http.problems import problem_response
+
+MOST_BYTES = 2**18  # of a body of JSON: ten times what the largest campaign has
+MOST_DEPTH = 32  # lists and objects within each other
+MOST_DIGITS = 400  # of a number: beyond a float's range and Python's own limit for integers
+LONGEST_S = 10.0  # until the body is here
+UNREAD = ("/stop", "/recording-sets")  # routes that wait for no body, or write it to a file as it comes
+_STRING = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
+_DIGITS = re.compile(rb"[0-9]{%d}" % (MOST_DIGITS + 1))
+_ALIKE = bytes.maketrans(b"{}", b"[]")
+_NOT_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
+
+
+@dataclass(frozen=True)
+class _Refusal(Exception):
+    status: int
+    detail: str
+
+
+class Limits:
+    """ASGI middleware: reads the body of a request that may change something, and refuses what is too much.
+
+    Whoever has no token is answered without his body being read.
+
+    Args:
+        app: what it stands in front of.
+        access: whose token is whose.
+        longest_s: that a body may take to arrive [s].
+    """
+
+    def __init__(self, app: ASGIApp, access: Access, longest_s: float = LONGEST_S) -> None:
+        self._app = app
+        self._access = access
+        self._longest_s = longest_s
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse, or pass on with the body at hand."""
+        if scope["type"] != "http" or scope["method"] in SAFE_METHODS:
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        if not await self._known(scope, headers):
+            await self._app(scope, _given(b"", receive), _closing(send))
+            return
+        if scope["path"].rstrip("/").endswith(UNREAD):
+            await self._app(scope, receive, send)
+            return
+        try:
+            body = await self._body(headers, receive)
+        except _Refusal as refusal:
+            await problem_response(refusal.status, refusal.detail)(scope, receive, _closing(send))
+            return
+        await self._app(scope, _given(body, receive), send)
+
+    async def _known(self, scope: Scope, headers: Headers) -> bool:
+        kind, _, token = headers.get("authorization", "").partition(" ")
+        client = scope.get("client")
+        return kind.lower() == "bearer" and await self._access.knows(token.strip(), client[0] if client else "")
+
+    async def _body(self, headers: Headers, receive: Receive) -> bytes:
+        told = headers.get("content-length", "")
+        if told.isdecimal() and int(told[:20]) > MOST_BYTES:
+            raise _too_large(f"{told[:20]} bytes")
+        try:
+            async with asyncio.timeout(self._longest_s):
+                body = await _received(receive)
+        except TimeoutError:
+            raise _Refusal(408, f"the body was not here after {self._longest_s:g} s; send it at once") from None
+        check_json(body)
+        return body
+
+
+def check_json(body: bytes) -> None:
+    """Refuse JSON that no request of this service needs, in time that grows with its length alone.
+
+    Raises:
+        _Refusal: nested too deep, or a number of too many digits.
+    """
+    if body.count(b"[") + body.count(b"{") <= MOST_DEPTH and not _DIGITS.search(body):
+        return
+    plain = _STRING.sub(b"", body)
+    if _DIGITS.search(plain):
+        raise _Refusal(422, f"the body has a number of more than {MOST_DIGITS} digits; allowed are {MOST_DIGITS}")
+    brackets = plain.translate(_ALIKE, _NOT_BRACKETS)
+    for _ in range(MOST_DEPTH):
+        brackets = brackets.replace(b"[]", b"")  # the innermost level of all
+    opened, closed = brackets.count(b"["), brackets.count(b"]")
+    # what never closes is no JSON, and for the parser to say, as long as it does not go too deep for that
+    if (opened and opened == closed) or opened > MOST_DEPTH:
+        raise _Refusal(422, f"the body has lists or objects more than {MOST_DEPTH} deep; allowed are {MOST_DEPTH}")
+
+
+async def _received(receive: Receive) -> bytes:
+    parts: list[bytes] = []
+    size, more = 0, True
+    while more:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            return b""
+        parts.append(message.get("body", b""))
+        size += len(parts[-1])
+        if size > MOST_BYTES:
+            raise _too_large("more")
+        more = message.get("more_body", False)
+    return b"".join(parts)
+
+
+def _too_large(found: str) -> _Refusal:
+    detail = f"the body has {found}; allowed are {MOST_BYTES} bytes. Recordings go to POST /recording-sets as a zip"
+    return _Refusal(413, detail)
+
+
+def _given(body: bytes, receive: Receive) -> Receive:
+    """First the body, then whatever else comes: the client's going, for who waits for it."""
+    told = False
+
+    async def receiving() -> Message:
+        nonlocal told
+        if told:
+            return await receive()
+        told = True
+        return {"type": "http.request", "body": body, "more_body": False}
+
+    return receiving
+
+
+def _closing(send: Send) -> Send:
+    """The connection is closed after the answer: the rest of the body is not read."""
+
+    async def sending(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            message = {**message, "headers": [*message.get("headers", []), (b"connection", b"close")]}
+        await send(message)
+
+    return sending
