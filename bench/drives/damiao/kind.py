@@ -1,17 +1,34 @@
 """The Damiao actuator as a kind of drive."""
 
 from collections.abc import Iterator
+from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import can_values, joint_scale
+from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive
 from bench.config.drives.simulated_device import Simulate
+from bench.config.quantities import quantity
 from bench.config.rig import Rig
-from bench.drives.damiao.settings import DamiaoDriveSettings
 from drivers.contract import Drive
 
 _IDS = range(1, 33)
 _ANSWER_S = 0.01
+
+Model = Literal[
+    "", "DM3507", "DM4310", "DM4310P", "DM4340", "DM4340P", "DM6006", "DM8006", "DM8009", "DM10010L", "DM10010",
+    "DMH3510", "DMG6215", "DMH6220",
+]  # fmt: skip
+
+
+class DamiaoDriveSettings(CanDriveSettings):
+    """One Damiao actuator, over the MIT protocol: torque."""
+
+    kind: Literal["damiao"]
+    motor_id: int = quantity(1, "", "ESC_ID of the actuator", ge=1, le=0x7FE)
+    feedback_id: int = quantity(0x11, "", "MST_ID of the actuator; of each another one", ge=0, le=0x7FE)
+    model: Model = quantity("", "", "Model whose ranges it has to have; left out: those that it says are taken")
+    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops, set in its TIMEOUT register", ge=0.01, le=2)
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
 
 
 def make(settings: DamiaoDriveSettings, rig: Rig) -> Drive:
