@@ -44,7 +44,7 @@ class DamiaoActuator:
         self.bus = port
         self._settings, self._leave = settings, leave
         self._counts_rad = joint.counts_per_turn / (2.0 * pi)
-        self._brakes = False
+        self._brakes = self._has_missed = False
         software = int(self._read(Register.SOFTWARE, protocol.WORD))
         self.ranges = self._checked_ranges()
         self.identity = Identity(
@@ -67,8 +67,10 @@ class DamiaoActuator:
         }
 
     def begin(self) -> None:
-        """A call of the contract begins."""
-        self.bus.drain()
+        """A call of the contract begins; it never speaks unasked, so nothing waits unless an answer was late."""
+        if self._has_missed:
+            self.bus.drain()
+            self._has_missed = False
 
     def switch_on(self, mode: Mode, here: Reading) -> None:  # noqa: ARG002
         """Enable it, at a torque of 0."""
@@ -126,6 +128,11 @@ class DamiaoActuator:
             )
         damping = self.ranges.torque_n_m / self.ranges.speed_rad_s if self._brakes else 0.0
         self.bus.send(self._settings.motor_id, protocol.command(self.ranges, value, damping))
+
+    def missed(self) -> None:
+        """An answer was missed: what comes late is no answer to the next question."""
+        self._has_missed = True
+        self.bus.drain()
 
     def reading(self, asked_s: float) -> Reading:
         """What was heard last, in SI."""
@@ -203,6 +210,7 @@ class DamiaoActuator:
             self.bus.send(settings.motor_id, data)
             if not self.bus.wait_beyond(before, settings.answer_timeout_s):
                 return
+            self.missed()
         raise no_answer(settings, "feedback", began_s, _ATTEMPTS * settings.answer_timeout_s)
 
 
@@ -222,6 +230,8 @@ def exchange_all(demands: Sequence[tuple[DamiaoActuator, Mode, float]]) -> list[
         missing = bus.wait_beyond(before, settings.answer_timeout_s)
         if not missing:
             return [actuator.reading(asked_s) for actuator, _, _ in demands]
+        for actuator, _, _ in demands:
+            actuator.missed()
     ids = ", ".join(f"{one:#x}" for one in missing)
     raise no_answer(settings, f"feedback (MST_ID {ids})", asked_s, _ATTEMPTS * settings.answer_timeout_s)
 

@@ -34,6 +34,9 @@ def library(settings: BusSettings) -> Iterator[Cycle]:
         1, 0x11, bus, motor_type="4310", p_min=-100, p_max=100, v_min=-200, v_max=200, t_min=-0.5, t_max=0.5
     )
 
+    while bus.recv(0.05) is not None:  # an answer that waits already would be taken for this cycle's
+        pass
+
     def cycle() -> None:
         motor.send_cmd_mit(0.0, 0.0, 0.0, 0.0, 0.0)
         message = bus.recv(1.0)
