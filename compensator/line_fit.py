@@ -5,7 +5,6 @@ from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
 
 from compensator.motion.kinetic_friction import FloatArray
 
@@ -65,6 +64,13 @@ class Line:
         return Interval(value, value - half, value + half)
 
 
+def t_quantile(freedom: int) -> float:
+    """Half width of an interval of `CONFIDENCE` over the standard error, from so many degrees of freedom (Student)."""
+    from scipy.special import stdtrit  # imported when needed: every command starts with this file
+
+    return float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0))
+
+
 def fit_line(columns: FloatArray, response: FloatArray) -> Line:
     """Least squares.
 
@@ -80,5 +86,5 @@ def fit_line(columns: FloatArray, response: FloatArray) -> Line:
     told = bool(rank == columns.shape[1])
     gram = columns.T @ columns / np.outer(scales, scales)
     covariance = residual**2 * (np.linalg.inv(gram) if told else gram) / np.outer(scales, scales)
-    quantile = float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0))
+    quantile = t_quantile(freedom)
     return Line(told, values / scales, covariance, quantile, residual)

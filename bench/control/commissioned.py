@@ -5,14 +5,14 @@ import json
 
 from bench.errors import NotCommissionedError
 from bench.provenance import Provenance
-from bench.store import Store
+from bench.store import Experiment, Store
 from drivers.contract import Watchdog
 
 KIND = "commissioning"
-WATCHDOG_FACT = "watchdog_proof"  # in the provenance of a pass that began with the proof
+WATCHDOG_RESULT, WATCHDOG_SEEN = "watchdog", "watchdog_seen"  # results of a commissioning: how sure, and by what
 _IDENTITY = ("device", "vendor", "product", "firmware", "serial")
 _RIG = ("gear", "sensor", "motor")
-_REMEMBERED = 100  # newest passes that are looked through
+_REMEMBERED = 200  # newest commissionings that are looked through
 
 
 def fingerprint(provenance: Provenance) -> str:
@@ -32,23 +32,26 @@ def fingerprint(provenance: Provenance) -> str:
 
 
 def is_commissioned(store: Store, provenance: Provenance) -> bool:
-    """Whether the store holds a pass for it."""
-    wanted = fingerprint(provenance)
-    passes = store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED)
-    return any(
-        fingerprint(found.provenance) == wanted
-        for found in passes
-        if {"drive", "configuration"} <= found.provenance.keys()
-    )
+    """Whether the store holds a pass for it, and nobody has seen since that its watchdog does not stop it."""
+    newest = _newest(store, provenance)
+    return newest is not None and newest.outcome == "completed"
 
 
 def watchdog_of(store: Store, provenance: Provenance) -> Watchdog | None:
     """How sure the drive's watchdog was at its newest pass; None where there is none, or nobody tried it then."""
+    newest = _newest(store, provenance)
+    told = None if newest is None else newest.results.get(WATCHDOG_RESULT)
+    return None if told is None else Watchdog(told)
+
+
+def _newest(store: Store, provenance: Provenance) -> Experiment | None:
+    """The newest commissioning of it that has passed, or has found that its watchdog does not stop it."""
     wanted = fingerprint(provenance)
-    for found in store.experiments(kind=KIND, outcome="completed", limit=_REMEMBERED):
+    for found in store.experiments(kind=KIND, limit=_REMEMBERED):
         kept = found.provenance
-        if {"drive", "configuration", WATCHDOG_FACT} <= kept.keys() and fingerprint(kept) == wanted:
-            return Watchdog(kept[WATCHDOG_FACT]["watchdog"])
+        told = found.outcome == "completed" or found.results.get(WATCHDOG_RESULT) == Watchdog.NONE
+        if told and {"drive", "configuration"} <= kept.keys() and fingerprint(kept) == wanted:
+            return found
     return None
 
 

@@ -1,6 +1,6 @@
 """The drive that the configuration names, and who hangs its load."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from bench.config.configuration import BenchConfiguration
@@ -52,6 +52,24 @@ def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equi
             "has to add it, or to derive its settings from RealDriveSettings"
         )
     return Equipment(drive, SimulatedTechnician(drive))
+
+
+def share_lines(drives: Iterable[tuple[BenchConfiguration, Drive]]) -> None:
+    """Let drives of one bench that are on one line use it together, where their kind can. Before any is opened.
+
+    Args:
+        drives: each with the joint's bench.
+
+    Raises:
+        ConfigurationError: they cannot be on one line.
+    """
+    by_kind: dict[str, list[Drive]] = {}
+    for bench, drive in drives:
+        by_kind.setdefault(bench.drive.kind, []).append(drive)
+    for kind, alike in by_kind.items():
+        share = drive_kind(kind).share
+        if share is not None:
+            share(alike)
 
 
 def is_simulated(configuration: BenchConfiguration) -> bool:

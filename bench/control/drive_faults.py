@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.drives.real import RealDriveSettings
-from bench.control.drive_factory import make_equipment
+from bench.control.drive_factory import make_equipment, share_lines
 from bench.errors import FaultChangedError
 from drivers.contract import Drive
 
@@ -79,12 +79,11 @@ def _opened(configuration: BenchConfiguration) -> Iterator[dict[str, Drive]]:
     if configuration.master is not None and isinstance(configuration.master.drive, RealDriveSettings):
         benches = {"slave": configuration, "master": configuration.of_master()}
     with ExitStack() as stack:
-        drives = {}
-        for joint, bench in benches.items():
-            drive = make_equipment(bench).drive
+        drives = {joint: make_equipment(bench).drive for joint, bench in benches.items()}
+        share_lines((benches[joint], drive) for joint, drive in drives.items())
+        for drive in drives.values():
             stack.callback(drive.close)
-            drive.open(bench.control.period_s)
-            drives[joint] = drive
+            drive.open(configuration.control.period_s)
         yield drives
 
 

@@ -6,7 +6,7 @@ from math import nan
 from typing import Protocol
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody
+from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody, share_lines
 from bench.control.pair import Reach, Truth
 from bench.drives.sim.joint import make_environment, make_hand
 from bench.errors import ExperimentError
@@ -134,6 +134,7 @@ def make_pair(configuration: BenchConfiguration, ask: Callable[[str], bool] = no
     """
     master_bench = configuration.of_master()
     slave, master = make_equipment(configuration, ask), make_equipment(master_bench, ask)
+    share_lines([(configuration, slave.drive), (master_bench, master.drive)])
     return PairEquipment(
         slave,
         master,

@@ -126,17 +126,27 @@ def current_servo(rig: Rig) -> CurrentServo | None:
 
 
 def check_modes(settings: ServoSettings, drive: Description) -> None:
-    """Refuse a position loop that the drive does not close.
+    """Refuse a position loop that the drive does not close, or that the bench cannot close.
 
     Raises:
-        ConfigurationError: naming the modes that it has.
+        ConfigurationError: naming the modes that it has, and what to set.
     """
+    names = ", ".join(sorted(mode.value for mode in drive.modes))
     if settings.closed_by == "drive" and Mode.POSITION not in drive.modes:
-        names = ", ".join(sorted(mode.value for mode in drive.modes))
         raise ConfigurationError(
             f"servo.closed_by is 'drive', and drive '{drive.device}' has no position mode (it has {names}); "
             "set servo.closed_by = 'bench'"
         )
+    if settings.closed_by == "bench" and closes_positions_alone(drive):
+        raise ConfigurationError(
+            f"servo.closed_by is 'bench', and drive '{drive.device}' takes neither current nor duty (it has {names}); "
+            "set servo.closed_by = 'drive'"
+        )
+
+
+def closes_positions_alone(drive: Description) -> bool:
+    """Whether a drive can be asked for positions and for nothing else."""
+    return drive.modes == {Mode.POSITION}
 
 
 def torque_constant_n_m_a(rig: Rig) -> float:

@@ -57,6 +57,16 @@ def any_drive(_parameters: Any) -> frozenset[Mode]:
     return frozenset()
 
 
+def a_current(_parameters: Any) -> frozenset[Mode]:
+    """Currents are asked for: of a drive with that mode, or by eq. (3) of one with a duty."""
+    return frozenset({Mode.CURRENT})
+
+
+def as_asked(parameters: Any, _modes: frozenset[Mode]) -> Any:
+    """The parameters as they are."""
+    return parameters
+
+
 @dataclass(frozen=True, slots=True)
 class ExperimentKind:
     """One kind of experiment.
@@ -70,7 +80,8 @@ class ExperimentKind:
         refuse: raises `LimitError` or `ConfigurationError` before motion when the bench must not or cannot do it.
         duration_s: estimate of the time it takes in real time [s].
         summarise: results of the whole from those of its trials; JSON-able, units in the names.
-        modes: that the drive has to close itself; position and current are done without.
+        modes: that the drive has to close itself. Position is done without; a current by drives with a duty, too.
+        adapt: the parameters as a drive of certain modes allows; raises nothing.
         pair: it moves a master and a slave; its procedures are those of `bench.control.pair`.
     """
 
@@ -83,6 +94,7 @@ class ExperimentKind:
     duration_s: Callable[[Any, BenchConfiguration], float]
     summarise: Callable[[Any, list[FinishedTrial]], dict[str, Value]]
     modes: Callable[[Any], frozenset[Mode]] = any_drive
+    adapt: Callable[[Any, frozenset[Mode]], Any] = as_asked
     pair: bool = False
 
 

@@ -10,27 +10,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.control.commissioned import WATCHDOG_RESULT, WATCHDOG_SEEN
 from bench.control.cycle import Reading
 from bench.control.ending import Outcome, OutcomeName, StopRequest
 from bench.control.loop import ControlLoop
 from bench.control.recorder import Event, Sink
 from bench.control.station import Station
-from bench.errors import ExperimentError
+from bench.errors import ExperimentError, LimitTrip
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
 from bench.json_types import Value
 from bench.runs import event_log, session
 from bench.runs.bench_control import Pausing, Request
 from bench.runs.live import LiveBuffer
 from bench.runs.session import Session
+from bench.runs.watchdog_proof import WatchdogProof, prove_watchdog
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
+from drivers.contract import Watchdog
 
 PAUSE_POLL_S = 0.05
 
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """Everything that an experiment needs, checked; what it moves is open and off."""
+    """Everything that an experiment needs, checked; what it moves is open and off.
+
+    Attributes:
+        real_time: whether the wall clock paces it.
+        proves_watchdog: the drive's watchdog is tried before its first trial.
+    """
 
     kind: ExperimentKind
     parameters: Parameters
@@ -41,6 +49,7 @@ class Prepared:
     space: SpaceNeed
     session: Session
     real_time: bool
+    proves_watchdog: bool = False
 
 
 @dataclass(slots=True)
@@ -66,6 +75,7 @@ class ExperimentRun:
     _pause: threading.Event = field(default_factory=threading.Event)
     _prepared: Prepared | None = None
     _finished: list[FinishedTrial] = field(default_factory=list)
+    _proof: WatchdogProof | None = None
 
     def stop(self, reason: str) -> None:
         """Stop within one control cycle; also an experiment that is only about to begin."""
@@ -137,6 +147,8 @@ class ExperimentRun:
             results = prepared.kind.summarise(prepared.parameters, self._finished)
         except Exception as error:
             outcome, reason = _worse(outcome, reason, f"no summary: {str(error) or type(error).__name__}")
+        if self._proof is not None:
+            results |= {WATCHDOG_RESULT: self._proof.watchdog.value, WATCHDOG_SEEN: self._proof.sentence}
         try:
             store.finish_experiment(self._id(), outcome, reason, results)
         except Exception as error:
@@ -152,6 +164,8 @@ class ExperimentRun:
             try:
                 if not self._prepare_arm(plan, prepared.station):
                     return "stopped", self.stop_request.reason
+                if prepared.proves_watchdog and self._proof is None and (ending := self._prove_watchdog(prepared)):
+                    return ending
                 store.require_space(prepared.space, trials=1)
                 outcome = self._run_trial(plan, prepared, store, live)
             except Exception as error:
@@ -159,6 +173,19 @@ class ExperimentRun:
             if outcome.outcome != "completed":
                 return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
         return "completed", ""
+
+    def _prove_watchdog(self, prepared: Prepared) -> tuple[OutcomeName, str] | None:
+        """Try the drive's watchdog, before anything else moves it; how the run ends where it must not go on."""
+        [drive], [bench] = prepared.station.drives, prepared.station.benches
+        try:
+            self._proof = prove_watchdog(drive, bench, self.is_stopped)
+        except LimitTrip as trip:
+            return "tripped", f"trial of the watchdog: {trip}"
+        if self._proof is None:
+            return "stopped", self.stop_request.reason
+        if self._proof.watchdog is Watchdog.NONE and not self._proof.is_admitted:
+            return "failed", f"the drive's watchdog does not stop it: {self._proof.sentence}"
+        return None
 
     def _wait_while_paused(self) -> None:
         while self._pause.is_set() and not self.is_stopped():

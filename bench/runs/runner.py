@@ -204,13 +204,17 @@ class Runner(BenchControl):
                 self._as_proven(bench, drive.describe())
                 for bench, drive in zip(station.benches, station.drives, strict=True)
             )
-            refuse_modes(kind.name, kind.modes(parameters), self._descriptions[0])
+            for description in self._descriptions:
+                refuse_modes(kind.name, kind.modes(parameters), description)
             if kind.name != commissioned.KIND:
                 self._require_commissioned(station)
         except BaseException:
             station.close()
             raise
-        return Prepared(kind, parameters, plans, duration_s, station, loop, space, session, real_time)
+        parameters = kind.adapt(parameters, self._descriptions[0].modes)
+        plans = kind.plan(parameters, configuration)
+        proves = kind.name == commissioned.KIND and not is_simulated(configuration)  # nobody is silent in virtual time
+        return Prepared(kind, parameters, plans, duration_s, station, loop, space, session, real_time, proves)
 
     def _require_commissioned(self, station: Station) -> None:
         """Refuse a real drive that has not passed the commissioning move."""
@@ -219,7 +223,7 @@ class Runner(BenchControl):
                 commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
 
     def _as_proven(self, bench: BenchConfiguration, found: Description) -> Description:
-        """What the drive says of itself, with what `doctor --move` has seen of its watchdog."""
+        """What the drive says of itself, with what its commissioning has seen of its watchdog."""
         if is_simulated(bench) or found.watchdog is not Watchdog.CONFIGURED:
             return found
         seen = commissioned.watchdog_of(self._store, provenance(bench, found))

@@ -16,9 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
-from compensator.line_fit import CONFIDENCE, Interval
+from compensator.line_fit import Interval, t_quantile
 from compensator.motion.calibration_points import check_accelerations, check_points
 from compensator.motion.curve_regression import Solution, solve
 from compensator.motion.kinetic_friction import KineticFriction
@@ -72,7 +71,7 @@ def fit(
     speed, current = check_points(speed_rad_s, current_a, stribeck)
     acceleration = None if acceleration_rad_s2 is None else check_accelerations(acceleration_rad_s2, speed)
     solution = solve(speed, current, stribeck, acceleration)
-    quantile = float(stdtrit(len(speed) - solution.fitted, 0.5 + CONFIDENCE / 2.0))
+    quantile = t_quantile(len(speed) - solution.fitted)
     parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
     curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name not in NO_PART_OF_THE_CURVE})
     return FrictionFit(curve, parameters, solution.scatter_a, len(speed))

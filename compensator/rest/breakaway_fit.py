@@ -15,10 +15,9 @@ from math import nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
 
 from compensator.errors import ModelParameterError
-from compensator.line_fit import CONFIDENCE, Interval
+from compensator.line_fit import Interval, t_quantile
 
 
 class BreakawayEstimate(NamedTuple):
@@ -122,7 +121,7 @@ def fit(breakaways: Sequence[Breakaway]) -> BreakawayFit:
     freedom, scatter_a, quantile = count - unknowns, nan, nan
     if freedom > 0:
         scatter_a = sqrt(float(np.sum((current_a - columns @ solution) ** 2)) / freedom)
-        quantile = float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0))
+        quantile = t_quantile(freedom)
     load, friction = (_interval(solution[place], quantile * scatter_a * sqrt(variances[place])) for place in (0, 1))
     delay = solution[2] if unknowns > 2 else 0.0
     ramped_a = float(np.mean(direction * (current_a - solution[0])))

@@ -26,10 +26,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import chdtri, stdtrit
 
 from compensator.errors import CalibrationError
-from compensator.line_fit import CONFIDENCE, Interval
+from compensator.line_fit import Interval, t_quantile
 from compensator.motion.gear_loss import GearLoss
 from compensator.rest.breakaway_fit import BreakawayFit
 
@@ -136,10 +135,12 @@ class RestCalibration:
         Then this is not what was calibrated - a disturbance, another gear - and the search's own scatter counts, with
         the t quantile of so few in place of the normal one.
         """
+        from scipy.special import chdtri  # imported when needed: every command starts with this file
+
         freedom = found.breakaways - UNKNOWNS
         if freedom < 1 or not found.scatter_a**2 * freedom > known_a**2 * chdtri(freedom, UNLIKELY):
             return known_a
-        return found.scatter_a * float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0)) / BAND
+        return found.scatter_a * t_quantile(freedom) / BAND
 
     @property
     def _least_a(self) -> float:

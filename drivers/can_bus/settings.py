@@ -45,6 +45,12 @@ class BusSettings:
         """Whether the interface hands this host its own frames."""
         return self.interface == "udp_multicast"
 
+    @property
+    def place(self) -> tuple[str | int, ...]:
+        """What tells this bus from others."""
+        server = (self.host, self.port) if self.interface == "socketcand" else ()
+        return (self.interface, self.channel, *server)
+
     def __str__(self) -> str:
         return f"{self.channel}@{self.host}:{self.port}" if self.interface == "socketcand" else self.channel
 

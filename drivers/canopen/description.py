@@ -70,8 +70,8 @@ def _notes(session: Session) -> Iterator[str]:
         yield f"A host before left the drive in state '{session.left.value}'. It was switched off."
     if isnan(session.found.scale.velocity_unit_rad_s):
         yield "The velocity counts as not measured: its unit is told by neither drive nor velocity_unit."
-    if not any(row.drive for row in session.found.units):
-        yield "The drive tells no units: watch the move of 'friction-bench doctor --move', and compare its angle."
+    if not session.found.units[0].drive:
+        yield "The drive does not tell its counts per turn: compare the angle of 'doctor --move' with what you see."
 
 
 def _units(session: Session) -> FoundTable:

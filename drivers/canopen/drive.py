@@ -3,6 +3,7 @@
 from contextlib import suppress
 from math import nan
 
+from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.object_table import ObjectUse
 from drivers.canopen.cia301.objects import STATUSWORD
@@ -27,12 +28,17 @@ class CanopenDrive:
     Args:
         settings: bus and drive.
         joint: what is on it.
+
+    Attributes:
+        settings: as given.
+        port: the bus; another drive's where both are on one, see `share_buses`.
     """
 
     def __init__(self, settings: CanopenSettings, joint: JointScale) -> None:
         self._joint = joint
-        self._settings = settings
+        self.settings = settings
         self._device = settings.device
+        self.port = BusPort(settings.bus)
         self._link: CanLink | None = None
         self._session: Session | None = None
         self._power: PowerStage | None = None
@@ -56,7 +62,7 @@ class CanopenDrive:
 
     def describe(self) -> Description:
         """Identity and capabilities. Complete once open."""
-        return describe(self._settings, self._session)
+        return describe(self.settings, self._session)
 
     def open(self, period_s: float) -> None:
         """Connect: identity, watchdog, limits, PDOs, OPERATIONAL. The power stage stays off.
@@ -67,13 +73,13 @@ class CanopenDrive:
             WatchdogError: the watchdog cannot be set.
         """
         self.close()
-        check_period(self._settings, period_s)
-        self._link = CanLink(self._settings.bus, self._device)
+        check_period(self.settings, period_s)
+        self._link = CanLink(self.port, self._device)
         try:
             self._link.open()
-            self._session = Session(self._link, self._settings, self._joint, period_s)
+            self._session = Session(self._link, self.settings, self._joint, period_s)
             self._power = PowerStage(self._session)
-            check_bus_load(self._settings, self._session.data.sizes, period_s)
+            check_bus_load(self.settings, (link.load for link in self.port.links), period_s)
             self._power.forgive_lost_host()
         except BaseException:
             self.close()

@@ -62,7 +62,7 @@ class Session:
         self.poll = SlowPoll((), 1.0, settings.sdo_answer_s)
         self._subscribe(node_id)
         self._listen(settings.listen_s)
-        self.host_id = self.strangers.choose_host_id(settings.host_node_id)
+        self.host_id = link.host_id = self.strangers.choose_host_id(settings.host_node_id)
 
         # SDO only, until everything that keeps the drive safe is set
         self.left, identity = meet(self.table, self.access, settings, lambda: self._nmt(_PRE_OPERATIONAL))
@@ -78,13 +78,14 @@ class Session:
         set_interpolation(self.table, period_s)
         self.data = set_up_pdos(self.table, self.access, settings, self.found)
         self.monitor.state = None
+        link.load = self.data.sizes
 
         places = [self.data.place(item) for item in (STATUSWORD, POSITION)]
         self.status_place, self.position_place = (place for place in places if place is not None)
         self.measurement = Measurement(self.found, self.data.place)
         self.poll = SlowPoll(self.measurement.slow, 1.0 / settings.poll_hz, settings.sdo_answer_s)
         self._read_slow_once()
-        self.cycle = SyncCycle(link, self.data.tpdos, answer_wait_s(period_s))
+        self.cycle = SyncCycle(link, self.data.tpdos, answer_wait_s(period_s), period_s)
         self.speaking = self.data.idle
         self.start()
         self.round_trip_s = self._try_cycles(period_s)

@@ -6,8 +6,8 @@ import time
 from sim_backend.devices.axis import TICK_S, Axis
 from sim_backend.devices.device import Device
 
-# silence of a host that is gone, not late: time goes on, and the watchdog trips
-HOST_IS_GONE_S = 3.0
+# silence of a host that is gone, not late: time goes on, and a watchdog of 1 s trips in the 1.6 s that it is tried for
+HOST_IS_GONE_S = 0.45
 HOST_LISTENS_S = 0.3  # the same without power: a host that waits for a heartbeat is silent, too
 
 
@@ -66,8 +66,10 @@ class PatientTime(WallTime):
     def _advance(self) -> float:
         looked_s = time.monotonic()
         step_s, self._looked_s = looked_s - self._looked_s, looked_s
-        if looked_s - self._heard_s < self._longest_wait_s():
-            step_s = min(step_s, max(self._heard_at_s + self._patience_s - self._now_s, 0.0))
+        longest_s = self._longest_wait_s()
+        if longest_s:
+            silent_s = max(looked_s - self._heard_s - longest_s, 0.0)  # beyond what a late host may take
+            step_s = min(step_s, max(self._heard_at_s + self._patience_s + silent_s - self._now_s, 0.0))
         self._now_s += step_s
         self.origin_s = looked_s - self._now_s
         return self._now_s

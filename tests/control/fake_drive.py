@@ -1,5 +1,6 @@
 """A drive small enough to be checked by eye: a rigid joint with dry friction, no backlash, and faults on demand."""
 
+import time
 from collections.abc import Callable
 from math import copysign, nan, sin
 
@@ -36,7 +37,9 @@ class FakeDrive:
         self.velocity_rad_s = 0.0
         self.load_torque_n_m = 0.0
         self.friction_n_m = 0.2
+        self.watches = True  # switches itself off after 0.1 s without an exchange; seen by `inspect` alone
         self._time_s = 100.0
+        self._heard_s = time.perf_counter()
         self._period_s = nan
 
     def describe(self) -> Description:
@@ -67,6 +70,8 @@ class FakeDrive:
 
     def inspect(self) -> Inspection:
         self.calls.append("inspect")
+        if self.watches and time.perf_counter() - self._heard_s > 0.1:
+            self.powered = False
         return Inspection(Status.ENABLED if self.powered else Status.DISABLED)
 
     def clear_fault(self) -> None:
@@ -81,6 +86,7 @@ class FakeDrive:
         if command.mode is not Mode.OFF and not self.powered:
             raise DriveStateError("fake", "motion commanded while disabled")
         self.commands.append(command)
+        self._heard_s = time.perf_counter()
         duty = command.value if command.mode is Mode.DUTY else 0.0
         self._time_s += self._period_s
         for _ in range(10):

@@ -1,6 +1,7 @@
 """The text protocols by which hosts reach a CAN bus, byte for byte."""
 
 import pytest
+from can.interfaces.socketcand.socketcand import convert_ascii_message_to_can_message
 
 from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.can.slcan import SlcanAdapter
@@ -56,6 +57,14 @@ def test_slcan_tells_of_frames_while_open_only() -> None:
     assert adapter.tell(frame) == b"t58584300100092010200\r"
     assert adapter.feed(b"C\r") == (b"\r", [])
     assert adapter.tell(frame) == b""
+
+
+@pytest.mark.parametrize("can_id", [0x000, 0x080, 0x585])
+def test_socketcand_tells_identifiers_of_11_bits_as_such(can_id: int) -> None:
+    session = SocketcandSession()
+    session.feed(b"< open can0 >< rawmode >")
+    message = convert_ascii_message_to_can_message(session.tell(Frame(can_id, b"\x01")).decode())
+    assert (message.arbitration_id, message.is_extended_id) == (can_id, False)
 
 
 def test_socketcand_hand_shake_and_frames() -> None:

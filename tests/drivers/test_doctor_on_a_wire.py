@@ -38,12 +38,10 @@ def watchdogs(folder):
 
 
 def test_what_doctor_has_seen_is_in_the_record_of_each_run_after(on_device, tmp_path):
-    ran = on_device("run", "commissioning")
-    assert ran.exit_code == 0, ran.output
-    assert watchdogs(tmp_path) == ["configured, not proven"]
     found = on_device("doctor", "--move")
     assert found.exit_code == 0, found.output
     assert "watchdog: proven: after 1.6 s of silence" in found.output.replace("\n", " ")
+    assert watchdogs(tmp_path) == ["configured, not proven"]  # before it was tried
     ran = on_device("run", "steps", "--repeats", "1")
     assert "refused" not in ran.output
     assert watchdogs(tmp_path)[0] == "proven"
@@ -54,4 +52,24 @@ def test_a_drive_that_goes_on_is_not_moved_any_further(on_device, device, monkey
     found = on_device("doctor", "--move")
     assert found.exit_code != 0
     assert "watchdog: DOES NOT STOP IT" in found.output
-    assert json.loads(on_device("experiments", "--json").stdout) == []
+    [record] = json.loads(on_device("experiments", "--json").stdout)
+    assert record["outcome"] == "failed"
+    assert record["results"]["watchdog"] == "none"
+    assert "travel_rad" not in record["results"]
+    refused = on_device("run", "steps", "--repeats", "1")
+    assert "has not passed the commissioning move" in refused.output.replace("\n", " ")
+
+
+def test_a_commissioning_that_nobody_started_from_doctor_proves_it_too(on_device, tmp_path):
+    ran = on_device("run", "commissioning")
+    assert ran.exit_code == 0, ran.output
+    on_device("run", "steps", "--repeats", "1")
+    assert watchdogs(tmp_path)[0] == "proven"
+
+
+def test_a_pass_does_not_outlive_a_watchdog_that_has_been_seen_to_fail(on_device, device, monkeypatch):
+    assert on_device("run", "commissioning").exit_code == 0
+    monkeypatch.setattr(device.device, "_watch", lambda: None)
+    assert "does not stop it" in on_device("run", "commissioning").output.replace("\n", " ")
+    refused = on_device("run", "steps", "--repeats", "1")
+    assert "has not passed the commissioning move" in refused.output.replace("\n", " ")

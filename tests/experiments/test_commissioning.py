@@ -1,5 +1,7 @@
 """The commissioning move finds wrong signs and scales; without its pass a real drive runs nothing."""
 
+from math import nan
+
 import pytest
 
 from bench.config.configuration import default_configuration, parse_configuration
@@ -7,11 +9,11 @@ from bench.control import station
 from bench.control.commissioned import fingerprint
 from bench.control.cycle import Reading
 from bench.control.drive_factory import Equipment
-from bench.errors import LimitError, NotCommissionedError
-from bench.experiments.analysis.commissioning_checks import Push, findings
+from bench.errors import ConfigurationError, LimitError, NotCommissionedError
+from bench.experiments.analysis.commissioning_checks import Push, findings, position_findings
 from bench.runs.runner import Runner
 from bench.store import Store
-from drivers.contract import Sample, Status
+from drivers.contract import Command, Mode, Sample, Status
 from tests.control.fake_drive import RATIO, RIG, FakeDrive
 from tests.experiments.bench_run import Ran
 
@@ -134,10 +136,32 @@ def test_a_pass_holds_for_one_drive_with_one_configuration():
     assert len({fingerprint(found) for found in (PROVENANCE, other_firmware, other_gear)}) == 3
 
 
+class PositionDrive(FakeDrive):
+    """Closes positions, and takes nothing else; `share` of what it is asked for."""
+
+    def __init__(self, share: float = 1.0) -> None:
+        super().__init__(modes=frozenset({Mode.POSITION}))
+        self.share = share
+
+    def exchange(self, command: Command) -> Sample:
+        if command.mode is Mode.POSITION:
+            assert self.powered
+            before_rad, self.position_rad = self.position_rad, self.share * command.value
+            sample = super().exchange(Command(Mode.OFF))
+            return sample._replace(velocity_rad_s=(self.position_rad - before_rad) / self._period_s)
+        assert command.mode is Mode.OFF
+        return super().exchange(command)
+
+
 @pytest.fixture
-def real_bench(monkeypatch, tmp_path):
+def fake():
+    return FakeDrive()
+
+
+@pytest.fixture
+def real_bench(monkeypatch, tmp_path, fake):
     """A bench whose drive is a real one, by its configuration; and the function that makes its runner."""
-    drive = FakeDrive()
+    drive = fake
     monkeypatch.setattr(station, "make_equipment", lambda _configuration, _ask: Equipment(drive, drive))
     values = default_configuration().model_dump(mode="json", exclude_none=True)
     values["rig"] = RIG.model_dump(exclude_none=True)
@@ -145,8 +169,11 @@ def real_bench(monkeypatch, tmp_path):
     with Store.open(f"sqlite:///{tmp_path / 'bench.sqlite'}") as store:
         yield (
             store,
-            lambda **drive: Runner(
-                parse_configuration(values | {"drive": values["drive"] | drive}, "bench.toml"), store
+            lambda closed_by="bench", **drive: Runner(
+                parse_configuration(
+                    values | {"drive": values["drive"] | drive, "servo": {"closed_by": closed_by}}, "bench.toml"
+                ),
+                store,
             ),
         )
 
@@ -175,3 +202,56 @@ def test_a_move_that_failed_is_no_pass(real_bench):
     assert store.experiments()[0].outcome == "failed"
     with pytest.raises(NotCommissionedError):
         runner.start("steps", {"repeats": 1})
+
+
+@pytest.mark.parametrize("fake", [PositionDrive()])
+def test_a_drive_that_takes_positions_alone_is_moved_by_positions(real_bench):
+    store, make_runner = real_bench
+    runner = make_runner(closed_by="drive")
+    runner.start("commissioning", {})
+    assert runner.wait(60.0)
+    record = store.experiments()[0]
+    assert record.outcome == "completed", record.reason
+    assert record.results["travel_rad"] == pytest.approx([0.15, -0.15], abs=2e-3)
+    assert record.results["passed"] == ["velocity"]
+    assert "Where you saw the arm turn the other way" in record.results["sentences"][0]
+    with pytest.raises(LimitError, match="steps needs the mode current of the drive, and drive 'fake' has position"):
+        runner.start("steps", {"repeats": 1})
+    runner.start("reversals", {"amplitudes_rad": [0.2], "strokes": 2})
+    runner.close()
+
+
+@pytest.mark.parametrize("fake", [PositionDrive()])
+def test_a_position_loop_of_the_bench_is_refused_for_it(real_bench):
+    _, make_runner = real_bench
+    with pytest.raises(ConfigurationError, match=r"takes neither current nor duty .* set servo.closed_by = 'drive'"):
+        make_runner().start("commissioning", {})
+
+
+@pytest.mark.parametrize("fake", [PositionDrive(share=0.5)])
+def test_a_drive_that_does_not_get_there_has_not_passed(real_bench):
+    store, make_runner = real_bench
+    runner = make_runner(closed_by="drive")
+    runner.start("commissioning", {"coast_s": 0.2})
+    assert runner.wait(60.0)
+    assert store.experiments()[0].outcome == "failed"
+    assert "Look at the gains of the drive's own position loop" in store.experiments()[0].reason
+
+
+def way(direction, sign=1.0):
+    """A slow move by hand, with friction and a little noise in the current."""
+    made = []
+    for cycle in range(60):
+        current_a = sign * direction * 0.2 + 0.05 * (-1) ** cycle + 0.3  # 0.3 A of gravity
+        position_rad = direction * 0.003 * cycle
+        sample = Sample(cycle * PERIOD_S, 0.0, position_rad, direction * 0.3, nan, current_a, nan, nan, Status.ENABLED)
+        made.append(Reading(sample.time_s, sample, direction * 0.3, current_a))
+    return Push(direction, made, [])
+
+
+@pytest.mark.parametrize(("sign", "passed"), [(1.0, True), (-1.0, False), (0.0, None)])
+def test_the_sign_of_the_current_is_seen_by_friction(sign, passed):
+    found = {one.name: one for one in position_findings([way(1, sign), way(-1, sign)], RIG)}
+    assert found["current"].passed is passed, found["current"].sentence
+    assert found["velocity"].passed
+    assert found["ratio"].passed is None

@@ -50,23 +50,11 @@ def doctor(
 
 
 def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet: bool) -> bool:
-    """The proof of the watchdog and the commissioning move. Returns whether both are as wanted."""
+    """The trial of the watchdog and the commissioning move. Returns whether both are as wanted."""
     from bench.cli.operation.run import carry_out
-    from bench.control.commissioned import KIND, WATCHDOG_FACT
-    from bench.control.drive_factory import is_simulated
-    from bench.doctor.watchdog_proof import prove_watchdog
-    from drivers.contract import Watchdog
+    from bench.control.commissioned import KIND
 
-    configuration = session.configuration()
-    facts: dict[str, object] = {}
-    if not is_simulated(configuration):  # nobody is silent in virtual time
-        proof = prove_watchdog(configuration)
-        answer["watchdog_proof"] = facts[WATCHDOG_FACT] = asdict(proof)
-        if not quiet:
-            say(f"watchdog: {_VERDICTS[proof.watchdog]}: {proof.sentence}")
-        if proof.watchdog is Watchdog.NONE and not proof.is_admitted:
-            return False
-    ended, _ = carry_out(session, KIND, {}, operator, "friction-bench doctor --move", None, quiet, facts)
+    ended, _ = carry_out(session, KIND, {}, operator, "friction-bench doctor --move", None, quiet)
     answer["commissioning"] = {"outcome": ended.outcome, "reason": ended.reason, "results": ended.results}
     if not quiet:
         _show_move(ended)
@@ -120,6 +108,10 @@ def _age_ms(found: "Connection", name: str) -> float | None:
 
 
 def _show_move(ended: "Experiment") -> None:
+    from bench.control.commissioned import WATCHDOG_RESULT, WATCHDOG_SEEN
+
+    if WATCHDOG_RESULT in ended.results:
+        say(f"watchdog: {_VERDICTS[ended.results[WATCHDOG_RESULT]]}: {ended.results[WATCHDOG_SEEN]}")
     for sentence in ended.results.get("sentences", []):
         say(sentence)
     say(f"commissioning move: {ended.outcome}{f': {ended.reason}' if ended.reason else ''}")

@@ -1,6 +1,5 @@
 """`friction-bench run KIND`: one experiment, in this process; the options come from the kind's parameters."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Any
@@ -103,9 +102,8 @@ def carry_out(
     note: str,
     pace: Pace | None,
     quiet: bool,
-    facts: Mapping[str, object] | None = None,
 ) -> "tuple[Experiment, int | None]":
-    """Run it to its end, whatever that is; `facts` are kept with its record.
+    """Run it to its end, whatever that is.
 
     Returns its record, and the exit code where a signal ended it.
     """
@@ -116,7 +114,7 @@ def carry_out(
     configuration = session.configuration()
     wanted = pace or (Pace.FAST if is_simulated(configuration) else Pace.REAL_TIME)
     loop = {"process": "that of the command", "scheduling": scheduling.describe()}
-    host = HostProcess(during_run=scheduling.undisturbed, facts={"control_loop": loop, **(facts or {})})
+    host = HostProcess(during_run=scheduling.undisturbed, facts={"control_loop": loop})
     with session.open_store() as store:
         runner = Runner(configuration, store, host)
         try:
@@ -137,9 +135,9 @@ def _as_it_ended(found: "Experiment", status: "RunnerStatus") -> "Experiment":
 
 def _report(found: "Experiment", as_json: bool) -> None:
     if as_json:
-        from bench.service.routes.experiments import represent
+        from bench.service.records import experiment_record
 
-        print_json(represent(found).model_dump(mode="json"))
+        print_json(experiment_record(found).model_dump(mode="json"))
         return
     say(f"experiment {found.id}: {found.outcome}{f': {found.reason}' if found.reason else ''}")
     rows = [(name, value) for name, value in found.results.items() if isinstance(value, int | float | str)]

@@ -17,12 +17,12 @@ def experiments(
     as_json: Json = False,
 ) -> None:
     """List what has been run or imported, newest first."""
-    from bench.service.routes.experiments import represent
+    from bench.service.records import experiment_record
 
     with session_of(context).open_store() as store:
         found = store.experiments(kind=kind, outcome=outcome, tag=tag, limit=limit)
     if as_json:
-        print_json([represent(one).model_dump(mode="json") for one in found])
+        print_json([experiment_record(one).model_dump(mode="json") for one in found])
         return
     rows = [
         (one.id, one.kind, one.source, one.started_utc, one.outcome, one.reason, one.note or one.parameters.get("name"),

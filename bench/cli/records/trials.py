@@ -18,14 +18,14 @@ def trials(
     as_json: Json = False,
 ) -> None:
     """List trials in the order in which they were made."""
-    from bench.service.routes.trials import represent
+    from bench.service.records import trial_record
 
     with session_of(context).open_store() as store:
         if experiment is not None:
             store.experiment(experiment)  # says so where there is none
         found = store.trials(experiment, kind, outcome, limit=limit)
     if as_json:
-        print_json([represent(one) for one in found])
+        print_json([trial_record(one) for one in found])
         return
     rows = [
         (one.id, one.experiment_id, one.name, one.kind, conditions(one.conditions), one.rows, one.outcome, one.reason)
@@ -58,9 +58,9 @@ def trial(
             return
         events = store.events(trial_id)
     if as_json:
-        from bench.service.routes.trials import represent
+        from bench.service.records import trial_record
 
-        print_json({**dict(represent(found)), "events": [event._asdict() for event in events]})
+        print_json({**dict(trial_record(found)), "events": [event._asdict() for event in events]})
         return
     facts = {"experiment": found.experiment_id, "kind": found.kind, "outcome": found.outcome, "reason": found.reason}
     facts |= {"rows": found.rows, "channels": ", ".join(found.channels), **found.conditions}

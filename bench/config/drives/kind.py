@@ -1,6 +1,6 @@
 """What a kind of drive brings in: settings, driver, simulated device, and how the conformance tests set it up."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
@@ -62,6 +62,8 @@ class DriveKind(Generic[SettingsT]):
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.
         conformance: how the conformance tests run on it.
         scan_serial, scan_can: say which drives of the kind answer on a port or a bus.
+        share: lets drives of one bench that are on one line use it together, before they are opened; raises
+            `ConfigurationError`. None: each has a line of its own.
     """
 
     title: str
@@ -71,6 +73,7 @@ class DriveKind(Generic[SettingsT]):
     conformance: tuple[ConformanceBench, ...] = ()
     scan_serial: SerialScan | None = None
     scan_can: CanScan | None = None
+    share: Callable[[Sequence[Any]], None] | None = None
 
     @property
     def name(self) -> str:

@@ -1,5 +1,8 @@
 """CiA 402 drives on a CAN bus as a kind."""
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
 from bench.config.drives.simulated_device import Simulate
@@ -7,6 +10,12 @@ from bench.config.rig import Rig
 from bench.drives.canopen.settings import CanopenDriveSettings
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
+
+if TYPE_CHECKING:  # imported when needed: a bench needs no library of another kind
+    from drivers.canopen import CanopenDrive
+
+
+_UNHURRIED = {"watchdog_s": 1.0, "answer_s": 0.6}
 
 
 def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
@@ -28,6 +37,21 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
         raise ConfigurationError(str(error)) from error
 
 
+def share(drives: "Sequence[CanopenDrive]") -> None:
+    """One bus for the drives that are on one.
+
+    Raises:
+        ConfigurationError: two have one node ID, or their settings of the bus differ.
+    """
+    from drivers.canopen import share_buses
+    from drivers.errors import DriveConfigurationError
+
+    try:
+        share_buses(drives)
+    except DriveConfigurationError as error:
+        raise ConfigurationError(str(error)) from error
+
+
 def simulate() -> Simulate:
     """The command that simulates one."""
     from bench.drives.canopen.device import simulate
@@ -40,12 +64,22 @@ KIND = DriveKind(
     settings=CanopenDriveSettings,
     make=make,
     simulate=simulate,
+    share=share,
     conformance=(
         ConformanceBench(
             "canopen",
-            settings={"watchdog_s": 1.0, "answer_s": 0.6},
+            settings=_UNHURRIED,
             wrong_address=("node_id", 77),
             is_checked=False,  # the serial leg of a CAN adapter (slcan)
+            knows_counts=True,
+        ),
+        ConformanceBench(
+            "canopen-socketcand",
+            ("--interface", "socketcand"),
+            _UNHURRIED,
+            has_link=False,
+            wrong_address=("node_id", 77),
+            is_checked=False,
             knows_counts=True,
         ),
     ),

@@ -12,6 +12,8 @@ from bench.control.cycle import Reading
 FloatArray = NDArray[np.float64]
 VELOCITY_BAND = (0.8, 1.25)  # filters and quantisation, but no wrong unit
 CONSTANT_BAND = (0.5, 2.0)  # data sheets and warm windings, but no factor of four from counting lines for counts
+MOVING_SHARE = 0.25  # of the highest speed
+SEEN_SIGMAS = 3.0  # that two mean currents have to differ by
 LEAST_SHARE = 0.2  # of the voltage that the back-EMF must make up to be told from the resistance's
 
 
@@ -53,6 +55,38 @@ class Push(NamedTuple):
 def findings(pushes: Sequence[Push], rig: Rig) -> list[Finding]:
     """Every check, in the order in which a wrong one explains those after it."""
     return [check_sign(pushes), check_velocity(pushes), check_current(pushes), check_ratio(pushes, rig)]
+
+
+def position_findings(pushes: Sequence[Push], rig: Rig) -> list[Finding]:
+    """Every check of a move there and back that the drive itself has closed."""
+    return [_sign_unseen(pushes), check_velocity(pushes), check_friction(pushes), check_ratio(pushes, rig)]
+
+
+def _sign_unseen(pushes: Sequence[Push]) -> Finding:
+    """Whoever closes a position by his own count finds its sign right in any case."""
+    return Finding(
+        "sign", None, "not checked: the drive follows its own count. By it the joint turned "
+        f"{pushes[0].travel_rad:+.3g} rad first. Where you saw the arm turn the other way, change the sign of "
+        "drive.encoder_sign",
+    )  # fmt: skip
+
+
+def check_friction(pushes: Sequence[Push]) -> Finding:
+    """There and back over one way: the measured currents differ by friction, which has the sign of the motion."""
+    there_a, back_a = (_column(_moving(push.driven), "current_a") for push in pushes)
+    if np.isnan([*there_a, *back_a]).any():
+        return Finding("current", None, "the drive measures no current; it is estimated by eq. (3)")
+    means = float(np.mean(there_a)), float(np.mean(back_a))
+    text = f"measured current: {means[0]:+.3g} A on the way there, {means[1]:+.3g} A on the way back"
+    noise_a = float(np.hypot(np.std(there_a) / np.sqrt(len(there_a)), np.std(back_a) / np.sqrt(len(back_a))))
+    if abs(means[0] - means[1]) <= SEEN_SIGMAS * noise_a:
+        return Finding("current", None, f"not checked: {text}; friction does not show in it")
+    if means[0] > means[1]:
+        return Finding("current", True, text)
+    return Finding(
+        "current", False, f"{text}; more is wanted on the way there, where friction is against it. Correct how the "
+        "drive's settings take the sign of its current",
+    )  # fmt: skip
 
 
 def check_sign(pushes: Sequence[Push]) -> Finding:
@@ -121,6 +155,12 @@ def check_ratio(pushes: Sequence[Push], rig: Rig) -> Finding:
         "ratio", False, f"{text}. Correct sensor.counts_per_turn (counts are four per line), the motor's constants or "
         "the scale of the drive's current",
     )  # fmt: skip
+
+
+def _moving(readings: Sequence[Reading]) -> list[Reading]:
+    """Those of the way itself, without the wait at its ends."""
+    fastest_rad_s = max(abs(reading.velocity_rad_s) for reading in readings)
+    return [reading for reading in readings if abs(reading.velocity_rad_s) >= MOVING_SHARE * fastest_rad_s]
 
 
 def _column(readings: Sequence[Reading], name: str) -> FloatArray:

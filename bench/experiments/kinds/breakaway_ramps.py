@@ -14,7 +14,7 @@ from bench.config.reflected_load import load_current_a
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
@@ -225,4 +225,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=a_current,
 )

@@ -61,4 +61,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=summarise_injection,
+    modes=ChirpParameters.modes,
 )

@@ -184,6 +184,10 @@ def _summarise(_parameters: CoastDownParameters, trials: list[FinishedTrial]) ->
     return summary
 
 
+def _modes(parameters: CoastDownParameters) -> frozenset[Mode]:
+    return frozenset({Mode.CURRENT}) if parameters.released == "current" else frozenset()
+
+
 KIND = ExperimentKind(
     name="coast-down",
     title="Coast-down",
@@ -194,4 +198,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=_modes,
 )

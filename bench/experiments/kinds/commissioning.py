@@ -9,9 +9,10 @@ from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import OFF, Procedure, Reading
 from bench.errors import ExperimentError, LimitError, quantity_message
-from bench.experiments.analysis.commissioning_checks import Finding, Push, findings
+from bench.experiments.analysis.commissioning_checks import Finding, Push, findings, position_findings
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint, Part
+from bench.experiments.parts.position_push import push_there_and_back
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
 from bench.json_types import Value
 from drivers.contract import Command, Mode
@@ -34,6 +35,14 @@ class CommissioningParameters(Parameters):
     )
     rate_a_s: float = quantity(0.3, "A/s", "How fast the current rises until the joint moves", gt=0, le=10)
     coast_s: float = quantity(3.0, "s", "Longest wait for the joint to stand again", gt=0, le=30)
+
+
+class PositionMoveParameters(CommissioningParameters):
+    """The same, of a drive that closes positions and takes nothing else."""
+
+
+def _adapt(parameters: CommissioningParameters, modes: frozenset[Mode]) -> CommissioningParameters:
+    return PositionMoveParameters(**parameters.model_dump()) if modes == {Mode.POSITION} else parameters
 
 
 def _plan(parameters: CommissioningParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
@@ -59,6 +68,8 @@ def _refuse(parameters: CommissioningParameters, configuration: BenchConfigurati
 def commission(parameters: CommissioningParameters, configuration: BenchConfiguration) -> Procedure:
     """The procedure: push one way, coast, push the other way, coast; then compare.
 
+    A drive that closes positions alone is asked for a position there, and back.
+
     Raises:
         ExperimentError: the joint does not move, or a check is not passed; with what to correct.
     """
@@ -67,10 +78,13 @@ def commission(parameters: CommissioningParameters, configuration: BenchConfigur
     pushes: list[Push] = []
     found: list[Finding] = []
     for longer in _lengthened(parameters, configuration):
-        forward = yield from _push(joint, 1, longer, configuration)
-        back = yield from _push(joint, -1, longer, configuration)
-        pushes = [forward, back]
-        found = findings(pushes, configuration.rig)
+        if isinstance(longer, PositionMoveParameters):
+            pushes = yield from push_there_and_back(joint, longer.excursion_rad, longer.coast_s, configuration)
+            found = position_findings(pushes, configuration.rig)
+        else:
+            forward = yield from _push(joint, 1, longer, configuration)
+            pushes = [forward, (yield from _push(joint, -1, longer, configuration))]
+            found = findings(pushes, configuration.rig)
         if not any(finding.asks_for_more for finding in found):
             break
     wrong = [f"{finding.name}: {finding.sentence}" for finding in found if finding.passed is False]
@@ -158,4 +172,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    adapt=_adapt,
 )

@@ -9,7 +9,7 @@ from pydantic import Field
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.parts.refusal import (
     refuse_angles,
@@ -99,4 +99,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=a_current,
 )

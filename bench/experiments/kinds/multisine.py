@@ -88,4 +88,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=MultisineParameters.modes,
 )

@@ -6,7 +6,7 @@ from math import cos, pi, sin
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.followed_motion import FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
@@ -107,4 +107,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=a_current,
 )

@@ -188,6 +188,11 @@ def _summarise(_parameters: SpeedSweepParameters, trials: list[FinishedTrial]) -
     return {"rows": rows, "steps": len(rows), "saturated": sum(numbers(rows, "saturated"))}
 
 
+def _modes(parameters: SpeedSweepParameters) -> frozenset[Mode]:
+    asked = {Mode.DUTY: parameters.duties, Mode.CURRENT: parameters.currents_a}
+    return frozenset(mode for mode, levels in asked.items() if levels)
+
+
 KIND = ExperimentKind(
     name="speed-sweep",
     title="Speed sweep",
@@ -198,5 +203,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
-    modes=lambda parameters: frozenset({Mode.DUTY}) if parameters.duties else frozenset(),
+    modes=_modes,
 )

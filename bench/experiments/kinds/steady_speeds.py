@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.followed_motion import Followed, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import (
@@ -172,4 +172,5 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=a_current,
 )

@@ -17,7 +17,7 @@ from bench.control.pair import PairProcedure, Reach
 from bench.errors import ConfigurationError, LimitError, quantity_message
 from bench.experiments.analysis.reflection_results import error_results, rest_results, truth_n_m, widest_swing
 from bench.experiments.analysis.stability_margin import STAGE_S, ladder, margin
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.load_follower import LoadFollower
 from bench.experiments.parts.pair_joints import MARGIN_RAD, Coupling, PairJoints, PairPart, Way
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
@@ -200,5 +200,6 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    modes=a_current,
     pair=True,
 )

@@ -11,7 +11,7 @@ from bench.errors import LimitError, ParameterError
 from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, conditions
 from bench.experiments.parts.injection import RESTS_S, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
-from bench.experiments.parts.signal_play import Signal, play, refuse_signal
+from bench.experiments.parts.signal_play import MODES, Signal, play, refuse_signal
 from bench.experiments.parts.waveform_csv import Waveform, read_waveform
 from bench.json_types import Value
 from drivers.contract import Mode
@@ -89,7 +89,8 @@ def _duration_s(parameters: WaveformParameters, _configuration: BenchConfigurati
 
 
 def _modes(parameters: WaveformParameters) -> frozenset[Mode]:
-    return frozenset({Mode.DUTY}) if parameters.waveform.quantity == "duty" else frozenset()
+    mode = MODES.get(parameters.waveform.quantity)
+    return frozenset() if mode is None else frozenset({mode})
 
 
 def _summarise(parameters: WaveformParameters, trials: Any) -> dict[str, Value]:

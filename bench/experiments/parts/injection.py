@@ -15,6 +15,7 @@ from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
 from bench.json_types import Value, numbers
 from compensator.lab.recordings.recording import Condition
+from drivers.contract import Mode
 
 FloatArray = NDArray[np.float64]
 LEAST_SAMPLES = 8.0  # of a period of the highest frequency
@@ -49,6 +50,10 @@ class InjectionParameters(Parameters):
         if self.closed == "position":
             return Signal("position_rad", self.amplitude_rad * wave)
         return Signal("current_a", self.amplitude_a * wave, self.excursion_rad)
+
+    def modes(self) -> frozenset[Mode]:
+        """That the drive has to close itself."""
+        return frozenset({Mode.CURRENT}) if self.closed == "current" else frozenset()
 
     def held(self) -> dict[str, Condition]:
         """Conditions of its trials."""

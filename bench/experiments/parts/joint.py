@@ -101,8 +101,12 @@ class Joint:
     def push(self, command: Command, event: tuple[str, str] | None = None) -> Part[Reading]:
         """One cycle of a command of one's own; no position is asked for."""
         self._command_a = command.value if command.mode is _CURRENT else self._command_a
-        self._reading = yield Action(command, event=event)
-        return self._reading
+        return (yield from self.act(Action(command, event=event)))
+
+    def act(self, action: Action) -> Part[Reading]:
+        """One cycle of an action of one's own."""
+        reading = self._reading = yield action
+        return reading
 
     def grip(self, dead_band_rad: float) -> None:
         """Let the servo of the bench work down to another error; `settle` keeps to that of the configuration."""

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from math import pi, radians
 
 from bench.config.configuration import BenchConfiguration
+from bench.control.servo import closes_positions_alone
 from bench.errors import LimitError, quantity_message
 from bench.experiments.parts.profile import Trapezoid
 from drivers.contract import Description, Mode
@@ -76,10 +77,12 @@ def refuse_duty(name: str, duty: float, configuration: BenchConfiguration) -> No
 
 def refuse_modes(kind: str, wanted: frozenset[Mode], drive: Description) -> None:
     """Raise `LimitError` where a drive lacks a mode that an experiment needs of the drive itself."""
-    missing = sorted(mode.value for mode in wanted - drive.modes)
+    there = drive.modes | ({Mode.CURRENT} if Mode.DUTY in drive.modes else set())  # by eq. (3)
+    missing = sorted(mode.value for mode in wanted - there)
     if missing:
-        there = ", ".join(sorted(mode.value for mode in drive.modes))
+        names = ", ".join(sorted(mode.value for mode in drive.modes))
+        others = "a position" if closes_positions_alone(drive) else "a current or a position, which every drive can do"
         raise LimitError(
-            f"{kind} needs the mode {' and '.join(missing)} of the drive, and drive '{drive.device}' has {there}; "
-            "ask for a current or a position, which every drive can do"
+            f"{kind} needs the mode {' and '.join(missing)} of the drive, and drive '{drive.device}' has {names}; "
+            f"choose an experiment that asks for {others}"
         )

@@ -2,7 +2,6 @@
 
 import tempfile
 from contextlib import suppress
-from datetime import datetime
 from pathlib import Path as FilePath
 from typing import Annotated, Literal
 
@@ -25,13 +24,13 @@ from bench.service.http.downloads import attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import InvalidFieldsError, field_problems, problems
 from bench.service.http.repeated_start import Key, once
+from bench.service.records import Experiment, experiment_record
 from bench.service.routes.leases import LeaseOf
 from bench.service.routes.queue_models import Note, Tags
 from bench.service.routes.trials import PARQUET, PARQUET_ANSWER
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import StoreError
-from bench.store.records import Experiment as StoredExperiment
 from bench.store.tables.tags import LONGEST_TAG
 
 router = APIRouter(tags=["experiments"], dependencies=[Depends(allow_read)])
@@ -87,49 +86,10 @@ class Started(BaseModel):
     kind: str
 
 
-class Experiment(BaseModel):
-    """What was started, where it came from, and how it ended."""
-
-    experiment_id: int
-    kind: str
-    parameters: Json
-    source: str = Field(description="simulated, real or imported")
-    operator: str
-    note: str
-    tags: list[str]
-    provenance: Json = Field(description="software version and commit, configuration, drive, seed")
-    rig: Json
-    started_utc: datetime
-    finished_utc: datetime | None
-    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
-    reason: str = Field(description="why it ended")
-    results: Json = Field(description="what came out, units in the names")
-
-
 class Experiments(Page):
     """One page of experiments, newest first."""
 
     items: list[Experiment]
-
-
-def represent(found: StoredExperiment) -> Experiment:
-    """A stored experiment as it is answered."""
-    return Experiment(
-        experiment_id=found.id,
-        kind=found.kind,
-        parameters=found.parameters,
-        source=found.source,
-        operator=found.operator,
-        note=found.note,
-        tags=list(found.tags),
-        provenance=found.provenance,
-        rig=found.rig,
-        started_utc=found.started_utc,
-        finished_utc=found.finished_utc,
-        outcome=found.outcome,
-        reason=found.reason,
-        results=found.results,
-    )
 
 
 @router.get("/experiment-kinds", summary="What can be started", responses=problems(422))
@@ -223,13 +183,13 @@ def experiments(
     """Newest first, failed starts included."""
     found = store.experiments(kind or None, outcome or None, tag=tag or None, limit=limit + 1, offset=offset)
     items, page = cut(found, limit, offset)
-    return Experiments(items=[represent(one) for one in items], **page)
+    return Experiments(items=[experiment_record(one) for one in items], **page)
 
 
 @router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404) | conditional.ANSWER)
 def experiment(store: StoreOf, request: Request, response: Response, experiment_id: ExperimentId) -> Experiment:
     """Parameters, provenance, outcome and why, results. With an `ETag`, which changes when it does."""
-    found = represent(store.experiment(experiment_id))
+    found = experiment_record(store.experiment(experiment_id))
     response.headers.update(conditional.unless_known(request, found.model_dump()))
     return found
 
@@ -244,7 +204,7 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
     """Also of one that has ended; what was measured stays as it is."""
     store.annotate(experiment_id, body.note, body.tags)
     note(request, f"changed tags or note of experiment {experiment_id}")
-    return represent(store.experiment(experiment_id))
+    return experiment_record(store.experiment(experiment_id))
 
 
 @router.get(

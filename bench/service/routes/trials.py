@@ -1,20 +1,19 @@
 """/trials: what was recorded, down-sampled for a plot or whole as CSV."""
 
 import math
-from datetime import datetime
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field, FiniteFloat
 
-from bench.json_types import Json
 from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
 from bench.service.http.downloads import attachment, samples_json
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
+from bench.service.records import Trial, trial_record
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
 from bench.store.tables.trial_search import TrialQuery
@@ -29,23 +28,6 @@ PARQUET_ANSWER = {
 }
 Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
-
-
-class Trial(BaseModel):
-    """One recording under constant conditions."""
-
-    trial_id: int
-    experiment_id: int
-    name: str
-    kind: str
-    conditions: dict[str, float | str | bool] = Field(examples=[{"load_kg": 0.1, "balanced": False, "repeat": 3}])
-    outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
-    reason: str = Field(description="why it ended")
-    results: Json = Field(description="what the procedure found, units in the names")
-    channels: list[str] = Field(description="names of the recorded channels, SI with the unit in the name")
-    rows: int
-    started_utc: datetime
-    finished_utc: datetime | None
 
 
 class Event(BaseModel):
@@ -77,24 +59,6 @@ class Samples(BaseModel):
     channels: dict[str, list[float | None]]
 
 
-def represent(trial: StoredTrial) -> Trial:
-    """A stored trial as it is answered."""
-    return Trial(
-        trial_id=trial.id,
-        experiment_id=trial.experiment_id,
-        name=trial.name,
-        kind=trial.kind,
-        conditions=dict(trial.conditions),
-        outcome=trial.outcome,
-        reason=trial.reason,
-        results=trial.results,
-        channels=list(trial.channels),
-        rows=trial.rows,
-        started_utc=trial.started_utc,
-        finished_utc=trial.finished_utc,
-    )
-
-
 @router.get("", summary="Trials, filtered", responses=problems(422))
 def trials(
     store: StoreOf,
@@ -107,7 +71,7 @@ def trials(
     """In the order in which they were made. Without filters: all trials."""
     found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
     items, page = cut(found, limit, offset)
-    return Trials(items=[represent(trial) for trial in items], **page)
+    return Trials(items=[trial_record(trial) for trial in items], **page)
 
 
 class FoundTrials(Page):
@@ -135,7 +99,7 @@ def search(
     )
     found, total = store.search_trials(wanted, limit, offset)
     more = offset + limit if offset + limit < total else None
-    items = [represent(trial) for trial in found]
+    items = [trial_record(trial) for trial in found]
     return FoundTrials(items=items, total=total, limit=limit, offset=offset, next_offset=more)
 
 
@@ -143,7 +107,7 @@ def search(
 def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialId) -> TrialWithEvents:
     """Conditions, outcome and why, results, channels, events. With an `ETag`, which changes when it does."""
     events = [Event(time_s=one.time_s, name=one.name, detail=one.detail) for one in store.events(trial_id)]
-    found = TrialWithEvents(**dict(represent(store.trial(trial_id))), events=events)
+    found = TrialWithEvents(**dict(trial_record(store.trial(trial_id))), events=events)
     response.headers.update(conditional.unless_known(request, found.model_dump()))
     return found
 

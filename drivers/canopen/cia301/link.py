@@ -7,15 +7,17 @@ thread: no frame waits for a thread switch, and what a handler raises is raised 
 import errno
 import struct
 import time
-from collections import Counter
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import can
 import canopen
 
-from drivers.can_bus.bus import close_bus, open_bus
-from drivers.can_bus.settings import BusSettings
+from drivers.canopen.cia301.bus import BusPort
 from drivers.errors import DriveConnectionError
+
+if TYPE_CHECKING:
+    from drivers.canopen.cia301.sync_cycle import SyncCycle
 
 _SEND_S = 0.02  # longest wait for room in the transmit buffer
 _RETRY_S = 0.0005
@@ -24,24 +26,30 @@ _BUS_OFF = 0x40  # error class of a SocketCAN error frame (linux/can/error.h)
 
 
 class CanLink(canopen.Network):
-    """One CAN bus, open or not.
+    """One drive's access to a CAN bus, open or not. Whichever link receives hands out to all of the bus.
 
     Args:
-        settings: how it is reached.
+        port: the bus.
         device: named in errors.
 
     Attributes:
         garbled: frames that could not be read, or were not what their COB-ID promises.
         waited: sends that found the transmit buffer full and were repeated.
+        cycle: of the drive; None before it has one.
+        host_id: node ID of this host towards the drive; None before it has one.
+        load: bytes of the frames of a cycle of the drive.
     """
 
-    def __init__(self, settings: BusSettings, device: str) -> None:
+    def __init__(self, port: BusPort, device: str) -> None:
         super().__init__()
-        self._settings = settings
+        self.port = port
         self._device = device
+        self._echoes = port.echoes
         self.garbled = 0
         self.waited = 0
-        self._echoes: Counter[tuple[int, bytes]] | None = Counter() if settings.echoes else None
+        self.cycle: SyncCycle | None = None
+        self.host_id: int | None = None
+        self.load: tuple[int, ...] = ()
 
     def open(self) -> None:
         """Open the bus.
@@ -49,13 +57,13 @@ class CanLink(canopen.Network):
         Raises:
             DriveConnectionError: it is not there, or does not open in time.
         """
-        self.bus = open_bus(self._settings, self._device)
+        self.bus = self.port.join(self, self._device)
 
     def close(self) -> None:
-        """Close the bus, also a broken one. Never raises."""
-        bus, self.bus = self.bus, None
-        if bus is not None:
-            close_bus(bus)
+        """Close the bus where nobody else of this bench uses it, also a broken one. Never raises."""
+        if self.bus is not None:
+            self.bus = None
+            self.port.leave(self)
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send one frame.
@@ -109,7 +117,8 @@ class CanLink(canopen.Network):
         if message.is_error_frame:
             self._check(message)
         elif not message.is_remote_frame and message.is_rx and not self._is_echo(message):
-            self._hand_out(message)
+            for link in self.port.links:
+                link.hand_out(message)
         return True
 
     def drain(self) -> None:
@@ -126,7 +135,8 @@ class CanLink(canopen.Network):
         self._echoes[key] -= 1
         return True
 
-    def _hand_out(self, message: can.Message) -> None:
+    def hand_out(self, message: can.Message) -> None:
+        """Give a frame to those who have subscribed to it."""
         try:
             for handler in self.subscribers.get(message.arbitration_id, ()):
                 handler(message.arbitration_id, message.data, message.timestamp)
@@ -135,7 +145,7 @@ class CanLink(canopen.Network):
 
     def _check(self, message: can.Message) -> None:
         self.garbled += 1
-        if self._settings.interface == "socketcan" and message.arbitration_id & _BUS_OFF:
+        if self.port.settings.interface == "socketcan" and message.arbitration_id & _BUS_OFF:
             raise DriveConnectionError(
                 self._device, "the bus is off after too many errors; check wiring, termination and bit rate, then open"
             )

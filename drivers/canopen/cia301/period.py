@@ -1,5 +1,6 @@
 """Which control periods a drive on a bus can have."""
 
+from collections.abc import Iterable
 from typing import Final
 
 from drivers.canopen.cia301.bus_load import cycle_s
@@ -24,18 +25,18 @@ def check_period(settings: CanopenSettings, period_s: float) -> None:
         )
 
 
-def check_bus_load(settings: CanopenSettings, payload_bytes: tuple[int, ...], period_s: float) -> None:
+def check_bus_load(settings: CanopenSettings, loads: Iterable[tuple[int, ...]], period_s: float) -> None:
     """Compare a control period [s] with what the frames of a cycle take on the bus.
 
     Args:
         settings: with the bit rate.
-        payload_bytes: of each frame.
+        loads: bytes of the frames of each drive on the bus; the first is SYNC, which goes out once.
         period_s: the control period [s].
 
     Raises:
         DriveConfigurationError: it is too short.
     """
-    fastest_s = cycle_s(payload_bytes, settings.bus.bitrate)
+    fastest_s = cycle_s((0, *(size for load in loads for size in load[1:])), settings.bus.bitrate)
     if period_s < fastest_s:
         raise DriveConfigurationError(
             settings.device,

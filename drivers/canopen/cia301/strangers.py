@@ -35,6 +35,7 @@ class Strangers:
     def __init__(self, link: CanLink, device: str, node_id: int) -> None:
         self._device = device
         self._node_id = node_id
+        self._link = link
         self._host_id: int | None = None
         self._seen = ""
         self.heard: set[int] = set()
@@ -53,7 +54,9 @@ class Strangers:
         Raises:
             DriveConnectionError: somebody uses the one that is configured, or all are used.
         """
-        free = [number for number in _own_order() if number not in self.heard | {self._node_id}]
+        # one for each drive: its watchdog stops it where this host goes on with the others alone
+        taken = self.heard | {self._node_id} | {one.host_id for one in self._link.port.links}
+        free = [number for number in _own_order() if number not in taken]
         if configured is not None and configured in self.heard:
             raise DriveConnectionError(
                 self._device,
@@ -80,8 +83,7 @@ class Strangers:
         if self._seen:
             raise DriveConnectionError(
                 self._device,
-                f"another host, or another joint of this bench, is on the bus: it sends {self._seen}. End it, or give "
-                "each joint a bus of its own; then open the drive again",
+                f"another host is on the bus: it sends {self._seen}. End it, then open the drive again",
             )
 
     def _named(self, what: str) -> Callable[[int, bytearray, float], None]:

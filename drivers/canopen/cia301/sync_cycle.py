@@ -1,4 +1,8 @@
-"""One control cycle on the bus: RPDO and SYNC out, TPDOs in (CiA 301, 7.2.2 and 7.2.5)."""
+"""One control cycle on the bus: RPDO and SYNC out, TPDOs in (CiA 301, 7.2.2 and 7.2.5).
+
+Drives on one bus answer the same SYNC. The first drive that is asked in a cycle sends it. The others take what they
+measured at that SYNC; their demand goes out at once, and acts at the next one.
+"""
 
 from dataclasses import dataclass
 from time import perf_counter
@@ -34,13 +38,14 @@ class CycleCounts:
 class SyncCycle:
     """Sends SYNC, and knows which TPDOs answer it.
 
-    TPDOs carry no count. So a SYNC is sent only when the one before has been answered, or has been given up after a
-    second wait: then whatever comes in belongs to the latest one.
+    TPDOs carry no count. So a SYNC is sent only when the one before has been answered by every drive of the bus, or has
+    been given up after a second wait: then whatever comes in belongs to the latest one.
 
     Args:
         link: open.
         tpdos: what the drive sends at each SYNC.
         wait_s: longest wait for them in a cycle [s].
+        period_s: control period: a SYNC for another drive is used for half of it [s].
 
     Attributes:
         values: of each TPDO, as last received.
@@ -49,7 +54,7 @@ class SyncCycle:
         number: of the SYNC that `values` answer.
     """
 
-    def __init__(self, link: CanLink, tpdos: tuple[Pdo, ...], wait_s: float) -> None:
+    def __init__(self, link: CanLink, tpdos: tuple[Pdo, ...], wait_s: float, period_s: float) -> None:
         self.values: list[tuple[int, ...]] = [() for _ in tpdos]
         self.sync_s = self.received_s = perf_counter()
         self.number = 0
@@ -57,6 +62,9 @@ class SyncCycle:
         self._link = link
         self._places = frozenset(range(len(tpdos)))
         self._wait_s = wait_s
+        self._usable_s = 0.5 * period_s  # longer, and every cycle would begin with the SYNC of the one before
+        self._is_new = False  # a SYNC of another drive's, which this one has not been asked about yet
+        self._is_late = False  # the present SYNC has been waited for in vain
         self._missing: set[int] = set()
         self._in_doubt = False  # the last SYNC has been given up: its answer may still come
         self._arrived: dict[int, tuple[int, ...]] = {}
@@ -64,6 +72,7 @@ class SyncCycle:
         self._listened_s = 0.0
         for place, pdo in enumerate(tpdos):
             link.subscribe(pdo.cob_id, self._receiver(place, pdo))
+        link.cycle = self
 
     def run(self, cob_id: int, payload: bytes) -> bool:
         """Send a command and SYNC, and wait for the answer; tell whether it came.
@@ -72,22 +81,40 @@ class SyncCycle:
             cob_id: of the RPDO.
             payload: of the RPDO.
         """
-        link, counts = self._link, self.counts
+        link = self._link
+        if self._is_new and perf_counter() - self._sent_s < self._usable_s:
+            self._is_new = False
+            link.send_message(cob_id, payload)
+            return self._await_answer()
+        cycles = [other.cycle for other in link.port.links if other.cycle is not None]
+        for cycle in cycles:
+            cycle.finish()
+        link.send_message(cob_id, payload)
+        link.send_prepared(_SYNC)
+        sent_s = perf_counter()
+        for cycle in cycles:
+            cycle.begin(sent_s)
+        self._is_new = False
+        return self._await_answer()
+
+    def finish(self) -> None:
+        """Before the next SYNC: give the last one a second chance to be answered, or take in what has come since."""
         if self._missing:
-            self._settle()
+            self._is_late = True
+            self._link.drain()
+            if not self._await_answer():
+                self.counts.missed += 1
         elif self._in_doubt or perf_counter() - self._sent_s > _PAUSE_S:
-            link.drain()
+            self._link.drain()
+
+    def begin(self, sent_s: float) -> None:
+        """A SYNC has been sent."""
         self._in_doubt = bool(self._missing)
         self._missing = set(self._places)
         self._arrived.clear()
-        link.send_message(cob_id, payload)
-        link.send_prepared(_SYNC)
-        self._sent_s = perf_counter()
-        counts.sent += 1
-        if self._await_answer():
-            counts.answered += 1
-            return True
-        return False
+        self._sent_s = sent_s
+        self._is_new, self._is_late = True, False
+        self.counts.sent += 1
 
     @property
     def silence_s(self) -> float:
@@ -96,14 +123,6 @@ class SyncCycle:
         Time in which the host was held up does not count: it is no silence of the drive.
         """
         return self._listened_s
-
-    def _settle(self) -> None:
-        """Give the previous SYNC a second chance to be answered."""
-        self._link.drain()
-        if self._await_answer():
-            self.counts.late += 1
-        else:
-            self.counts.missed += 1
 
     def _await_answer(self) -> bool:
         deadline_s = perf_counter() + self._wait_s
@@ -138,6 +157,10 @@ class SyncCycle:
         for place, values in self._arrived.items():
             self.values[place] = values
         self._arrived.clear()
+        if self._is_late:
+            self.counts.late += 1
+        else:
+            self.counts.answered += 1
         self.received_s = perf_counter()
         self.sync_s = self._sent_s
         self.number = self.counts.sent

@@ -3,7 +3,7 @@
 from math import ceil, floor
 
 from drivers.canopen.capabilities import Capabilities
-from drivers.canopen.cia301.object_table import ObjectTable
+from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import HIGHEST_POSITION, LOWEST_POSITION, MAX_TORQUE
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
@@ -24,22 +24,30 @@ def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilitie
 
 
 def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilities, limit_a: float) -> None:
-    """Set the highest current in every object that limits it."""
+    """Set the highest current in every object that limits it; one that is lower already may stay."""
     candidates = dict.fromkeys((found.profile.current_limit, MAX_TORQUE))
-    items = [item for item in candidates if found.scale.tells(item) and table.has(item, _PURPOSE)]
+    there = [item for item in candidates if table.has(item, _PURPOSE)]
+    items = [item for item in there if found.scale.tells(item)]
     if not items:
-        names = " nor ".join(map(str, candidates))
-        raise DriveConfigurationError(
-            settings.device,
-            f"current_limit_a is {limit_a:g} A, and the drive has neither {names} in units that are known; leave it "
-            "out, and set the limit in the drive's own tool",
+        what = (
+            f"has neither {' nor '.join(map(str, candidates))}; leave it out, and set the limit in the drive's own tool"
         )
+        if there:
+            what = f"does not tell what {' and '.join(map(str, there))} count; set rated_current_a [A] to what 1000 are"
+        raise DriveConfigurationError(settings.device, f"current_limit_a is {limit_a:g} A, and the drive {what}")
     for item in items:
+        wanted = int(limit_a / found.scale.current_a(item))  # never above what was asked for
+        before = table.ask(item, _PURPOSE)
         try:
-            table.set(item, int(limit_a / found.scale.current_a(item)), _PURPOSE)  # never above what was asked for
+            table.set(item, wanted, _PURPOSE)
         except DriveConfigurationError as error:
+            if before is not None and 0 < before <= wanted:
+                table.note(item, Need.REQUIRED, _PURPOSE, True, f"{before}, as it was: lower than {wanted} already")
+                continue
             why = str(error).removeprefix(f"drive '{settings.device}': ")
-            raise DriveConfigurationError(settings.device, f"current_limit_a is {limit_a:g} A: {why}") from error
+            raise DriveConfigurationError(
+                settings.device, f"current_limit_a is {limit_a:g} A: {why}; choose one that the drive takes"
+            ) from error
 
 
 def _set_positions(table: ObjectTable, found: Capabilities, low_rad: float, high_rad: float) -> None:

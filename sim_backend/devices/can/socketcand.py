@@ -45,13 +45,13 @@ class SocketcandSession:
         return answers, frames
 
     def tell(self, frame: Frame) -> bytes:
-        """Return what a host is told of a frame."""
+        """Return what a host is told of a frame. Three digits are an identifier of 11 bits; any other number, of 29."""
         if not self._raw:
             return b""
         now_s = time.time()
         if frame.remote:
-            return f"< rtr {frame.can_id:X} {now_s:.6f} {len(frame.data)} >".encode("ascii")
-        return f"< frame {frame.can_id:X} {now_s:.6f} {frame.data.hex().upper()} >".encode("ascii")
+            return f"< rtr {frame.can_id:03X} {now_s:.6f} {len(frame.data)} >".encode("ascii")
+        return f"< frame {frame.can_id:03X} {now_s:.6f} {frame.data.hex().upper()} >".encode("ascii")
 
     def _obey(self, words: list[str]) -> tuple[bytes, Frame | None]:
         command = self._commands.get(words[0]) if words else None

@@ -18,6 +18,7 @@ from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
 from drivers.contract import Command, Mode
 from drivers.errors import DriveError
 from tests.drivers.canopen.conversation import JOINT, bus_of, started
+from tests.drivers.holes import watched
 from tests.drivers.rate_rows import ratio_row, row
 
 ROUNDS, CYCLES = 12, 200
@@ -99,13 +100,14 @@ def endurance_row(bus: BusSettings, place: str, rate_hz: float, duration_s: floa
     drive.open(1.0 / rate_hz)
     drive.enable(Mode.CURRENT)
     before, late_s, ending = replace(drive.counts), [], ""
-    began_s = perf_counter()
-    try:
-        for number in range(cycles):
-            late_s.append(_wait_until(began_s + number / rate_hz))
-            drive.exchange(Command(Mode.CURRENT, 0.0))
-    except DriveError as error:
-        ending = f"; {error}"
+    with watched() as holes:
+        began_s = perf_counter()
+        try:
+            for number in range(cycles):
+                late_s.append(_wait_until(began_s + number / rate_hz))
+                drive.exchange(Command(Mode.CURRENT, 0.0))
+        except DriveError as error:
+            ending = f"; {error}"
     took_s, after = perf_counter() - began_s, replace(drive.counts)
     drive.close()
     late_s.sort()
@@ -116,7 +118,7 @@ def endurance_row(bus: BusSettings, place: str, rate_hz: float, duration_s: floa
         f"{rate_hz:.0f} Hz for {duration_s:g} s, {place}",
         "0 cycles lost",
         f"{lost} lost of {sent} SYNC in {took_s:.1f} s, {late} answered late, {surplus} TPDO too many; cycle's start "
-        f"late by p99 {p99_ms:.2f} ms, max {max_ms:.1f} ms{ending}",
+        f"late by p99 {p99_ms:.2f} ms, max {max_ms:.1f} ms; {holes}{ending}",
         sent == cycles and lost == surplus == 0,
     )
 

@@ -6,6 +6,7 @@ import can
 import pytest
 
 from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError
@@ -72,7 +73,8 @@ def test_a_bus_that_hands_back_its_own_frames_has_no_stranger_on_it():
 
 
 def test_of_two_equal_frames_one_is_the_echo_and_the_other_a_strangers():
-    link = CanLink(BusSettings("udp_multicast", GROUP), "x node 5")
+    port = BusPort(BusSettings("udp_multicast", GROUP))
+    link = CanLink(port, "x node 5")
     heard = []
     link.subscribe(0x80, lambda *_frame: heard.append(1))
 
@@ -88,7 +90,8 @@ def test_of_two_equal_frames_one_is_the_echo_and_the_other_a_strangers():
         def recv(self, _timeout):
             return self.waiting.pop(0) if self.waiting else None
 
-    link.bus = Bus()
+    port._bus = Bus()
+    link.open()
     link.send_message(0x80, b"")
     link.drain()
     assert len(heard) == 1

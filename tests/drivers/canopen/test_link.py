@@ -9,6 +9,7 @@ import pytest
 
 from drivers.can_bus.bounded import bounded
 from drivers.can_bus.settings import BusSettings
+from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.errors import DriveConnectionError
 
@@ -35,8 +36,10 @@ class ScriptedBus:
 
 
 def _link(interface="virtual", **script):
-    link = CanLink(BusSettings(interface, "x"), "x node 5")
-    link.bus = ScriptedBus(**script)
+    port = BusPort(BusSettings(interface, "x"))
+    port._bus = ScriptedBus(**script)
+    link = CanLink(port, "x node 5")
+    link.open()
     return link
 
 
@@ -104,7 +107,7 @@ def test_a_babbling_node_does_not_hold_the_loop():
 
 
 def test_a_closed_bus_says_so():
-    link = CanLink(BusSettings("virtual", "x"), "x node 5")
+    link = CanLink(BusPort(BusSettings("virtual", "x")), "x node 5")
     for call in (lambda: link.send_message(0, b""), lambda: link.receive(0.0)):
         with pytest.raises(DriveConnectionError, match="open the drive first"):
             call()
@@ -123,3 +126,26 @@ def test_a_bounded_call_gives_its_result_or_its_error():
     assert bounded(lambda: 5, 5.0) == 5
     with pytest.raises(ZeroDivisionError):
         bounded(lambda: 1 // 0, 5.0)
+
+
+def test_every_link_to_a_bus_hears_what_one_of_them_receives():
+    link = _link(receives=[_frame(0x185), _frame(0x186)])
+    other = CanLink(link.port, "x node 6")
+    other.open()
+    heard = []
+    for number, one in ((0x185, link), (0x186, other)):
+        one.subscribe(number, lambda cob_id, *_frame: heard.append(cob_id))
+    link.drain()
+    assert heard == [0x185, 0x186]
+
+
+def test_a_bus_is_closed_with_its_last_link():
+    link = _link()
+    bus, closed = link.bus, []
+    bus.shutdown = lambda: closed.append(True)
+    other = CanLink(link.port, "x node 6")
+    other.open()
+    link.close()
+    assert not closed
+    other.close()
+    assert closed

@@ -10,6 +10,7 @@ import pytest
 
 from drivers.can_bus.bus import close_bus, open_bus
 from drivers.can_bus.settings import BusSettings
+from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.errors import DriveConnectionError
 
@@ -83,7 +84,7 @@ def test_not_waiting_means_not_waiting(bus):
 
 
 def test_garbage_on_the_line_costs_its_line_only(adapter):
-    link = CanLink(BusSettings("slcan", adapter[1]), "test")
+    link = CanLink(BusPort(BusSettings("slcan", adapter[1])), "test")
     link.open()
     heard = []
     link.subscribe(0x705, lambda _id, data, _time: heard.append(bytes(data)))
@@ -97,7 +98,7 @@ def test_garbage_on_the_line_costs_its_line_only(adapter):
 
 
 def test_a_port_that_is_pulled_is_an_error_and_closes(adapter):
-    link = CanLink(BusSettings("slcan", adapter[1]), "test")
+    link = CanLink(BusPort(BusSettings("slcan", adapter[1])), "test")
     link.open()
     link.send_message(0x80, b"")
     os.close(adapter[0])

@@ -3,6 +3,7 @@
 import pytest
 
 from drivers.can_bus.settings import BusSettings
+from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.strangers import Strangers
 from drivers.errors import DriveConnectionError
@@ -12,7 +13,7 @@ NODE = 5
 
 @pytest.fixture
 def link():
-    return CanLink(BusSettings("virtual", "x"), "x node 5")
+    return CanLink(BusPort(BusSettings("virtual", "x")), "x node 5")
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def hear(link, cob_id, data=b""):
 )
 def test_what_only_a_host_sends_is_named(link, strangers, cob_id, data, named):
     hear(link, cob_id, data)
-    with pytest.raises(DriveConnectionError, match=f"another host.* sends {named}.*give each joint a bus of its own"):
+    with pytest.raises(DriveConnectionError, match=f"another host.* sends {named}.*End it, then open"):
         strangers.check()
     strangers.forget()
     strangers.check()

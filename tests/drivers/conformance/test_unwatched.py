@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from bench.doctor.watchdog_proof import keep_silent
+from bench.runs.watchdog_proof import prove_watchdog
 from drivers.contract import Command, Mode, Status, Watchdog
 from drivers.errors import DriveConnectionError
 from tests.drivers.conformance.benches import PERIOD_S
@@ -66,7 +66,7 @@ def test_a_silent_host_is_not_noticed_and_the_record_says_so(unwatched):
 
 def test_doctor_says_so_and_tries_nothing(unwatched):
     with unwatched.opened() as drive:
-        found = keep_silent(drive, PERIOD_S)
+        found = prove_watchdog(drive, unwatched.configuration)
     assert found.watchdog is Watchdog.NONE
     assert found.is_admitted
     assert "has none" in found.sentence

@@ -31,7 +31,7 @@ def test_a_second_host_is_named_before_anything_moves(sheet) -> None:
         first.open(PERIOD_S)
         moving = Running(first)
         moving.start()
-        with pytest.raises(DriveConnectionError, match=r"another host, or another joint .* sends SYNC"):
+        with pytest.raises(DriveConnectionError, match="another host is on the bus: it sends SYNC"):
             second.open(PERIOD_S)
         moving.end()
 

@@ -2,9 +2,12 @@
 
 import pytest
 
-from drivers.contract import Watchdog
+from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.objects import POSITION
+from drivers.contract import Mode, Watchdog
+from drivers.errors import WatchdogError
 from sim_backend.devices.canopen.conduct import Conduct
-from tests.drivers.dictionaries.attempt import attempt
+from tests.drivers.dictionaries.attempt import PERIOD_S, attempt, device, host
 from tests.drivers.dictionaries.traits import TRAITS
 
 MANNERS = {
@@ -48,3 +51,16 @@ def test_a_reaction_that_the_drive_does_not_tell_is_tried_before_the_first_motio
     assert refused.opened
     assert refused.is_safety
     assert not refused.moved
+
+
+def test_a_joint_that_moves_during_that_trial_ends_it(tmp_path, monkeypatch) -> None:
+    sheet, read = TRAITS["no-reaction-object"].write(tmp_path, "sheet"), ObjectAccess.read
+    with device(sheet) as running, host(running) as drive:
+        drive.open(PERIOD_S)
+        falls = iter(range(0, 100_000, 4096))  # a turn of the motor at each look
+        monkeypatch.setattr(
+            ObjectAccess, "read", lambda access, item: next(falls) if item == POSITION else read(access, item)
+        )
+        with pytest.raises(WatchdogError, match=r"the joint moved by 0.314 rad while its watchdog was tried"):
+            drive.enable(Mode.CURRENT)
+        assert not running.device.axis.power.on
