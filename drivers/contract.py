@@ -6,13 +6,15 @@ divided by the gear ratio. A quantity that the drive does not measure is NaN, ne
 
 A drive is used by one thread at a time. While it is disabled any time may pass between two
 calls: a person hangs a load, and the watchdog must not mind. While it is enabled it stops by
-itself where no command comes for `Description.watchdog_s`.
+itself where no command comes for `Description.watchdog_s`; one that has no watchdog says so, and nobody runs it
+unknowingly.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum, IntEnum, StrEnum
 from math import nan
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 
 class Mode(Enum):
@@ -21,6 +23,7 @@ class Mode(Enum):
     OFF = "off"  # power stage off; the value is ignored
     DUTY = "duty"  # signed PWM duty, -1 .. 1 of the supply
     CURRENT = "current"  # motor current [A]
+    TORQUE = "torque"  # torque at the motor side of the joint's gear [N m]
     POSITION = "position"  # joint position [rad], closed by the drive itself
 
 
@@ -91,6 +94,8 @@ class Sample(NamedTuple):
         ages: of each quantity.
         number: of the measurement since opening, where the drive is asked for each (CANopen: of the SYNC); two
             samples of one number are one measurement, handed over twice because the next one has not come in time.
+        torque_n_m: torque that the drive says it gives, at the motor side of the joint's gear [N m]; NaN where it
+            says nothing of it.
     """
 
     time_s: float
@@ -104,6 +109,7 @@ class Sample(NamedTuple):
     status: Status
     ages: Ages = ALL_NEW
     number: int = 0
+    torque_n_m: float = nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +156,7 @@ class Description:
         measured: the names of the `Sample` fields that are measured (others are NaN).
         resolution: smallest step of a quantity, by `Sample` field name, in its unit.
         max_rate_hz: highest cycle rate that the drive sustains [Hz].
-        watchdog_s: time after the last command at which the drive stops by itself [s].
+        watchdog_s: time after the last command at which the drive stops by itself [s]; None where nothing stops it.
         longest_call_s: by then every call has returned or raised [s]; opening may take `longest_open_s`.
         watchdog: how sure it is that the drive stops by itself then.
         notes: what the user should know of line and host, and what to do; a sentence each.
@@ -167,7 +173,7 @@ class Description:
     measured: frozenset[str]
     resolution: dict[str, float]
     max_rate_hz: float
-    watchdog_s: float
+    watchdog_s: float | None
     longest_call_s: float = 0.0
     longest_open_s: float = 0.0
     watchdog: Watchdog = Watchdog.CONFIGURED
@@ -233,4 +239,20 @@ class Drive(Protocol):
             DriveStateError: motion was commanded in a mode that is not enabled.
             DriveConfigurationError: the command is not finite or outside the drive's range; nothing was sent.
             DriveConnectionError: no valid answer within the time limit.
+        """
+
+
+@runtime_checkable
+class BusDrive(Drive, Protocol):
+    """A drive on a bus that asks several of its drives in one exchange."""
+
+    @property
+    def bus(self) -> object | None:
+        """The bus that it shares; None while it is not open."""
+
+    def exchange_together(self, commands: Sequence[tuple[Drive, Command]]) -> list[Sample]:
+        """Send a command to each of some open drives on its bus, and return their samples in that order.
+
+        Raises:
+            DriveError: as `exchange`; where one does not answer, all of them are told to be off.
         """

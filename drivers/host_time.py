@@ -20,10 +20,10 @@ class Lateness:
     Args:
         device: name used in messages.
         watchdog: what the drive calls it.
-        limit_s: silence after which the drive stops by itself [s].
+        limit_s: silence after which the drive stops by itself [s]; None: nothing stops it.
     """
 
-    def __init__(self, device: str, watchdog: str, limit_s: float) -> None:
+    def __init__(self, device: str, watchdog: str, limit_s: float | None) -> None:
         self.limit_s = limit_s
         self._device, self._watchdog = device, watchdog
         self._told_s = 0.0
@@ -34,7 +34,7 @@ class Lateness:
         Raises:
             DriveConfigurationError: the watchdog would stop the drive between two cycles.
         """
-        if self.limit_s <= period_s:
+        if self.limit_s is not None and self.limit_s <= period_s:
             raise DriveConfigurationError(
                 self._device,
                 f"its {self._watchdog} would be {self.limit_s:g} s, and the control period is {period_s:g} s; "
@@ -48,7 +48,7 @@ class Lateness:
     def fault(self) -> DriveFault | None:
         """What is wrong where the last demand is older than the watchdog allows: the drive is taken for stopped."""
         silent_s = perf_counter() - self._told_s
-        if silent_s <= self.limit_s:
+        if self.limit_s is None or silent_s <= self.limit_s:
             return None
         return DriveFault(
             self._device,

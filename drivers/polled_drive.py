@@ -10,7 +10,7 @@ from drivers.errors import DriveError
 from drivers.host_time import CycleTime, Lateness, measure_cycle
 from drivers.refusal import check_demand, check_mode, not_cleared, not_enabled, not_open, switched_itself_off
 
-_LIMITS = {Mode.DUTY: (1.0, ""), Mode.CURRENT: (1e3, "A"), Mode.POSITION: (1e3, "rad")}
+_LIMITS = {Mode.DUTY: (1.0, ""), Mode.CURRENT: (1e3, "A"), Mode.TORQUE: (1e3, "N m"), Mode.POSITION: (1e3, "rad")}
 _OFF = Command(Mode.OFF)
 
 
@@ -171,16 +171,22 @@ class PolledDrive(Drive, Generic[SessionT]):
             DriveConfigurationError: a demand that is not finite or out of range; nothing was sent.
             DriveConnectionError: no valid answer within the time limit.
         """
-        session = self._opened("exchange")
-        mode, value = command.mode, command.value
-        if mode is Mode.OFF:
-            self._mode = Mode.OFF
+        session = self._ready(command)
+        if command.mode is Mode.OFF:
             return session.rest()
-        self._check_motion(session, mode, value)
         sent_s = perf_counter()
-        sample = session.move(mode, value)
+        sample = session.move(command.mode, command.value)
         self._lateness.told(sent_s)
         return sample
+
+    def _ready(self, command: Command) -> SessionT:
+        """The session that is to be sent a demand; one that must not be sent is refused."""
+        session = self._opened("exchange")
+        if command.mode is Mode.OFF:
+            self._mode = Mode.OFF
+        else:
+            self._check_motion(session, command.mode, command.value)
+        return session
 
     def _opened(self, call: str) -> SessionT:
         """The session, whose questions share one time limit from now on."""

@@ -57,6 +57,11 @@ COMMANDS = (
         "The drive itself, without an experiment: its state, and the clearing of its fault. Its power stays off.",
     ),
     CommandEntry(
+        "drives",
+        "bench.cli.operation.drives:app",
+        "What is on a port or a bus, with the section of bench.toml that reaches it. Nothing is powered or moved.",
+    ),
+    CommandEntry(
         "run",
         "bench.cli.operation.run:app",
         "Run one experiment on the bench: the joint moves. Ctrl-C stops it, and the record says so.",

@@ -1,6 +1,6 @@
 """One joint in the control loop: its drive, its limits, its current servo, and the state of its power stage."""
 
-from math import nan
+from math import isnan, nan
 
 from bench.control.cycle import OFF, Action, Reading
 from bench.control.limits import Guard
@@ -9,7 +9,8 @@ from bench.errors import ConfigurationError, LimitTrip
 from drivers.contract import Command, Drive, Mode, Sample, Status
 from drivers.errors import DriveStateError
 
-_OFF, _DUTY, _CURRENT, _ENABLED = Mode.OFF, Mode.DUTY, Mode.CURRENT, Status.ENABLED  # at hand, see cycle.py
+_OFF, _DUTY, _CURRENT, _TORQUE = Mode.OFF, Mode.DUTY, Mode.CURRENT, Mode.TORQUE
+_ENABLED = Status.ENABLED  # at hand, see cycle.py
 _IDLE = Action(OFF)
 _NOTHING = Reading(0.0, Sample(nan, nan, nan, nan, nan, nan, nan, nan, Status.DISABLED), 0.0, nan)
 POWER_OFF_TRIES = 3
@@ -24,20 +25,33 @@ class ControlledJoint:
         current_servo: eq. (3); None where the rig does not say enough. Then there is no current estimate, and
             current commands need a drive with a current mode.
         name: messages begin with it; "" where there is one joint only.
+        torque_constant_n_m_a: of the motor [N m/A]; NaN where the rig leaves it out. Then a drive that takes torques
+            alone cannot be asked for a current.
 
     Attributes:
+        drive: as given.
         action: of this cycle.
         reading: the last one.
         demanded: mode of the last command that the power stage was switched for.
         prefix: the name, as messages begin with it.
     """
 
-    def __init__(self, drive: Drive, guard: Guard, current_servo: CurrentServo | None = None, name: str = "") -> None:
-        self._drive = drive
+    def __init__(
+        self,
+        drive: Drive,
+        guard: Guard,
+        current_servo: CurrentServo | None = None,
+        name: str = "",
+        torque_constant_n_m_a: float = nan,
+    ) -> None:
+        self.drive = drive
         self._guard = guard
         self._current_servo = current_servo
         self.prefix = f"{name}: " if name else ""
-        self._lacks_current_mode = Mode.CURRENT not in drive.describe().modes
+        modes = drive.describe().modes
+        self._lacks_current_mode = Mode.CURRENT not in modes
+        self._stand_in = _TORQUE if _TORQUE in modes else _DUTY
+        self._torque_constant_n_m_a = torque_constant_n_m_a
         self.action = _IDLE
         self.reading = _NOTHING
         self.demanded = Mode.OFF
@@ -71,7 +85,15 @@ class ControlledJoint:
         Raises:
             ConfigurationError: a current is demanded that the drive cannot be asked for.
         """
-        if self._current_servo is None and self._wire_mode() is not self.action.command.mode:
+        if self._wire_mode() is self.action.command.mode:
+            return
+        if self._stand_in is _TORQUE and isnan(self._torque_constant_n_m_a):
+            raise ConfigurationError(
+                f"{self.prefix}the drive takes torques, not currents, and the rig leaves out "
+                "motor.torque_constant_n_m_a that makes one of the other; add it to the rig (1 where all is to be said "
+                "in N m)"
+            )
+        if self._stand_in is _DUTY and self._current_servo is None:
             raise ConfigurationError(
                 f"{self.prefix}the drive has no current mode, and the rig lacks the resistance, back-EMF constant or "
                 "gear ratio that eq. (3) needs to do without; add them to the rig"
@@ -86,24 +108,36 @@ class ControlledJoint:
         if stands:
             return False
         if wanted is _OFF:
-            self._drive.disable()
+            self.drive.disable()
         else:
-            self._drive.enable(wanted)
+            self.drive.enable(wanted)
         return True
 
     def exchange(self) -> None:
         """Send the action, in a mode that the drive closes itself, and take the reading that answers it."""
+        self.take(self.drive.exchange(self.wire_command()))
+
+    def wire_command(self) -> Command:
+        """The action's command, in a mode that the drive closes itself."""
         command, servo = self.action[0], self._current_servo
-        if self._lacks_current_mode and command[0] is _CURRENT and servo is not None:
-            _, previous, velocity_rad_s, _, _ = self.reading
-            command = Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
-        sample = self._drive.exchange(command)
-        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _ = sample
+        if not self._lacks_current_mode or command[0] is not _CURRENT:
+            return command
+        if self._stand_in is _TORQUE:
+            return Command(_TORQUE, command[1] * self._torque_constant_n_m_a)
+        if servo is None:
+            return command
+        _, previous, velocity_rad_s, _, _ = self.reading
+        return Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
+
+    def take(self, sample: Sample) -> None:
+        """Make the reading of a sample."""
+        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _, torque_n_m = sample
+        servo = self._current_servo
         if velocity_rad_s != velocity_rad_s:  # NaN
             velocity_rad_s = self._derived_velocity(sample)
         estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
         if current_a != current_a:  # NaN
-            current_a = estimate_a
+            current_a = estimate_a if torque_n_m != torque_n_m else torque_n_m / self._torque_constant_n_m_a
         self.reading = Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a, estimate_a)
 
     def check(self, target_rad: float) -> None:
@@ -124,14 +158,14 @@ class ControlledJoint:
     def quick_stop(self) -> None:
         """Have the drive brake, where it is powered."""
         if self.is_powered:
-            self._drive.quick_stop()
+            self.drive.quick_stop()
 
     def power_off(self) -> list[str]:
         """Take the power away, and say what went wrong. Tried again when it fails or is interrupted."""
         notes = []
         for _ in range(POWER_OFF_TRIES):
             try:
-                self._drive.disable()
+                self.drive.disable()
                 break
             except BaseException as error:  # the power has to go, whatever happens meanwhile
                 notes.append(f"{self.prefix}power-off failed: {str(error) or type(error).__name__}")
@@ -141,7 +175,7 @@ class ControlledJoint:
     def _wire_mode(self) -> Mode:
         """The mode that the drive is sent the action in."""
         mode = self.action.command.mode
-        return _DUTY if mode is _CURRENT and self._lacks_current_mode else mode
+        return self._stand_in if mode is _CURRENT and self._lacks_current_mode else mode
 
     def _derived_velocity(self, sample: Sample) -> float:
         """By the sample before; as it was where no time has passed, and 0 at the first."""
@@ -155,6 +189,6 @@ class ControlledJoint:
         if status is Status.FAULT:
             self.exchange()  # a drive in fault refuses the command, and says what the fault is
         raise DriveStateError(
-            self._drive.describe().device,
+            self.drive.describe().device,
             f"{self.prefix}status is {status.name} during motion; ENABLED is wanted. See the drive's own display",
         )

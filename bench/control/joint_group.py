@@ -1,11 +1,12 @@
 """The joints that one control loop moves together, and what a cycle of them is made of."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol, TypeVar
 
 from bench.config.channels import RECORDED
 from bench.control.cycle import OFF, Action, Reading, Row, row_of
 from bench.control.joint import ControlledJoint
+from drivers.contract import BusDrive
 
 ActionT = TypeVar("ActionT")
 ReadingT = TypeVar("ReadingT")
@@ -52,3 +53,26 @@ class SingleJoint:
     def reading(self) -> Reading:
         """The reading."""
         return self._joint.reading
+
+
+def exchange_of(joints: Sequence[ControlledJoint]) -> Callable[[], None]:
+    """One exchange with every joint: in one go where one bus does that, else one after the other."""
+    first = joints[0]
+    if len(joints) == 1:
+        return first.exchange
+    drive = first.drive
+    buses = [one.drive.bus if isinstance(one.drive, BusDrive) else None for one in joints]
+    if not isinstance(drive, BusDrive) or buses[0] is None or any(bus is not buses[0] for bus in buses):
+        return lambda: _in_turn(joints)
+
+    def together() -> None:
+        samples = drive.exchange_together([(joint.drive, joint.wire_command()) for joint in joints])
+        for joint, sample in zip(joints, samples, strict=True):
+            joint.take(sample)
+
+    return together
+
+
+def _in_turn(joints: Sequence[ControlledJoint]) -> None:
+    for joint in joints:
+        joint.exchange()

@@ -15,7 +15,7 @@ from bench.control.clock import Clock
 from bench.control.cycle import Action, Reading
 from bench.control.ending import Outcome, StopRequest
 from bench.control.joint import ControlledJoint
-from bench.control.joint_group import ActionT, JointGroup, ReadingT, SingleJoint
+from bench.control.joint_group import ActionT, JointGroup, ReadingT, SingleJoint, exchange_of
 from bench.control.late_cycles import LateCycles, braking_cycles
 from bench.control.limits import Guard
 from bench.control.recorder import Recorder, Sink
@@ -128,7 +128,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         # at hand: each look-up of an attribute takes a per cent of a cycle
         joints, group, wait, stopping = self._joints, self._group, self._clock.wait, stop.is_set
         assign, reading_of, row_of, record = group.assign, group.reading, group.row, recorder.row
-        send, look, last = procedure.send, self._late.look, joints[-1]
+        send, look, last, exchange = procedure.send, self._late.look, joints[-1], exchange_of(joints)
         action = next(procedure)
         self._clock.start(self._period_s)
         while True:
@@ -140,8 +140,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
             for joint in joints:
                 if joint.action[0][0] is not joint.demanded:
                     self._switch()
-            for joint in joints:
-                joint.exchange()
+            exchange()
             self.cycles += 1
             look(self.cycles)
             self.last_reading = last.reading
@@ -237,7 +236,13 @@ def _power_off(joints: Sequence[ControlledJoint]) -> list[str]:
 
 
 def joint_loop(
-    drive: Drive, clock: Clock, guard: Guard, period_s: float, current_servo: CurrentServo | None = None
+    drive: Drive,
+    clock: Clock,
+    guard: Guard,
+    period_s: float,
+    current_servo: CurrentServo | None = None,
+    torque_constant_n_m_a: float = nan,
 ) -> ControlLoop[Action, Reading]:
     """The loop of one joint; the arguments are those of `ControlledJoint` and `ControlLoop`."""
-    return ControlLoop(SingleJoint(ControlledJoint(drive, guard, current_servo)), clock, period_s)
+    joint = ControlledJoint(drive, guard, current_servo, torque_constant_n_m_a=torque_constant_n_m_a)
+    return ControlLoop(SingleJoint(joint), clock, period_s)

@@ -1,6 +1,6 @@
 """The position servo, and the current servo of drives without a current mode."""
 
-from math import isnan
+from math import isnan, nan
 
 from bench.config.rig import Rig
 from bench.config.sections import ServoSettings
@@ -147,3 +147,8 @@ def check_modes(settings: ServoSettings, drive: Description) -> None:
 def closes_positions_alone(drive: Description) -> bool:
     """Whether a drive can be asked for positions and for nothing else."""
     return drive.modes == {Mode.POSITION}
+
+
+def torque_constant_n_m_a(rig: Rig) -> float:
+    """What makes a torque of a current, for drives that take torques [N m/A]; NaN where the rig leaves it out."""
+    return nan if rig.motor.torque_constant_n_m_a is None else rig.motor.torque_constant_n_m_a

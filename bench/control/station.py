@@ -15,7 +15,7 @@ from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
 from bench.control.pair import JointPair
 from bench.control.pair_equipment import make_pair
-from bench.control.servo import check_modes, current_servo
+from bench.control.servo import check_modes, current_servo, torque_constant_n_m_a
 from bench.control.technician import PersonTechnician, Technician
 from bench.control.timing import check_pair_timing, check_timing
 from drivers.contract import Drive
@@ -58,7 +58,9 @@ class Station:
         check_pair_timing([drive.describe() for drive in self.drives], period_s)
         check_modes(self.benches[0].servo, self.drives[0].describe())
         joints = [
-            ControlledJoint(drive, Guard(bench.limits), current_servo(bench.rig), name)
+            ControlledJoint(
+                drive, Guard(bench.limits), current_servo(bench.rig), name, torque_constant_n_m_a(bench.rig)
+            )
             for drive, bench, name in zip(self.drives, self.benches, self.names, strict=True)
         ]
         return ControlLoop(self.group(*joints), self.clock, period_s)

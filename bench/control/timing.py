@@ -22,7 +22,7 @@ def check_timing(drive: Description, period_s: float) -> None:
             f"second, so at least {shortest_s:.2g} s is wanted. {_advice(drive)}"
         )
     least_s = _PERIODS_IN_WATCHDOG * period_s
-    if not least_s <= drive.watchdog_s <= SLOWEST_WATCHDOG_S:
+    if drive.watchdog_s is not None and not least_s <= drive.watchdog_s <= SLOWEST_WATCHDOG_S:
         raise ConfigurationError(
             f"the watchdog of drive '{drive.device}' stops it after {drive.watchdog_s:g} s; {least_s:g} s (two control "
             f"periods) .. {SLOWEST_WATCHDOG_S:g} s is wanted. Change drive.watchdog_s or control.period_s"

@@ -183,7 +183,7 @@ class ExperimentRun:
             return "tripped", f"trial of the watchdog: {trip}"
         if self._proof is None:
             return "stopped", self.stop_request.reason
-        if self._proof.watchdog is Watchdog.NONE:
+        if self._proof.watchdog is Watchdog.NONE and not self._proof.is_admitted:
             return "failed", f"the drive's watchdog does not stop it: {self._proof.sentence}"
         return None
 

@@ -22,7 +22,7 @@ from bench.control.servo import current_servo
 from bench.errors import ExperimentError
 from drivers.contract import Command, Description, Drive, Inspection, Mode, Status, Watchdog
 
-_SMALL = {Mode.DUTY: 0.02, Mode.CURRENT: 0.05}  # of the supply; in A
+_SMALL = {Mode.DUTY: 0.02, Mode.CURRENT: 0.05, Mode.TORQUE: 0.002}  # of the supply; in A; in N m
 _SHARES = (1.0, 0.5, 0.25, 0.0)
 _MARGIN, _LEAST_S = 1.5, 0.1  # beyond the watchdog
 _FARTHEST_RAD = 0.1  # under the demand, until the joint stands: the free play of a gear
@@ -30,6 +30,10 @@ _STILL_STEPS = 1.5  # of the position sensor
 _PATIENCE_S = 2.0  # beyond twice the silence, for the joint to stand
 _SHOWN_SHARE = 0.5  # of the demand, that a measured output has to reach to be told from noise
 _GONE_SHARE = 0.2  # of the output before; less than that is none
+_HAS_NONE = (
+    "it has none, and nothing was tried: where this host falls silent, the motor goes on with the last demand. Keep a "
+    "hand at the switch of its supply"
+)
 _LOOK_S = 0.01  # at whether the run is to stop
 
 
@@ -40,10 +44,12 @@ class WatchdogProof:
     Attributes:
         watchdog: PROVEN; NONE where the output went on; CONFIGURED where neither state nor output could tell.
         sentence: what was found.
+        is_admitted: whether the drive says itself that it has none.
     """
 
     watchdog: Watchdog
     sentence: str
+    is_admitted: bool = False
 
 
 def prove_watchdog(
@@ -66,7 +72,10 @@ def prove_watchdog(
         DriveError: it cannot be powered, or asked afterwards.
         ExperimentError: the power could not be taken away.
     """
-    trial = _Trial(drive, bench, is_stopped)
+    watchdog_s = drive.describe().watchdog_s
+    if watchdog_s is None:
+        return WatchdogProof(Watchdog.NONE, _HAS_NONE, is_admitted=True)
+    trial = _Trial(drive, bench, is_stopped, watchdog_s)
     try:
         proof = trial.run()
     except _StoppedError:
@@ -88,14 +97,16 @@ class _StoppedError(Exception):
 class _Trial:
     """One trial of a watchdog; the caller takes the power away, whatever comes of it."""
 
-    def __init__(self, drive: Drive, bench: BenchConfiguration, is_stopped: Callable[[], bool]) -> None:
+    def __init__(
+        self, drive: Drive, bench: BenchConfiguration, is_stopped: Callable[[], bool], watchdog_s: float
+    ) -> None:
         self.joint = ControlledJoint(drive, Guard(bench.limits), current_servo(bench.rig))
         self._drive = drive
         self._found = drive.describe()
         self._is_stopped = is_stopped
         self._period_s = bench.control.period_s
         self._still_rad = _STILL_STEPS * self._found.resolution.get("position_rad", 0.0)
-        self._silent_s = self._found.watchdog_s * _MARGIN + _LEAST_S
+        self._silent_s = watchdog_s * _MARGIN + _LEAST_S
 
     def run(self) -> WatchdogProof:
         """Try each demand until the joint stands under one, and fall silent then."""

@@ -7,6 +7,7 @@ from drivers.contract import Ages, Sample, Status
 from drivers.joint import JointScale
 from drivers.modbus.power_stage import Values
 from drivers.modbus.register_map import RegisterMap
+from drivers.wraps import DriveClock
 
 _SAMPLE_NAMES = {
     "time_s": "time_s",
@@ -18,29 +19,6 @@ _SAMPLE_NAMES = {
     "temperature_c": "temperature_c",
 }
 _IN_COUNTS = frozenset({"position_counts", "velocity_counts_s"})
-
-
-class DriveClock:
-    """The drive's own clock, followed through its wraps.
-
-    Args:
-        step_s: one step of its register [s].
-        bits: of its register.
-    """
-
-    def __init__(self, step_s: float, bits: int) -> None:
-        self._turn_s = step_s * 2.0**bits
-        self._last_s: float | None = None
-        self._time_s = 0.0
-
-    def follow(self, reading_s: float) -> float:
-        """The next reading [s]. Returns the time without wraps [s]."""
-        if self._last_s is None:
-            self._time_s = reading_s
-        else:
-            self._time_s += (reading_s - self._last_s) % self._turn_s
-        self._last_s = reading_s
-        return self._time_s
 
 
 class Sampling:

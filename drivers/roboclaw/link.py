@@ -1,17 +1,13 @@
 """The serial port: one question, one answer, in bounded time."""
 
 import time
-from contextlib import suppress
-from typing import Any
-
-import serial
-from serial.tools import list_ports
 
 from drivers.errors import DriveConnectionError
 from drivers.host_time import host_was_away
 from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, Read, Write
 from drivers.roboclaw.frames import VERSION_END, crc16, is_intact, read_packet, version_packet, write_packet
 from drivers.roboclaw.settings import RoboclawSettings
+from drivers.serial_port import SerialPort
 
 RESYNC_S = 0.012  # the controller forgets half a packet after 10 ms of silence
 ATTEMPTS = 2
@@ -34,17 +30,7 @@ class Link:
         self._timeout_s = settings.answer_timeout_s
         self._requests: dict[int, tuple[bytes, int]] = {}
         self._deadline_s = 0.0
-        try:
-            self._port: Any = serial.Serial(
-                settings.port,
-                settings.baud_rate,
-                timeout=settings.answer_timeout_s,
-                write_timeout=settings.answer_timeout_s,
-                exclusive=True,
-            )
-            self._port.reset_input_buffer()
-        except (OSError, ValueError) as error:  # SerialException is an OSError
-            raise DriveConnectionError(device, f"{error}; {_ports()}") from error
+        self._port = SerialPort(device, settings.port, settings.baud_rate, settings.answer_timeout_s)
 
     @staticmethod
     def longest_call_s(settings: RoboclawSettings) -> float:
@@ -69,7 +55,7 @@ class Link:
         size = command.reply_bytes
         began_s, found = time.perf_counter(), "nothing"
         for _ in range(ATTEMPTS):
-            reply = self._ask(request, size)
+            reply = self._port.ask(request, size)
             if len(reply) == size and is_intact(request_crc, reply):
                 return command.layout.unpack_from(reply)
             found = _seen(reply, size)
@@ -86,7 +72,7 @@ class Link:
         packet = write_packet(self._address, command, *values)
         began_s, found = time.perf_counter(), "nothing"
         for _ in range(ATTEMPTS):
-            reply = self._ask(packet, 1)
+            reply = self._port.ask(packet, 1)
             if reply == ACKNOWLEDGED:
                 return
             found = f"{reply.hex()} instead of ff" if reply else "nothing"
@@ -103,7 +89,7 @@ class Link:
         packets = [write_packet(self._address, command, value)]
         packets += [self._request(read)[0] for read in reads]
         size = len(ACKNOWLEDGED) + sum(read.reply_bytes for read in reads)
-        reply = self._ask(b"".join(packets), size)
+        reply = self._port.ask(b"".join(packets), size)
         found = self._apart(reply, reads) if len(reply) == size and reply.startswith(ACKNOWLEDGED) else None
         if found is None:
             self._resync()
@@ -111,8 +97,7 @@ class Link:
 
     def shout(self, command: Write, *values: int) -> None:
         """Tell once, and do not wait for the acknowledgement. Never raises."""
-        with suppress(Exception):
-            self._port.write(write_packet(self._address, command, *values))
+        self._port.shout(write_packet(self._address, command, *values))
 
     def version(self) -> str:
         """The text of command 21.
@@ -150,32 +135,14 @@ class Link:
             start += read.reply_bytes
         return found
 
-    def _ask(self, packet: bytes, reply_bytes: int) -> bytes:
-        port = self._port
-        try:
-            port.write(packet)
-            reply: bytes = port.read(reply_bytes)
-            if len(reply) < reply_bytes:  # the host may have been away, and the rest be there by now
-                reply += port.read(min(port.in_waiting, reply_bytes - len(reply)))
-        except (OSError, TypeError) as error:  # TypeError: pyserial, where the port was closed meanwhile
-            raise self._gone(error) from error
-        return reply
-
     def _ask_text(self, request: bytes) -> bytes:
-        try:
-            self._port.write(request)
-            text: bytes = self._port.read_until(VERSION_END, LONGEST_VERSION_BYTES)
-            return text + self._port.read(CRC_BYTES) if text.endswith(VERSION_END) else text
-        except (OSError, TypeError) as error:
-            raise self._gone(error) from error
+        self._port.ask(request, 0)
+        text = self._port.read_until(VERSION_END, LONGEST_VERSION_BYTES)
+        return text + self._port.read(CRC_BYTES) if text.endswith(VERSION_END) else text
 
     def _resync(self) -> bool:
         """Let the controller forget half a packet, and forget half an answer; False where the time is up."""
-        time.sleep(RESYNC_S)
-        try:
-            self._port.reset_input_buffer()
-        except Exception as error:  # termios.error is no OSError
-            raise self._gone(error) from error
+        self._port.rest(RESYNC_S)
         return time.perf_counter() < self._deadline_s
 
     def _no_answer(self, meaning: str, found: str, began_s: float) -> DriveConnectionError:
@@ -187,9 +154,6 @@ class Link:
             f"the power, the address ({self._address:#x}) and the baud rate{away}",
         )
 
-    def _gone(self, error: Exception) -> DriveConnectionError:
-        return DriveConnectionError(self._device, f"the port is gone ({error}); plug it in, then start again")
-
 
 def _seen(reply: bytes, wanted_bytes: int) -> str:
     if not reply:
@@ -197,8 +161,3 @@ def _seen(reply: bytes, wanted_bytes: int) -> str:
     if len(reply) < wanted_bytes:
         return f"{len(reply)} of {wanted_bytes} bytes"
     return "an answer with a wrong CRC"
-
-
-def _ports() -> str:
-    names = sorted(port.device for port in list_ports.comports())
-    return f"ports found here: {', '.join(names)}" if names else "no serial port was found here; plug it in"

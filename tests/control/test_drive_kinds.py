@@ -96,12 +96,15 @@ def installed(tmp_path):
 
 
 def test_ours_are_entry_points_too():
-    assert list(drive_kinds()) == ["sim", "canopen", "modbus", "roboclaw"]
+    first, *others = drive_kinds()
+    assert first == "sim"
+    assert others == sorted(others)
+    assert {"canopen", "modbus", "roboclaw"} <= set(others)
     assert all(kind.conformance for kind in drive_kinds().values())
 
 
 def test_a_kind_that_is_not_there_is_refused_with_those_that_are():
-    with pytest.raises(ConfigurationError, match=r"no drive kind 'acme'; kind should be one of sim, canopen, modbus"):
+    with pytest.raises(ConfigurationError, match=r"no drive kind 'acme'; kind should be one of sim, canopen,"):
         drive_kind("acme")
 
 
@@ -126,7 +129,5 @@ def test_a_package_that_is_broken_breaks_nothing_else_and_is_named(installed):
     installed.install("acme_drive", "import absent_library", "acme = acme_drive:KIND")
     found = installed("-c", WRONG)
     assert found.stdout.strip() == "sim"  # the bench goes on without it
-    assert (
-        "kind should be one of sim, canopen, modbus, roboclaw; 'acme' of package acme_drive cannot be" in found.stderr
-    )
+    assert f"kind should be one of {', '.join(drive_kinds())}; 'acme' of package acme_drive cannot be" in found.stderr
     assert "absent_library" in found.stderr

@@ -54,7 +54,7 @@ def test_the_simulated_drive_has_a_seed():
     [
         (
             {"kind": "roboclaws"},
-            r"drive: found .*roboclaws.*; kind should be one of sim, canopen, modbus, roboclaw",
+            r"drive: found .*roboclaws.*; kind should be one of sim, canopen,",
         ),
         ({"kind": "roboclaw"}, r"bench.toml: drive.port: missing"),
         (ROBOCLAW | {"address": 5}, r"address: found 5; should be greater than or equal to 128"),

@@ -3,8 +3,8 @@
 from struct import pack, unpack
 from typing import Any
 
+from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.drive import ServoDrive
-from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.joint_tables import behind_a_drive
 

@@ -3,9 +3,9 @@
 import pytest
 from can.interfaces.socketcand.socketcand import convert_ascii_message_to_can_message
 
-from sim_backend.devices.canopen.frame import Frame
-from sim_backend.devices.canopen.transport.slcan import SlcanAdapter
-from sim_backend.devices.canopen.transport.socketcand import SocketcandSession
+from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.slcan import SlcanAdapter
+from sim_backend.devices.can.socketcand import SocketcandSession
 
 
 def _opened() -> SlcanAdapter:

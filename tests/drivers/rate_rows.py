@@ -1,5 +1,9 @@
 """One row of the benchmark: what is asked, what was measured, whether that is met."""
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from time import perf_counter
+
 MOST_RATIO = 1.25  # of a driver's cycle to the same exchange written barely with the library
 
 
@@ -21,3 +25,27 @@ def ratio_row(what: str, bare_s: float, driver_s: float, is_asked: bool = True) 
     if not is_asked:
         return row(what, "", measured, None)
     return row(what, f"<= {MOST_RATIO:g}", measured, ratio <= MOST_RATIO)
+
+
+Cycle = Callable[[], object]
+
+
+def quickest(
+    *ways: Callable[[], AbstractContextManager[Cycle]], rounds: int = 25, cycles: int = 60
+) -> tuple[float, ...]:
+    """Seconds a cycle of each way: the quickest of short rounds, of which a busy machine leaves some in peace."""
+    best = [1.0] * len(ways)
+    for _ in range(rounds):
+        for place, way in enumerate(ways):
+            with way() as cycle:
+                best[place] = min(best[place], seconds_a_cycle(cycle, cycles))
+    return tuple(best)
+
+
+def seconds_a_cycle(cycle: Cycle, count: int) -> float:
+    """Of so many cycles, after one that does not count."""
+    cycle()
+    began_s = perf_counter()
+    for _ in range(count):
+        cycle()
+    return (perf_counter() - began_s) / count

@@ -13,6 +13,10 @@ import sys
 from tests.devices.turns import turns
 from tests.drivers import serial_rates
 from tests.drivers.canopen import rates as canopen
+from tests.drivers.damiao import rates as damiao
+from tests.drivers.dynamixel import rates as dynamixel
+from tests.drivers.feetech import rates as feetech
+from tests.drivers.odrive import rates as odrive
 from tests.drivers.rate_rows import heading
 
 if __name__ == "__main__":
@@ -20,5 +24,8 @@ if __name__ == "__main__":
         print(f"load of the machine before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
         print(heading())
         serial_rates.report()
+        for kind in (dynamixel, feetech, odrive, damiao):
+            for line in kind.rows():
+                print(line, flush=True)
         canopen.report(float(sys.argv[1]) if len(sys.argv) > 1 else 60.0)
         print(f"load of the machine after: {os.getloadavg()[0]:.1f}, the benchmark's own included")

@@ -14,6 +14,7 @@ from bench.config.quantities import unit_of
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.doctor.connection import Connection
     from bench.store import Experiment
+    from drivers.contract import Description
 
 _VERDICTS = {"proven": "proven", "configured, not proven": "NOT PROVEN", "none": "DOES NOT STOP IT"}
 QUANTITIES = ("position_rad", "velocity_rad_s", "duty", "current_a", "supply_v", "temperature_c")
@@ -72,7 +73,7 @@ def _show(found: "Connection") -> None:
         ("rate now", f"{found.rate_hz:.1f} cycles/s at a period of {1e3 * found.period_s:g} ms"),
         ("one exchange", f"{1e3 * found.exchange_s:.2f} ms, the slowest {1e3 * found.slowest_s:.2f} ms"),
         ("lost cycles", found.lost_cycles),
-        ("watchdog", f"is to stop it after {description.watchdog_s:g} s of silence; {description.watchdog}"),
+        ("watchdog", _watchdog(description)),
     ])  # fmt: skip
     for found_table in description.tables:
         table(found_table.title, list(found_table.columns), list(found_table.rows))
@@ -86,6 +87,12 @@ def _show(found: "Connection") -> None:
         f"The joint stands at {degrees(found.sample.position_rad):.2f} degrees. Where the arm hangs straight down now, "
         f"add {found.sample.position_rad:.5f} to drive.zero_rad."
     )
+
+
+def _watchdog(description: "Description") -> str:
+    if description.watchdog_s is None:
+        return "NONE: the motor goes on with the last demand where this host falls silent"
+    return f"is to stop it after {description.watchdog_s:g} s of silence; {description.watchdog}"
 
 
 def _value(found: "Connection", name: str) -> object:

@@ -1,5 +1,6 @@
 """`friction-bench export` and `import`: recording sets leave and enter."""
 
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,6 +18,14 @@ _GUESS = (
     "Import nothing: show what each column seems to be, by its name and values, and write that to a mapping file "
     "(--mapping, or mapping.toml). What is not sure is asked; answer with the options below."
 )
+
+
+class Effort(Enum):
+    """What a JointState's effort is."""
+
+    TORQUE = "torque_n_m"
+    CURRENT = "current_a"
+    DUTY = "duty"
 
 
 def export(
@@ -38,7 +47,12 @@ def export(
 def import_(
     context: typer.Context,
     path: Annotated[
-        list[Path], typer.Argument(metavar="PATH...", help="Folder or .zip of a recording set, or files: each a trial.")
+        list[Path],
+        typer.Argument(
+            metavar="PATH...",
+            help="Folder or .zip of a recording set, or files: each a trial; with --joint, a ROS 2 bag (.mcap), or a "
+            "folder of them.",
+        ),
     ],
     rig: Annotated[Path | None, typer.Option(help="rig.toml, where the set has none or another is wanted.")] = None,
     mapping: Annotated[
@@ -50,17 +64,35 @@ def import_(
     counts_per_turn: CountsPerTurn = None,
     rate_hz: RateHz = None,
     supply_v: SupplyV = None,
+    joint: Annotated[
+        str, typer.Option(help="Joint of the JointState messages of a ROS 2 bag; --rig says what it is.")
+    ] = "",
+    topic: Annotated[str, typer.Option(help="Topic of these messages; else the only one there is.")] = "",
+    effort: Annotated[
+        Effort, typer.Option(help="What their publisher puts into 'effort'; ROS says torque.")
+    ] = Effort.TORQUE,
     as_json: Json = False,
 ) -> None:
     """Read trials of any bench into the store: all of them, or none and the file, line and column at fault."""
-    from bench.recording_set import import_recording_set, read_mapping, read_recording_set, read_rig
+    from bench.recording_set import (
+        import_recording_set,
+        read_mapping,
+        read_recording_set,
+        read_rig,
+        read_ros2_bags,
+    )
 
     chosen_rig = None if rig is None else read_rig(rig)
     if guess:
         _guess(path, chosen_rig, known_of(take, counts_per_turn, rate_hz, supply_v), mapping or Path("mapping.toml"))
         return
-    chosen_mapping = None if mapping is None else read_mapping(mapping)
-    recording_set = read_recording_set(path, chosen_mapping, chosen_rig)
+    if joint and chosen_rig is not None and mapping is None and len(path) == 1:
+        recording_set = read_ros2_bags(path[0], chosen_rig, joint, effort.value, topic)
+    elif joint:
+        raise typer.BadParameter("--joint is of one ROS 2 bag: it goes with --rig rig.toml, and without --mapping")
+    else:
+        chosen_mapping = None if mapping is None else read_mapping(mapping)
+        recording_set = read_recording_set(path, chosen_mapping, chosen_rig)
     with session_of(context).open_store() as store:
         experiment_id = import_recording_set(store, recording_set, name or recording_set.name)
     rows = sum(len(recording) for recording in recording_set.recordings)

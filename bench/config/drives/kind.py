@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
+from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig, Section
-from drivers.contract import Drive
+from drivers.contract import Drive, Mode
 
 
 class DriveSettings(Section):
@@ -28,12 +29,23 @@ class ConformanceBench:
         settings: keys of `[drive]`, beside those that the simulated device prints; short time limits do not fit a
             busy test machine.
         has_link: whether the device takes `--link`, so that its port comes back under the same name.
+        wrong_address: the key of `[drive]` and the address at which nobody answers.
+        refused_mode: a mode that it lacks, or that it can be made to refuse in motion.
+        is_checked: whether a flipped bit is seen in every packet; None: the transport never flips one.
+        knows_counts: whether it knows its encoder, and refuses a rig that says otherwise; None: its position needs
+            no counts, for it is told in turns.
+        has_watchdog: whether it stops by itself when its host falls silent.
     """
 
     name: str
     device: tuple[str, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
     has_link: bool = True
+    wrong_address: tuple[str, int] = ("", 0)
+    refused_mode: Mode = Mode.POSITION
+    is_checked: bool | None = True
+    knows_counts: bool | None = False
+    has_watchdog: bool = True
 
 
 SettingsT = TypeVar("SettingsT", bound=DriveSettings)
@@ -49,6 +61,7 @@ class DriveKind(Generic[SettingsT]):
         make: makes the drive, not yet open, of the section and the rig. Raises `ConfigurationError`.
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.
         conformance: how the conformance tests run on it.
+        scan_serial, scan_can: say which drives of the kind answer on a port or a bus.
         share: lets drives of one bench that are on one line use it together, before they are opened; raises
             `ConfigurationError`. None: each has a line of its own.
     """
@@ -58,6 +71,8 @@ class DriveKind(Generic[SettingsT]):
     make: Callable[[SettingsT, Rig], Drive]
     simulate: Callable[[], Simulate] | None = None
     conformance: tuple[ConformanceBench, ...] = ()
+    scan_serial: SerialScan | None = None
+    scan_can: CanScan | None = None
     share: Callable[[Sequence[Any]], None] | None = None
 
     @property

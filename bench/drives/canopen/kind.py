@@ -66,7 +66,21 @@ KIND = DriveKind(
     simulate=simulate,
     share=share,
     conformance=(
-        ConformanceBench("canopen", settings=_UNHURRIED),
-        ConformanceBench("canopen-socketcand", ("--interface", "socketcand"), _UNHURRIED, has_link=False),
+        ConformanceBench(
+            "canopen",
+            settings=_UNHURRIED,
+            wrong_address=("node_id", 77),
+            is_checked=False,  # the serial leg of a CAN adapter (slcan)
+            knows_counts=True,
+        ),
+        ConformanceBench(
+            "canopen-socketcand",
+            ("--interface", "socketcand"),
+            _UNHURRIED,
+            has_link=False,
+            wrong_address=("node_id", 77),
+            is_checked=False,
+            knows_counts=True,
+        ),
     ),
 )

@@ -6,7 +6,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
 from bench.drives.modbus.settings import ModbusDriveSettings
 from bench.errors import ConfigurationError
-from drivers.contract import Drive
+from drivers.contract import Drive, Mode
 
 _UNHURRIED = {"watchdog_s": 1.0, "answer_timeout_s": 0.3}
 
@@ -43,7 +43,21 @@ KIND = DriveKind(
     make=make,
     simulate=simulate,
     conformance=(
-        ConformanceBench("modbus-rtu", ("--transport", "rtu", "--baud", "0"), _UNHURRIED),
-        ConformanceBench("modbus-tcp", ("--transport", "tcp"), _UNHURRIED, has_link=False),
+        ConformanceBench(
+            "modbus-rtu",
+            ("--transport", "rtu", "--baud", "0"),
+            _UNHURRIED,
+            wrong_address=("unit", 9),
+            refused_mode=Mode.DUTY,
+        ),
+        ConformanceBench(
+            "modbus-tcp",
+            ("--transport", "tcp"),
+            _UNHURRIED,
+            has_link=False,
+            wrong_address=("unit", 9),
+            refused_mode=Mode.DUTY,
+            is_checked=None,
+        ),
     ),
 )

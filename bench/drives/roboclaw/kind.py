@@ -28,5 +28,9 @@ KIND = DriveKind(
     settings=RoboclawDriveSettings,
     make=make,
     simulate=simulate,
-    conformance=(ConformanceBench("roboclaw", ("--baud", "0"), {"watchdog_s": 1.0, "answer_timeout_s": 0.3}),),
+    conformance=(
+        ConformanceBench(
+            "roboclaw", ("--baud", "0"), {"watchdog_s": 1.0, "answer_timeout_s": 0.3}, wrong_address=("address", 0x83)
+        ),
+    ),
 )

@@ -77,7 +77,8 @@ def refuse_duty(name: str, duty: float, configuration: BenchConfiguration) -> No
 
 def refuse_modes(kind: str, wanted: frozenset[Mode], drive: Description) -> None:
     """Raise `LimitError` where a drive lacks a mode that an experiment needs of the drive itself."""
-    there = drive.modes | ({Mode.CURRENT} if Mode.DUTY in drive.modes else set())  # by eq. (3)
+    # a current is asked for as a duty, by eq. (3), or as a torque
+    there = drive.modes | ({Mode.CURRENT} if drive.modes & {Mode.DUTY, Mode.TORQUE} else set())
     missing = sorted(mode.value for mode in wanted - there)
     if missing:
         names = ", ".join(sorted(mode.value for mode in drive.modes))

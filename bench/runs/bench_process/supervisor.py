@@ -11,6 +11,7 @@ from bench.runs.bench_process.child import Child
 from bench.runs.bench_process.errors import BenchProcessError
 from bench.runs.bench_process.messages import Accepted, Failure, Reply, Seen, error_of
 from bench.runs.bench_process.mirror import Mirror
+from drivers.contract import Description
 
 CLOSING_S = 100.0  # a process that has not ended by then is killed
 
@@ -119,9 +120,7 @@ class Supervisor:
 
     def _end(self, child: Child, said: BaseException | None) -> None:
         how = child.reap()
-        watchdog = self._mirror.status.description
-        within = f" within {watchdog.watchdog_s:g} s" if watchdog is not None else ""
-        reason = f"the bench process {how} while it ran; the drive's own watchdog stops the motor{within}"
+        reason = f"the bench process {how} while it ran; {_what_stops(self._mirror.status.description)}"
         was_running = self._mirror.lose(reason)
         level = logging.ERROR if was_running else logging.INFO if self._closed else logging.WARNING
         event_log.note("bench process ended", level, how=how, while_running=was_running)
@@ -129,3 +128,12 @@ class Supervisor:
             self._lost(reason)
         self._mirror.release()
         self._calls.fail(said, f"the bench process {how}; the next start starts it again")
+
+
+def _what_stops(found: Description | None) -> str:
+    """What stops the motor of a drive whose host is gone."""
+    if found is None:
+        return "the drive's own watchdog stops the motor"
+    if found.watchdog_s is None:
+        return "NOTHING STOPS THE MOTOR, for the drive has no watchdog: switch its supply off"
+    return f"the drive's own watchdog stops the motor within {found.watchdog_s:g} s"

@@ -43,7 +43,9 @@ class DriveDescription(BaseModel):
     measured: list[str] = Field(description="quantities that the drive measures")
     resolution: dict[str, float] = Field(description="smallest step of a quantity, in its unit")
     max_rate_hz: float
-    watchdog_s: float = Field(description="time without a command after which the drive stops by itself")
+    watchdog_s: float | None = Field(
+        description="time without a command after which the drive stops by itself; null where nothing stops it"
+    )
     watchdog: str = Field(description="how sure that is: 'proven', 'configured, not proven' or 'none'")
     notes: list[str] = Field(description="what was noticed of line and host, and what to do about it")
 

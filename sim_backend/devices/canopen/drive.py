@@ -4,11 +4,11 @@ from threading import RLock
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
+from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.abort import Abort, AbortCode
 from sim_backend.devices.canopen.conduct import GOOD, REACTIONS, Conduct
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.emergency import ErrorCode
-from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.measured import Measured
 from sim_backend.devices.canopen.modes.braking import Braking
 from sim_backend.devices.canopen.modes.cyclic_position import CyclicPosition

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from enum import IntEnum
 
+from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.conduct import GOOD, Conduct
 from sim_backend.devices.canopen.dictionary import COMMUNICATION, Dictionary
 from sim_backend.devices.canopen.emergency import Emergency, ErrorCode
-from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.guarding import Deadline, LifeGuard
 from sim_backend.devices.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
 from sim_backend.devices.canopen.objects.communication import PDOS

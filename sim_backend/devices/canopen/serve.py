@@ -1,10 +1,11 @@
 """Starts a CiA 402 drive on a CAN bus."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.can.ports import port_of
 from sim_backend.devices.canopen.conduct import GOOD, Conduct
 from sim_backend.devices.canopen.drive import ServoDrive
 from sim_backend.devices.canopen.eds import eds_text
@@ -13,11 +14,8 @@ from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.family import Family, Rating
 from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.objects.generic import GENERIC
-from sim_backend.devices.canopen.transport.bus_port import BusPort
-from sim_backend.devices.canopen.transport.stream_port import SlcanPort, SocketcandPort
 from sim_backend.devices.joint_tables import behind_a_drive
-from sim_backend.devices.link.line import Line
-from sim_backend.devices.process import Port, RunningDevice, Workplace
+from sim_backend.devices.process import RunningDevice
 from sim_backend.errors import ParameterError
 
 DEFAULT_NODE = 5
@@ -79,7 +77,7 @@ def serve_canopen(settings: CanOpenSettings) -> RunningDrive:
     family = _family(settings.family) if settings.eds is None else family_of(read_data_sheet(settings.eds))
     node_id = settings.node_id or family.node_id or DEFAULT_NODE
     drive = ServoDrive(parameters, family, node_id, settings.seed, settings.conduct)
-    return RunningDrive(drive, _port(drive, settings), settings.side_port, settings.patience_s)
+    return RunningDrive(drive, port_of(drive, settings), settings.side_port, settings.patience_s)
 
 
 def data_sheet(family: str) -> str:
@@ -99,27 +97,3 @@ def _family(name: str) -> Family:
     if name not in FAMILIES:
         raise ParameterError(f"drive family '{name}' is unknown; known are {', '.join(FAMILIES)}")
     return FAMILIES[name]
-
-
-def _bus(settings: CanOpenSettings) -> tuple[str, str, dict[str, str | int]]:
-    """Interface, channel and whatever else python-can is told."""
-    if settings.interface == "udp_multicast":
-        return settings.interface, settings.channel, {"hop_limit": 0}  # it does not leave this machine
-    if settings.interface != "join":
-        return settings.interface, settings.channel, {}
-    host, _, port = settings.channel.rpartition(":")
-    if not port.isdigit():
-        raise ParameterError(f"channel '{settings.channel}': host:port of another device's socketcand server is wanted")
-    return "socketcand", "can0", {"host": host or "127.0.0.1", "port": int(port)}
-
-
-def _port(drive: ServoDrive, settings: CanOpenSettings) -> Callable[[Workplace], Port]:
-    def make(place: Workplace) -> Port:
-        line = Line(None, place.faults, settings.seed)
-        if settings.interface == "slcan":
-            return SlcanPort(drive, place.clock, line, settings.link)
-        if settings.interface == "socketcand":
-            return SocketcandPort(drive, place.clock, line, int(settings.channel))
-        return BusPort(drive, place.clock, *_bus(settings))
-
-    return make

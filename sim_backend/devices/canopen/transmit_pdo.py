@@ -1,7 +1,7 @@
 """TPDOs: measurements that go out without being asked for."""
 
+from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.frame import Frame
 from sim_backend.devices.canopen.mapping import Mapped, PdoParameters
 
 _EVERY_SYNC = range(1, 241)

@@ -7,10 +7,10 @@ import time
 import can
 import pytest
 
-from drivers.canopen.cia301.bounded import bounded
+from drivers.can_bus.bounded import bounded
+from drivers.can_bus.settings import BusSettings
 from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
-from drivers.canopen.settings import BusSettings
 from drivers.errors import DriveConnectionError
 
 FULL = can.CanOperationError("Failed to transmit: No buffer space available", errno.ENOBUFS)

@@ -8,9 +8,10 @@ from contextlib import suppress
 import can
 import pytest
 
-from drivers.canopen.cia301.bus import BusPort, close_bus, open_bus
+from drivers.can_bus.bus import close_bus, open_bus
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
-from drivers.canopen.settings import BusSettings
 from drivers.errors import DriveConnectionError
 
 

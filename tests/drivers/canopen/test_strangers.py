@@ -2,10 +2,10 @@
 
 import pytest
 
+from drivers.can_bus.settings import BusSettings
 from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.strangers import Strangers
-from drivers.canopen.settings import BusSettings
 from drivers.errors import DriveConnectionError
 
 NODE = 5

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -15,7 +15,7 @@ from bench.control.drive_factory import make_equipment
 from bench.control.ending import Outcome
 from bench.control.limits import Guard
 from bench.control.loop import joint_loop
-from bench.control.servo import current_servo
+from bench.control.servo import current_servo, torque_constant_n_m_a
 from drivers.contract import Drive
 from tests.control.fake_drive import ListSink
 from tests.devices.device_process import DeviceProcess, device_process
@@ -29,6 +29,9 @@ SERVO = {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_r
 SEARCH = {"current_step_a": 0.008}
 
 
+_PLAIN = ConformanceBench("")
+
+
 @dataclass(frozen=True)
 class Bench:
     """What a test talks to.
@@ -37,16 +40,22 @@ class Bench:
         name: of the driver.
         configuration: with the drive's section.
         device: the process behind the wire; None in process.
+        variant: what its kind says of it.
     """
 
     name: str
     configuration: BenchConfiguration
     device: DeviceProcess | None = None
+    variant: ConformanceBench = _PLAIN
 
     @property
     def watched_s(self) -> float:
         """The drive's watchdog [s]."""
         return getattr(self.configuration.drive, "watchdog_s", 0.1)
+
+    def changed(self, **sections: Any) -> "Bench":
+        """The same with other sections of its configuration."""
+        return replace(self, configuration=self.configuration.model_copy(update=sections))
 
     def clock(self) -> Clock:
         return VirtualClock() if self.device is None else WallClock()
@@ -75,10 +84,11 @@ class Bench:
         return True
 
     def repair(self) -> None:
-        """Put right whatever a test has broken, and wait until the motor is off."""
+        """Put right whatever a test has broken, wait until the motor is off, and put the arm back to angle 0."""
         if self.device is not None:
             self.device.side.ask("repair")
             self.device.wait_for_power(False)
+            self.device.side.hang_load(0.0, False)
 
 
 def configured(**drive: Any) -> BenchConfiguration:
@@ -105,12 +115,12 @@ def port_name() -> Iterator[str]:
 def set_up(kind: DriveKind[Any], variant: ConformanceBench, *device_options: str) -> Iterator[Bench]:
     """The bench of one variant of a kind, with its simulated device where it has one."""
     if kind.simulate is None:
-        yield Bench(variant.name, configured(kind=kind.name, **variant.settings))
+        yield Bench(variant.name, configured(kind=kind.name, **variant.settings), variant=variant)
         return
     with port_name() as link:
         options = [*variant.device, *(("--link", link) if variant.has_link else ()), *device_options]
         with device_process(kind.name, *options) as device:
-            yield Bench(variant.name, configured(**device.drive | variant.settings), device)
+            yield Bench(variant.name, configured(**device.drive | variant.settings), device, variant)
 
 
 # of every kind that is installed: another package's driver is held to the contract by the same tests
@@ -124,5 +134,5 @@ def run(bench: Bench, drive: Drive, procedure: Any, stop: Any) -> tuple[Outcome,
     sink = ListSink()
     configuration = bench.configuration
     guard, servo = Guard(configuration.limits), current_servo(configuration.rig)
-    loop = joint_loop(drive, bench.clock(), guard, PERIOD_S, servo)
+    loop = joint_loop(drive, bench.clock(), guard, PERIOD_S, servo, torque_constant_n_m_a(configuration.rig))
     return loop.run(procedure, sink, stop), sink

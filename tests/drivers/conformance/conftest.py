@@ -24,3 +24,19 @@ def wired(bench: Bench) -> Bench:
     if bench.device is None:
         pytest.skip("in process there is no wire")
     return bench
+
+
+@pytest.fixture
+def watched(wired: Bench) -> Bench:
+    """Of these, only those whose drive stops by itself when its host falls silent; for the others `test_unwatched`."""
+    if not wired.variant.has_watchdog:
+        pytest.skip("it has no watchdog")
+    return wired
+
+
+@pytest.fixture
+def unwatched(wired: Bench) -> Bench:
+    """Only the others."""
+    if wired.variant.has_watchdog:
+        pytest.skip("it has a watchdog")
+    return wired

@@ -11,7 +11,7 @@ from drivers.errors import DriveConfigurationError, DriveError, DriveFault, Driv
 from tests.drivers.conformance.benches import PERIOD_S
 
 OFF = Command(Mode.OFF)
-PUSHES = {Mode.DUTY: 0.15, Mode.CURRENT: 0.3}  # enough to move the joint without load, gently
+PUSHES = {Mode.DUTY: 0.15, Mode.CURRENT: 0.3, Mode.TORQUE: 0.015}  # enough to move the joint without load, gently
 
 
 def push_mode(drive):
@@ -35,7 +35,12 @@ def test_it_says_who_it_is_and_what_it_can(bench):
     assert found.firmware
     assert found.modes & set(PUSHES)
     assert found.max_rate_hz >= 1.0 / PERIOD_S
-    assert found.watchdog_s > PERIOD_S
+    if bench.variant.has_watchdog:
+        assert found.watchdog_s > PERIOD_S
+    else:  # and nobody runs it unknowingly
+        assert found.watchdog_s is None
+        assert found.watchdog is Watchdog.NONE
+        assert any("no watchdog" in note.lower() for note in found.notes)
     assert found.simulated  # no record of a simulated device may be taken for one of hardware
     assert "position_rad" in found.measured
     assert found.resolution["position_rad"] == pytest.approx(7.67e-5, rel=1e-3)
@@ -152,7 +157,7 @@ def test_an_impossible_demand_is_refused(bench, value):
 
 def test_a_mode_that_it_does_not_have_is_refused(bench):
     with bench.opened() as drive:
-        for mode in {Mode.DUTY, Mode.CURRENT, Mode.POSITION} - drive.describe().modes:
+        for mode in {Mode.DUTY, Mode.CURRENT, Mode.TORQUE, Mode.POSITION} - drive.describe().modes:
             with pytest.raises(DriveConfigurationError, match=mode.value):
                 drive.enable(mode)
 
@@ -179,6 +184,8 @@ def test_calls_before_opening_are_refused(bench):
 
 
 def test_a_watchdog_shorter_than_the_period_is_refused(bench):
+    if not bench.variant.has_watchdog:
+        pytest.skip("it has no watchdog")
     with bench.drive() as drive, pytest.raises(DriveConfigurationError):
         drive.open(10.0)
 
@@ -191,17 +198,17 @@ def knows_that_it_is_off(drive, command):
         return True
 
 
-def test_a_silent_host_is_switched_off_by_the_drive_itself(wired):
-    with wired.opened() as drive:
+def test_a_silent_host_is_switched_off_by_the_drive_itself(watched):
+    with watched.opened() as drive:
         mode = push_mode(drive)
         drive.enable(mode)
         before_s = time.monotonic()
-        while not wired.device.truth()["powered"]:
+        while not watched.device.truth()["powered"]:
             before_s = time.monotonic()
             drive.exchange(Command(mode, PUSHES[mode]))
-        off_s = wired.device.wait_for_power(False)
+        off_s = watched.device.wait_for_power(False)
         # the drive's own time: no other process has to be quick
-        assert wired.watched_s * 0.5 < off_s - before_s < wired.watched_s + 0.3
+        assert watched.watched_s * 0.5 < off_s - before_s < watched.watched_s + 0.3
         assert knows_that_it_is_off(drive, Command(mode, PUSHES[mode]))
 
 
@@ -218,14 +225,14 @@ def test_what_it_says_of_itself_when_nothing_is_written(bench):
             assert found.duty == pytest.approx(PUSHES[mode], abs=1e-3)
 
 
-def test_a_watchdog_that_ran_out_is_seen_before_anything_is_written(wired):
-    with wired.opened() as drive:
+def test_a_watchdog_that_ran_out_is_seen_before_anything_is_written(watched):
+    with watched.opened() as drive:
         mode = push_mode(drive)
         drive.enable(mode)
         cycles(drive, Command(mode, PUSHES[mode]), 2)
-        time.sleep(1.5 * wired.watched_s)
+        time.sleep(1.5 * watched.watched_s)
         found = drive.inspect()
-        assert not wired.device.truth()["powered"]
+        assert not watched.device.truth()["powered"]
         assert found.status is not Status.ENABLED
         assert isnan(found.duty) or found.duty == 0.0
 
@@ -235,11 +242,11 @@ def without_limits(configuration):
     return configuration.model_copy(update={"limits": limits})
 
 
-def test_the_watchdog_is_proven_at_the_drive(wired):
-    with wired.opened() as drive:
-        found = prove_watchdog(drive, without_limits(wired.configuration))  # earlier tests have turned the joint
+def test_the_watchdog_is_proven_at_the_drive(watched):
+    with watched.opened() as drive:
+        found = prove_watchdog(drive, without_limits(watched.configuration))  # earlier tests have turned the joint
         assert found.watchdog is Watchdog.PROVEN, found.sentence
-    wired.device.wait_for_power(False)
+    watched.device.wait_for_power(False)
 
 
 def test_a_host_that_was_lost_leaves_nothing_for_the_next_one_to_clear(wired):

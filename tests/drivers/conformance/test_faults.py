@@ -29,14 +29,6 @@ GENTLE_PUSH_A = 0.11  # just above static friction
 HALF_SWING_S = 0.2
 MARGIN_S = 0.4  # of the device: its tick, its thread on a busy machine
 LAST_WORDS_S = 2.0 * ANSWER_TIMEOUT_S  # the host asks twice before it gives up; the watchdog counts from then on
-CHECKED = ("roboclaw", "modbus-rtu")  # a CRC in every packet; the serial leg of a CAN adapter (slcan) has none
-WRONG = {
-    "roboclaw": {"address": 0x83},
-    "canopen": {"node_id": 77},
-    "canopen-socketcand": {"node_id": 77},
-    "modbus-rtu": {"unit": 9},
-    "modbus-tcp": {"unit": 9},
-}
 
 
 def to_and_fro(push_a=PUSH_A):
@@ -107,16 +99,16 @@ def opens_again(bench, drive):
 
 
 @pytest.mark.parametrize("name", ["disconnect", "silent", "drop"])
-def test_the_cable_comes_out_in_mid_motion(wired, name):
-    with wired.opened() as drive:
-        outcome, on_s = broken(wired, drive, "link", name=name)
+def test_the_cable_comes_out_in_mid_motion(watched, name):
+    with watched.opened() as drive:
+        outcome, on_s = broken(watched, drive, "link", name=name)
         assert outcome.outcome == "failed"
         assert any(
             word in outcome.reason
             for word in ("gone", "found", "answer", "heartbeat", "SYNC", "heard", "bus", "receiving")
         )
-        assert on_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
-        opens_again(wired, drive)
+        assert on_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
+        opens_again(watched, drive)
 
 
 def _corrupt_three(bench, drive):
@@ -133,7 +125,7 @@ def _corrupt_three(bench, drive):
 
 
 def test_one_corrupted_packet_does_not_end_the_run(wired):
-    if wired.name not in CHECKED:
+    if not wired.variant.is_checked:
         pytest.skip(f"{wired.name}: the line's packets have no check of their own")
     with wired.opened() as drive:
         assert _corrupt_three(wired, drive) is None
@@ -141,7 +133,7 @@ def test_one_corrupted_packet_does_not_end_the_run(wired):
 
 def test_a_corrupted_packet_of_a_line_without_a_check_at_most_trips_a_limit(wired):
     """A flipped bit may read as another value. What the limits allow goes on, what they do not ends in power-off."""
-    if wired.name in CHECKED or wired.name == "modbus-tcp":
+    if wired.variant.is_checked is not False:
         pytest.skip(f"{wired.name}: a packet arrives as it was sent, or is known to be wrong")
     with wired.opened() as drive:
         ended = _corrupt_three(wired, drive)
@@ -151,13 +143,13 @@ def test_a_corrupted_packet_of_a_line_without_a_check_at_most_trips_a_limit(wire
         opens_again(wired, drive)
 
 
-def test_a_line_that_corrupts_everything_ends_in_power_off(wired):
-    with wired.opened() as drive:
-        outcome, on_s = broken(wired, drive, "link", name="corrupt")
+def test_a_line_that_corrupts_everything_ends_in_power_off(watched):
+    with watched.opened() as drive:
+        outcome, on_s = broken(watched, drive, "link", name="corrupt")
         # where no packet has a check, a flipped bit may read as a value beyond a limit first
-        assert outcome.outcome in (("failed",) if wired.name in CHECKED else ("failed", "tripped"))
-        assert on_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
-        opens_again(wired, drive)
+        assert outcome.outcome in (("failed",) if watched.variant.is_checked else ("failed", "tripped"))
+        assert on_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
+        opens_again(watched, drive)
 
 
 @pytest.mark.parametrize("name", ["over-current", "drive-failed", "supply-lost"])
@@ -174,7 +166,7 @@ def test_an_encoder_that_stands_still_trips_a_limit_or_is_noticed(wired):
     """The joint moves on, its measured position does not: what the position servo would chase."""
     tight = wired.configuration.limits.model_copy(update={"tracking_error_rad": 0.02})
     with wired.opened() as drive:
-        bench = type(wired)(wired.name, wired.configuration.model_copy(update={"limits": tight}), wired.device)
+        bench = wired.changed(limits=tight)
         wired.device.side.ask("fault", name="encoder-stuck")
         outcome, _ = run(bench, drive, _far_away(), StopRequest())
         assert outcome.outcome == "tripped"
@@ -204,14 +196,13 @@ def test_a_port_that_is_gone_and_comes_back(wired):
 
 
 def test_a_wrong_address_is_an_error_that_names_it(wired):
-    wrong = WRONG[wired.name]
-    values = wired.configuration.drive.model_dump() | wrong
+    key, address = wired.variant.wrong_address
+    values = wired.configuration.drive.model_dump() | {key: address}
     drive = make_equipment(configured(**values)).drive
     began_s = time.monotonic()
     with pytest.raises(DriveError) as error:
         drive.open(PERIOD_S)
     drive.close()
-    [address] = wrong.values()
     assert str(address) in str(error.value) or hex(address) in str(error.value)
     assert time.monotonic() - began_s < drive.describe().longest_open_s + 5.0
 
@@ -229,13 +220,13 @@ def test_every_call_is_bounded_while_the_device_is_silent(wired):
         opens_again(wired, drive)
 
 
-def test_a_host_that_is_killed_in_mid_motion(wired, tmp_path):
+def test_a_host_that_is_killed_in_mid_motion(watched, tmp_path):
     """SIGKILL: nobody says good-bye. The drive stops by itself; the record says so when the store is opened again."""
     url = f"sqlite:///{tmp_path / 'bench.sqlite'}"
     configuration = tmp_path / "bench.toml"
-    configuration.write_text(tomli_w.dumps(wired.configuration.model_dump(mode="json", exclude_none=True)))
+    configuration.write_text(tomli_w.dumps(watched.configuration.model_dump(mode="json", exclude_none=True)))
     with Store.open(url) as store:
-        runner = Runner(wired.configuration, store)
+        runner = Runner(watched.configuration, store)
         runner.start("commissioning", {})
         while not runner.wait(0.02):
             if (prompt := runner.status().prompt) is not None:
@@ -249,20 +240,20 @@ def test_a_host_that_is_killed_in_mid_motion(wired, tmp_path):
     try:
         host.stdin.write(b"\n")
         host.stdin.flush()
-        wired.device.wait_for_power(True, timeout_s=60.0)
+        watched.device.wait_for_power(True, timeout_s=60.0)
         time.sleep(0.3)
         killed_s = time.monotonic()
         os.kill(host.pid, signal.SIGKILL)
         host.wait(10.0)
-        off_s = wired.device.wait_for_power(False)
+        off_s = watched.device.wait_for_power(False)
     finally:
         host.kill()
         host.stdin.close()
         host.wait()
-    assert off_s - killed_s < wired.watched_s + MARGIN_S, "the drive's watchdog did not stop it"
+    assert off_s - killed_s < watched.watched_s + MARGIN_S, "the drive's watchdog did not stop it"
     with Store.open(url) as store:
         newest = store.experiments()[0]
         assert (newest.kind, newest.outcome) == ("steps", "interrupted")
-    with wired.opened() as drive:
+    with watched.opened() as drive:
         assert drive.exchange(OFF).status is Status.DISABLED, "the next start would need somebody to clear a fault"
-        opens_again(wired, drive)
+        opens_again(watched, drive)

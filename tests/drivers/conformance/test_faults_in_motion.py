@@ -17,7 +17,6 @@ from drivers.errors import DriveConfigurationError, DriveError
 from tests.drivers.conformance.benches import PERIOD_S, configured, run
 from tests.drivers.conformance.test_faults import LAST_WORDS_S, MARGIN_S, Swinging, opens_again
 
-MODE_OF = {"roboclaw": Mode.POSITION, "canopen": Mode.POSITION, "modbus": Mode.DUTY}  # of each kind
 RAMP_A_S, RAMP_S = 0.2, 1.0
 FRESH_S = 0.1  # oldest sample that a bench at 100 Hz acts on, as in the configuration that comes with the package
 DELAY_S = 0.2  # of each answer: less than is waited for one, more than a fresh sample is old
@@ -36,7 +35,7 @@ def swing_then(mode):
 @pytest.mark.parametrize("_again", range(2))  # the first leaves nothing behind that would spoil the second
 def test_a_mode_that_is_refused_in_mid_motion(wired, _again):
     with wired.opened() as drive:
-        mode = MODE_OF[wired.configuration.drive.kind]
+        mode = wired.variant.refused_mode
         if mode in drive.describe().modes:  # it would take it: here it does not
             wired.device.side.ask("fault", name="mode-refused", delay_s=0.2)
         began_s = time.monotonic()
@@ -82,7 +81,7 @@ class Halfway:
 def test_answers_that_come_late_trip_the_limit_of_the_samples_age(wired):
     """Each answer is late, and none too late: the feedback is stale. What is old must not be acted on."""
     strict = wired.configuration.limits.model_copy(update={"sample_age_s": FRESH_S})
-    bench = type(wired)(wired.name, wired.configuration.model_copy(update={"limits": strict}), wired.device)
+    bench = wired.changed(limits=strict)
     with wired.opened() as drive:
         swinging = Swinging(bench, drive, push_a=0.15)
         before_s = time.monotonic()
@@ -95,28 +94,28 @@ def test_answers_that_come_late_trip_the_limit_of_the_samples_age(wired):
         opens_again(wired, drive)
 
 
-def test_answers_that_come_too_late_are_no_answers(wired):
-    with wired.opened() as drive:
-        swinging = Swinging(wired, drive)
+def test_answers_that_come_too_late_are_no_answers(watched):
+    with watched.opened() as drive:
+        swinging = Swinging(watched, drive)
         before_s = time.monotonic()
-        wired.device.side.ask("link", name="delay", amount_s=3.0, direction="from-device")
+        watched.device.side.ask("link", name="delay", amount_s=3.0, direction="from-device")
         outcome = swinging.join()
         assert outcome.outcome == "failed"
         assert any(word in outcome.reason for word in ("found", "answer", "heartbeat", "SYNC"))
-        assert wired.device.wait_for_power(False) - before_s < LAST_WORDS_S + wired.watched_s + MARGIN_S
+        assert watched.device.wait_for_power(False) - before_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
         time.sleep(3.0)  # what is still under way comes in, and must not be taken for an answer
-        opens_again(wired, drive)
+        opens_again(watched, drive)
 
 
 def with_lines_for_counts(bench):
     """The bench whose rig has the lines of the encoder, 1024, in the place of its counts, four times as many."""
     rig = bench.configuration.rig
     wrong = rig.model_copy(update={"sensor": rig.sensor.model_copy(update={"counts_per_turn": 1024})})
-    return type(bench)(bench.name, bench.configuration.model_copy(update={"rig": wrong}), bench.device)
+    return bench.changed(rig=wrong)
 
 
 def test_lines_counted_for_counts_do_not_pass_the_commissioning_move(wired):
-    if wired.configuration.drive.kind == "canopen":
+    if wired.variant.knows_counts is not False:
         pytest.skip("it says itself how many it has: see the next test")
     bench = with_lines_for_counts(wired)
     wired.device.side.hang_load(0.0, False)  # puts the arm back to angle 0
@@ -130,9 +129,9 @@ def test_lines_counted_for_counts_do_not_pass_the_commissioning_move(wired):
 
 
 def test_a_drive_that_knows_its_encoder_is_not_opened_with_another(wired):
-    if wired.configuration.drive.kind != "canopen":
+    if not wired.variant.knows_counts:
         pytest.skip("it does not say how many counts it has: see the test before")
-    refusal = r"counts per motor turn are 4096 .* the rig says 1024"
+    refusal = r"counts per .* 4096 .* the rig says 1024"
     with with_lines_for_counts(wired).drive() as drive, pytest.raises(DriveConfigurationError, match=refusal):
         drive.open(PERIOD_S)
     assert not wired.device.truth()["powered"]

@@ -43,7 +43,7 @@ function description(bench) {
   const { drive, limits } = bench;
   const identity = drive
     ? [["drive", [drive.vendor, drive.product].filter(Boolean).join(" ") || drive.device], ["firmware", drive.firmware || "not told"],
-      ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", `${number(drive.watchdog_s)} s, ${drive.watchdog}`],
+      ["modes", drive.modes.join(", ")], ["measures", drive.measured.map(nameOf).join(", ")], ["watchdog", drive.watchdog_s === null ? "none: it does not stop by itself" : `${number(drive.watchdog_s)} s, ${drive.watchdog}`],
       ...drive.notes.map((note) => ["note", note])]
     : [["drive", "opens at the first start"]];
   return facts([...identity, ["rig", bench.rig.name], ...limits.map((limit) => [limit.description, withShownUnit(limit.value, limit.unit)]), ["software", bench.software_version]]);

@@ -1,0 +1,1 @@
+"""Damiao actuators on a CAN bus."""

@@ -1,0 +1,89 @@
+"""The Damiao actuator as a kind of drive."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from bench.config.drives.kind import ConformanceBench, DriveKind
+from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
+from bench.config.drives.scanning import CanPlace, FoundDrive
+from bench.config.drives.simulated_device import Simulate
+from bench.config.quantities import quantity
+from bench.config.rig import Rig
+from drivers.contract import Drive
+
+_IDS = range(1, 33)
+_ANSWER_S = 0.01
+
+Model = Literal[
+    "", "DM3507", "DM4310", "DM4310P", "DM4340", "DM4340P", "DM6006", "DM8006", "DM8009", "DM10010L", "DM10010",
+    "DMH3510", "DMG6215", "DMH6220",
+]  # fmt: skip
+
+
+class DamiaoDriveSettings(CanDriveSettings):
+    """One Damiao actuator, over the MIT protocol: torque."""
+
+    kind: Literal["damiao"]
+    motor_id: int = quantity(1, "", "ESC_ID of the actuator", ge=1, le=0x7FE)
+    feedback_id: int = quantity(0x11, "", "MST_ID of the actuator; of each another one", ge=0, le=0x7FE)
+    model: Model = quantity("", "", "Model whose ranges it has to have; left out: those that it says are taken")
+    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops, set in its TIMEOUT register", ge=0.01, le=2)
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
+
+
+def make(settings: DamiaoDriveSettings, rig: Rig) -> Drive:
+    """The driver."""
+    from drivers.damiao.drive import DamiaoDrive
+    from drivers.damiao.settings import DamiaoSettings
+
+    return DamiaoDrive(DamiaoSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
+def simulate() -> Simulate:
+    """The command that simulates one."""
+    from bench.drives.damiao.device import simulate
+
+    return simulate
+
+
+def scan(place: CanPlace) -> Iterator[FoundDrive]:
+    """Ask each of the usual ids for its range of torques: the reading of a register."""
+    from drivers.can_bus.port import CanPort
+    from drivers.can_bus.settings import BusSettings
+    from drivers.damiao import protocol
+
+    port = CanPort(BusSettings(place.interface, place.channel, place.bitrate))
+    try:
+        for motor_id in _IDS:
+            frame = protocol.register_frame(motor_id, protocol.READ, protocol.Register.TORQUE_RANGE)
+            port.send(protocol.REGISTERS_ID, frame)
+            port.wait_for([-1], _ANSWER_S)  # which never comes
+            for identifier in port.heard_ids():
+                heard = port.last(identifier)
+                if heard and protocol.is_register(heard.data, motor_id, protocol.Register.TORQUE_RANGE):
+                    torque_n_m = protocol.FLOAT.unpack(heard.data[4:])[0]
+                    yield FoundDrive(f"Damiao actuator, range of torques {torque_n_m:g} N m", {
+                        "kind": "damiao", "interface": place.interface, "channel": place.channel,
+                        "bitrate": place.bitrate, "motor_id": motor_id, "feedback_id": identifier,
+                    })  # fmt: skip
+    finally:
+        port.close()
+
+
+KIND = DriveKind(
+    title="Damiao actuator, MIT protocol",
+    settings=DamiaoDriveSettings,
+    make=make,
+    simulate=simulate,
+    scan_can=scan,
+    conformance=(
+        ConformanceBench(
+            "damiao",
+            ("--position-range", "50.265"),  # 16 bits of it are steps of 1/4096 turn
+            {"watchdog_s": 1.0, "answer_timeout_s": 0.3},
+            wrong_address=("motor_id", 33),
+            is_checked=False,  # the serial leg of a CAN adapter (slcan)
+            knows_counts=None,
+        ),
+    ),
+)

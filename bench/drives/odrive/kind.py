@@ -1,0 +1,86 @@
+"""The ODrive as a kind of drive."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from bench.config.drives.kind import ConformanceBench, DriveKind
+from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
+from bench.config.drives.scanning import CanPlace, FoundDrive
+from bench.config.drives.simulated_device import Simulate
+from bench.config.quantities import quantity
+from bench.config.rig import Rig
+from drivers.contract import Drive
+
+_LISTEN_S = 0.3  # a heartbeat comes every 0.1 s
+
+
+class OdriveDriveSettings(CanDriveSettings):
+    """One axis of an ODrive, over CANSimple: torque."""
+
+    kind: Literal["odrive"]
+    node_id: int = quantity(0, "", "Node ID of the axis", ge=0, le=62)
+    watchdog_s: float = quantity(
+        0.2, "s", "Its watchdog, as it is set with odrivetool; CANSimple has no message for it", ge=0.02, le=2.0
+    )
+    watchdog_is_set_in_drive: bool = quantity(
+        False, "", "true: axis0.config.enable_watchdog and watchdog_timeout are set so"
+    )
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for the answers of a cycle", ge=0.002, le=1.0)
+    slow_every: int = quantity(
+        20, "cycles", "Cycles between two questions for supply voltage or temperature, in turn", ge=1, le=1000
+    )
+
+
+def make(settings: OdriveDriveSettings, rig: Rig) -> Drive:
+    """The driver."""
+    from drivers.odrive.drive import OdriveDrive
+    from drivers.odrive.settings import OdriveSettings
+
+    return OdriveDrive(OdriveSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
+def simulate() -> Simulate:
+    """The command that simulates one."""
+    from bench.drives.odrive.device import simulate
+
+    return simulate
+
+
+def scan(place: CanPlace) -> Iterator[FoundDrive]:
+    """Listen for heartbeats; nothing is sent. A node whose heartbeat is as long and as seldom looks the same."""
+    from drivers.can_bus.port import CanPort
+    from drivers.can_bus.settings import BusSettings
+    from drivers.odrive.protocol import HEARTBEAT, Command
+
+    port = CanPort(BusSettings(place.interface, place.channel, place.bitrate))
+    try:
+        port.wait_for([-1], _LISTEN_S)  # which never comes
+        for identifier in port.heard_ids():
+            heard = port.last(identifier)
+            is_heartbeat = identifier & 31 == Command.HEARTBEAT and heard is not None
+            if is_heartbeat and heard is not None and len(heard.data) >= HEARTBEAT.size:
+                yield FoundDrive(f"ODrive axis, in state {HEARTBEAT.unpack_from(heard.data)[1]}", {
+                    "kind": "odrive", "interface": place.interface, "channel": place.channel,
+                    "bitrate": place.bitrate, "node_id": identifier >> 5, "watchdog_is_set_in_drive": False,
+                })  # fmt: skip
+    finally:
+        port.close()
+
+
+KIND = DriveKind(
+    title="ODrive axis, CANSimple",
+    settings=OdriveDriveSettings,
+    make=make,
+    simulate=simulate,
+    scan_can=scan,
+    conformance=(
+        ConformanceBench(
+            "odrive",
+            ("--watchdog", "1.0"),
+            {"answer_timeout_s": 0.3},
+            wrong_address=("node_id", 33),
+            is_checked=False,  # the serial leg of a CAN adapter (slcan)
+            knows_counts=None,
+        ),
+    ),
+)

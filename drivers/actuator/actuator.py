@@ -1,0 +1,61 @@
+"""What a kind of actuator has to bring: its protocol, in raw words, without any state of its own."""
+
+from typing import Protocol
+
+from drivers.actuator.reading import Identity, Reading
+from drivers.contract import Mode
+
+
+class Actuator(Protocol):
+    """A connected actuator. Each call raises `DriveConnectionError` where it is not answered in time.
+
+    Attributes:
+        identity: who answers.
+        notes: what the user should know, a sentence each.
+    """
+
+    identity: Identity
+    notes: tuple[str, ...]
+
+    @property
+    def bus(self) -> object:
+        """That it is on."""
+
+    @property
+    def modes(self) -> frozenset[Mode]:
+        """That it has."""
+
+    @property
+    def measured(self) -> frozenset[str]:
+        """Names of the `Sample` fields that are measured."""
+
+    @property
+    def steps(self) -> dict[str, float]:
+        """Smallest step of a quantity, by `Sample` field, in its unit; of position and speed in counts."""
+
+    def begin(self) -> None:
+        """A call of the contract begins: from now on its questions share one time limit."""
+
+    def switch_on(self, mode: Mode, here: Reading) -> None:
+        """Power the stage with a demand that moves nothing; `here` is what it has just said."""
+
+    def switch_off(self) -> None:
+        """Power off."""
+
+    def exchange(self, mode: Mode, value: float) -> Reading:
+        """One cycle with a demand [duty, A, N m or counts]; with `Mode.OFF` without one."""
+
+    def braking(self) -> tuple[Mode, float]:
+        """The demand of its quick stop."""
+
+    def ask(self) -> Reading:
+        """What it says of itself, by questions alone."""
+
+    def clear_fault(self) -> None:
+        """Acknowledge what has switched it off, and leave the power off."""
+
+    def shout_off(self) -> None:
+        """Say once that it shall be off, and wait for no answer. Never raises."""
+
+    def close(self) -> None:
+        """Give the port back. Never raises."""

@@ -1,0 +1,172 @@
+"""A bus as a driver of short frames uses it: send, and take in what has come, in the thread that calls."""
+
+import time
+from collections.abc import Callable, Collection
+from typing import NamedTuple, TypeVar
+
+import can
+
+from drivers.actuator.open_buses import OpenBuses
+from drivers.can_bus.bus import close_bus, open_bus
+from drivers.can_bus.settings import BusSettings
+from drivers.errors import DriveConnectionError
+
+_SEND_S = 0.02  # longest wait for room in the transmit buffer
+_RETRY_S = 0.0005
+_MOST_WAITING = 2000  # frames taken in at once: a babbling node must not hold the loop
+
+
+class Heard(NamedTuple):
+    """The last frame of an identifier, and how many there were."""
+
+    data: bytes
+    at_s: float
+    number: int
+
+
+def prepare(can_id: int, data: bytes = b"", remote: bool = False, is_extended: bool = False) -> can.Message:
+    """A frame, which may be sent often."""
+    return can.Message(
+        arbitration_id=can_id, data=data, is_extended_id=is_extended, is_remote_frame=remote,
+        dlc=8 if remote else len(data),
+    )  # fmt: skip
+
+
+class CanPort:
+    """An open bus, and the last frame of each identifier.
+
+    Args:
+        settings: how it is reached.
+
+    Attributes:
+        garbled: frames that could not be read.
+
+    Raises:
+        DriveConnectionError: it is not there, or does not open in time.
+    """
+
+    def __init__(self, settings: BusSettings) -> None:
+        self._name = str(settings)
+        self.garbled = 0
+        self._heard: dict[int, Heard] = {}
+        self._bus = open_bus(settings, self._name)
+
+    def close(self) -> None:
+        """Close the bus, also a broken one. Never raises."""
+        close_bus(self._bus)
+
+    def send(self, can_id: int, data: bytes = b"", remote: bool = False, is_extended: bool = False) -> None:
+        """Send a frame, and wait for room where there is none.
+
+        Raises:
+            DriveConnectionError: there is none in time, or the adapter is gone.
+        """
+        self.send_prepared(prepare(can_id, data, remote, is_extended))
+
+    def send_prepared(self, message: can.Message) -> None:
+        """The same of a frame that was made before.
+
+        Raises:
+            DriveConnectionError: as `send`.
+        """
+        end_s = time.perf_counter() + _SEND_S
+        while True:
+            try:
+                self._bus.send(message)
+                return
+            except (can.CanError, OSError) as error:
+                if "buffer full" not in str(error).lower() or time.perf_counter() > end_s:
+                    raise self._lost("sending", error) from error
+                time.sleep(_RETRY_S)
+
+    def number(self, can_id: int) -> int:
+        """How many frames of an identifier have come."""
+        heard = self._heard.get(can_id)
+        return 0 if heard is None else heard.number
+
+    def last(self, can_id: int) -> Heard | None:
+        """The last frame of an identifier; None where there was none."""
+        return self._heard.get(can_id)
+
+    def drain(self) -> None:
+        """Take in what waits already.
+
+        Raises:
+            DriveConnectionError: the adapter is gone.
+        """
+        for _ in range(_MOST_WAITING):
+            if self._take(0.0) is None:
+                return
+
+    def wait_for(self, can_ids: Collection[int], limit_s: float) -> list[int]:
+        """Wait until a further frame of each identifier has come. Returns those of which none has come in time [s].
+
+        Raises:
+            DriveConnectionError: the adapter is gone.
+        """
+        before = {can_id: self.number(can_id) for can_id in can_ids}
+        return self.wait_beyond(before, limit_s)
+
+    def wait_beyond(self, before: dict[int, int], limit_s: float) -> list[int]:
+        """The same, counted from numbers that were taken before something was asked for."""
+        end_s = time.perf_counter() + limit_s
+        missing = {can_id for can_id, number in before.items() if self.number(can_id) == number}
+        while missing:
+            left_s = end_s - time.perf_counter()
+            taken = self._take(max(left_s, 0.0))
+            if taken is None and left_s <= 0.0:
+                break
+            missing.discard(-1 if taken is None else taken)
+        return sorted(missing)
+
+    def heard_ids(self) -> list[int]:
+        """Every identifier of which a frame has come."""
+        return sorted(self._heard)
+
+    def _take(self, timeout_s: float) -> int | None:
+        """Take in one frame. Returns its identifier, -1 where it is none to be kept; None where none has come [s]."""
+        try:
+            message = self._bus.recv(timeout_s)
+        except (ValueError, IndexError):  # a line that is no frame
+            self.garbled += 1
+            return -1
+        except (can.CanError, OSError, TypeError) as error:
+            raise self._lost("receiving", error) from error
+        if message is None:
+            return None
+        if message.is_error_frame or message.is_remote_frame or not message.is_rx:
+            self.garbled += message.is_error_frame
+            return -1
+        can_id: int = message.arbitration_id
+        self._heard[can_id] = Heard(bytes(message.data), time.perf_counter(), self.number(can_id) + 1)
+        return can_id
+
+    def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
+        return DriveConnectionError(
+            self._name,
+            f"{doing} failed: the adapter is gone, the bus is off, or nobody acknowledges ({error}); check cable, "
+            "termination and bit rate, then open the drive again",
+        )
+
+
+MadeT = TypeVar("MadeT")
+_PORTS: OpenBuses[CanPort] = OpenBuses()  # actuators on one bus share it
+
+
+def on_bus(settings: BusSettings, make: Callable[[CanPort, Callable[[], None]], MadeT]) -> MadeT:
+    """An actuator on a bus, which is opened where no other actuator has it open.
+
+    Args:
+        settings: how the bus is reached.
+        make: makes the actuator of the port and of what gives the port back.
+
+    Raises:
+        DriveError: the bus does not open, or the actuator cannot be opened; the port is given back then.
+    """
+    key = settings.interface, str(settings)
+    port = _PORTS.enter(key, lambda: CanPort(settings))
+    try:
+        return make(port, lambda: _PORTS.leave(key))
+    except BaseException:
+        _PORTS.leave(key)
+        raise

@@ -1,0 +1,1 @@
+"""ODrive on a CAN bus, by its CANSimple protocol."""

@@ -1,0 +1,101 @@
+"""A servo on its bus: goals out, one piece of its table in, in one go."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import TypeVar
+
+from drivers.actuator.reading import Reading
+from drivers.contract import Mode
+from drivers.servos.bus import ServoBus
+from drivers.servos.frames import Item
+
+
+class ServoActuator(ABC):
+    """What the servos of every protocol do alike.
+
+    Args:
+        bus: open.
+        servo_id: which servo.
+        leave: called when the servo is closed; gives the bus back.
+
+    Attributes:
+        piece: what each exchange reads.
+        torque_enable: the item that powers the stage.
+    """
+
+    piece: Item
+    torque_enable: Item
+
+    def __init__(self, bus: ServoBus, servo_id: int, leave: Callable[[], None]) -> None:
+        self.bus, self.servo_id = bus, servo_id
+        self._leave = leave
+        self._mode = Mode.OFF
+
+    @abstractmethod
+    def goal(self, mode: Mode, value: float) -> tuple[int, bytes]:
+        """Where a demand goes, and its bytes."""
+
+    @abstractmethod
+    def reading(self, data: bytes, asked_s: float) -> Reading:
+        """The piece in SI."""
+
+    def begin(self) -> None:
+        """A call of the contract begins."""
+        self.bus.begin()
+
+    def switch_off(self) -> None:
+        """Power off."""
+        self._mode = Mode.OFF
+        self._write(self.torque_enable, 0)
+
+    def exchange(self, mode: Mode, value: float) -> Reading:
+        """Write the goal and read the piece, in one go."""
+        [reading] = exchange_all([(self, mode, value)])
+        return reading
+
+    def braking(self) -> tuple[Mode, float]:
+        """A goal of 0: a duty of 0 brakes, a current of 0 does not; a position is kept."""
+        return (Mode.OFF if self._mode is Mode.POSITION else self._mode), 0.0
+
+    def ask(self) -> Reading:
+        """The piece alone."""
+        return self.exchange(Mode.OFF, 0.0)
+
+    def shout_off(self) -> None:
+        """Power off, and wait for no answer."""
+        self.bus.shout(self.servo_id, self.torque_enable, 0)
+
+    def close(self) -> None:
+        """Give the port back, where nobody else uses it."""
+        self._leave()
+
+    def _write_goal(self, mode: Mode, value: float) -> None:
+        address, data = self.goal(mode, value)
+        self._write(Item(address, len(data), f"{mode.value} goal"), int.from_bytes(data, "little"))
+
+    def _write(self, item: Item, value: int) -> None:
+        self.bus.write(self.servo_id, item, value)
+
+    def _word(self, item: Item) -> int:
+        return self.bus.read(self.servo_id, item)
+
+
+ServoT = TypeVar("ServoT", bound=ServoActuator)
+
+
+def exchange_all(demands: Sequence[tuple[ServoT, Mode, float]]) -> list[Reading]:
+    """Write the goals of servos on one bus, and read the piece of each, in one go.
+
+    Raises:
+        DriveConnectionError: one of them does not answer.
+    """
+    first = demands[0][0]
+    goals: dict[int, dict[int, bytes]] = {}
+    for servo, mode, value in demands:
+        if mode is not Mode.OFF:
+            address, data = servo.goal(mode, value)
+            goals.setdefault(address, {})[servo.servo_id] = data
+    asked_s = perf_counter()
+    answers = first.bus.exchange(goals, tuple(servo.servo_id for servo, _, _ in demands), first.piece)
+    return [servo.reading(answer.data, asked_s) for (servo, _, _), answer in zip(demands, answers, strict=True)]

@@ -1,0 +1,55 @@
+"""What is settled with a servo of any protocol when it is opened: its place on a shared line, and its counts."""
+
+from collections.abc import Callable
+
+from drivers.actuator.open_buses import OpenBuses
+from drivers.errors import DriveConfigurationError
+from drivers.joint import JointScale
+from drivers.servos.actuator import ServoT
+from drivers.servos.bus import ServoBus
+from drivers.servos.frames import Frames
+
+_BUSES: OpenBuses[ServoBus] = OpenBuses()  # servos of one line share its port
+
+
+def on_line(
+    port: str,
+    baud_rate: int,
+    timeout_s: float,
+    frames: Frames,
+    make: Callable[[ServoBus, Callable[[], None]], ServoT],
+) -> ServoT:
+    """A servo on a line, which is opened where no other servo has it open.
+
+    Args:
+        port: "/dev/ttyUSB0".
+        baud_rate: of the line.
+        timeout_s: longest wait for one answer [s].
+        frames: of the protocol.
+        make: makes the servo of its bus and of what gives the bus back.
+
+    Raises:
+        DriveError: the port is not there, or the servo cannot be opened; the bus is given back then.
+    """
+    key = port, baud_rate
+    bus = _BUSES.enter(key, lambda: ServoBus(port, baud_rate, timeout_s, frames))
+    try:
+        return make(bus, lambda: _BUSES.leave(key))
+    except BaseException:
+        _BUSES.leave(key)
+        raise
+
+
+def check_counts(device: str, name: str, counts_per_turn: int, joint: JointScale) -> None:
+    """Compare the rig with what a servo counts at its output.
+
+    Raises:
+        DriveConfigurationError: the rig says otherwise.
+    """
+    if joint.counts_per_turn != counts_per_turn:
+        raise DriveConfigurationError(
+            device,
+            f"counts per turn of a {name} are {counts_per_turn} at its output; the rig says "
+            f"{joint.counts_per_turn:g}. Set sensor.counts_per_turn to {counts_per_turn}, and gear.ratio to what is "
+            "behind the servo (1 where the arm is on its horn)",
+        )

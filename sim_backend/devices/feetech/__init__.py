@@ -1,0 +1,1 @@
+"""Feetech STS servos, SCS protocol, as Feetech's protocol manual and memory table describe them."""

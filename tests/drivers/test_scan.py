@@ -1,0 +1,55 @@
+"""`friction-bench drives scan`: what is found on simulated devices, and that its section opens the drive."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from bench.control.drive_factory import make_equipment
+from tests.devices.device_process import device_process
+from tests.drivers.conformance.benches import configured
+
+ACCEPTED = {"feetech": {"accept_no_watchdog": True}, "odrive": {"watchdog_is_set_in_drive": True}}
+
+
+def scan(*options):
+    words = [sys.executable, "-m", "bench.cli", "drives", "scan", *options]
+    return subprocess.run(words, capture_output=True, text=True, timeout=60)
+
+
+@pytest.mark.parametrize(
+    ("kind", "device", "key", "ids"),
+    [
+        ("dynamixel", ("--id", "7", "--joints", "3", "--baud", "0"), "servo_id", [7, 8, 9]),
+        ("feetech", ("--id", "250", "--joints", "2", "--baud", "0"), "servo_id", [250, 251]),
+        ("odrive", ("--node", "12"), "node_id", [12]),
+        ("damiao", ("--motor", "5", "--feedback", "37"), "motor_id", [5]),
+    ],
+)
+def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):
+    with device_process(kind, *device) as running:
+        is_serial = "port" in running.drive
+        place = ("--port", running.port, "--baud", "1000000") if is_serial else ("--bus", f"slcan:{running.port}")
+        found = json.loads(scan(*place, "--json").stdout)
+        assert [one["drive"][key] for one in found if one["drive"]["kind"] == kind] == ids
+        assert not running.truth()["powered"]
+        section = found[[one["drive"]["kind"] for one in found].index(kind)]["drive"] | ACCEPTED.get(kind, {})
+        drive = make_equipment(configured(**section, answer_timeout_s=0.3)).drive
+        try:
+            drive.open(0.01)
+            assert drive.describe().simulated
+        finally:
+            drive.close()
+
+
+def test_nothing_there_is_said_so():
+    with device_process("dynamixel", "--baud", "0") as running:
+        running.side.ask("link", name="silent")
+        found = scan("--port", running.port, "--baud", "1000000")
+    assert found.returncode != 0
+    assert "Nothing answers" in found.stdout + found.stderr
+
+
+def test_a_place_is_wanted():
+    assert "--port PORT" in scan().stderr
