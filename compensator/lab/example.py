@@ -29,6 +29,7 @@ SINES = ((0.9, 0.15), (0.35, 0.55))  # amplitude [rad], frequency [Hz]
 ARM_M, INERTIA_KG_M2, ARM_MOMENT_N_M, COULOMB_N_M, VISCOUS_N_M_S = 0.3, 0.02, 0.1, 0.08, 0.03
 TORQUE_PER_CURRENT_N_M_A = 1.0
 RESTS_S, RAMP_S = ((2.6, 3.0), (6.0, 7.2)), 0.05  # from, to; how quickly it stops
+SENSED = "load_torque_n_m"
 SMOOTH_RAD_S = 0.02  # of the example's sign of speed
 STARTS, RATES_N_M_S, STARTS_REST_S = 24, (0.02, 2.0), (0.2, 0.2, 1.0, 1.0, 5.0, 5.0)
 SWUNG = "A joint swings to and fro and rests twice."
@@ -82,7 +83,7 @@ def example_of(name: str) -> Example:
     quantity: EffortQuantity = "torque" if not effect.efforts or "torque" in effect.efforts else "current_estimate"
     if effect.rows == "breakaway":
         return _of_starts(effect, quantity)
-    dataset = _joint(quantity)
+    dataset = _joint(quantity, SENSED in effect.channels)
     shapes = effect.shapes(dataset.trials[0].motion)
     added = _added(dataset.columns(effect, shapes[len(shapes) // 2]), effect.parameters, dataset.effort)
     driver = DRIVERS[effect.driver]
@@ -127,14 +128,14 @@ def _of_starts(effect: Effect, quantity: EffortQuantity) -> Example:
 
 
 @cache
-def _joint(quantity: EffortQuantity) -> Dataset:
+def _joint(quantity: EffortQuantity, sensed: bool = False) -> Dataset:
     """The joint without anything special, with the effort that its model predicts: some effects build on that."""
-    return with_own_prediction(_fitted(quantity))
+    return with_own_prediction(_fitted(quantity, sensed))
 
 
 @cache
-def _fitted(quantity: EffortQuantity) -> Fit:
-    """The model of the joint."""
+def _fitted(quantity: EffortQuantity, sensed: bool = False) -> Fit:
+    """The model of the joint, with a sensor of the load where one is needed."""
     facts = Facts(
         torque_per_current_n_m_a=TORQUE_PER_CURRENT_N_M_A,
         gear_ratio=20.0,
@@ -143,17 +144,18 @@ def _fitted(quantity: EffortQuantity) -> Fit:
         supply_is_nominal=True,
         effort=quantity,
     )
-    recordings = [_recording(load_kg, number) for number, load_kg in enumerate(LOADS_KG)]
+    recordings = [_recording(load_kg, number, sensed) for number, load_kg in enumerate(LOADS_KG)]
     dataset = make_dataset(recordings, facts, Processing(CUTOFF_HZ, "all"))
     return fit_model(dataset, list(default_effects(facts)))
 
 
-def _recording(load_kg: float, number: int) -> Recording:
+def _recording(load_kg: float, number: int, sensed: bool) -> Recording:
     time_s = np.arange(0.0, DURATION_S, 1.0 / RATE_HZ)
     v = _moving(time_s) * _swing(time_s)
     q, a = np.cumsum(v) / RATE_HZ, np.gradient(v, time_s)
     torque = (INERTIA_KG_M2 + load_kg * ARM_M**2) * a + VISCOUS_N_M_S * v + COULOMB_N_M * np.tanh(v / SMOOTH_RAD_S)
-    torque += (ARM_MOMENT_N_M + load_kg * STANDARD_GRAVITY_M_S2 * ARM_M) * np.sin(q)
+    carried = (ARM_MOMENT_N_M + load_kg * STANDARD_GRAVITY_M_S2 * ARM_M) * np.sin(q)
+    torque += carried
     current = torque / TORQUE_PER_CURRENT_N_M_A
     channels = {
         "time_s": time_s,
@@ -162,6 +164,8 @@ def _recording(load_kg: float, number: int) -> Recording:
         "current_estimate_a": current,
         "temperature_c": 25.0 + 10.0 * number + 5.0 * time_s / DURATION_S,
     }
+    if sensed:
+        channels[SENSED] = carried
     conditions: dict[str, float | str | bool] = {
         "load_kg": load_kg,
         "arm_m": ARM_M,

@@ -131,6 +131,7 @@ def rival_columns(rows: Rows, scales: Scales) -> dict[str, FloatArray]:
         "tooth_loss": [pull * direction],
         "tooth_loss_square": [pull**2 * direction],
         "bearing_loss": [rows.load_kg * direction],
+        "quadrant_coulomb": [np.sign(load * v) * direction],
         "back_driving_loss": [pull * direction * (load * v < 0.0)],
         "cold_coulomb": [(rows.warm_c - 25.0) * direction],
         "lubricant": [(rows.warm_c - 25.0) * v],

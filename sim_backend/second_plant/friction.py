@@ -56,6 +56,8 @@ def load_loss_n_m(p: Physics, transmitted: float, speed: float) -> float:
     added = p.tooth_loss * size + p.tooth_loss_square_1_n_m * size * size + p.bearing_loss_n_m_kg * p.load_kg
     if p.back_driving_loss != 0.0 and transmitted * speed < 0.0:
         added += p.back_driving_loss * size
+    if p.quadrant_n_m != 0.0:
+        added += p.quadrant_n_m if transmitted * speed > 0.0 else -p.quadrant_n_m
     return added
 
 

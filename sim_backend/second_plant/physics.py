@@ -52,6 +52,7 @@ class Physics(NamedTuple):
     tooth_loss_square_1_n_m: float = 0.0
     bearing_loss_n_m_kg: float = 0.0
     back_driving_loss: float = 0.0
+    quadrant_n_m: float = 0.0
     coulomb_per_k: float = 0.0
     lubricant_k: float = 0.0  # Arrhenius: viscosity ~ exp(B (1/T - 1/T0))
     warm_up: float = 0.0

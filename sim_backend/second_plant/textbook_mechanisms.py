@@ -84,6 +84,12 @@ TEXTBOOK = table(
         3.0,
     ),
     Mechanism(
+        "quadrant_coulomb",
+        "teeth rub more while they drive than while they hold back",
+        lambda size, s, _: {"quadrant_n_m": 0.3 * size * s.coulomb_n_m},
+        2.0,
+    ),
+    Mechanism(
         "cold_coulomb",
         "Coulomb friction falls with temperature",
         lambda size, _s, _: {"coulomb_per_k": -0.012 * size},

@@ -25,6 +25,7 @@ NAMES: dict[str, str] = {
     "tooth_loss_square": "load_friction_quadratic",
     "bearing_loss": "weight_friction",
     "back_driving_loss": "back_driving_friction",
+    "quadrant_coulomb": "coulomb_quadrant",
     "cold_coulomb": "coulomb_temperature",
     "lubricant": "viscous_temperature",
     "running_in": "warm_up",
