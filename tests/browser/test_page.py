@@ -43,9 +43,9 @@ def test_the_technician_starts_watches_and_stops(service, open_page):
 
 def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     page = open_page("#trials")
-    page.get_by_text("Import a recording set", exact=True).click()
+    page.get_by_text("Import a recording set, or files of any bench").click()
     zipped = {"name": "known joint.zip", "mimeType": "application/zip", "buffer": recording_set_zip()}
-    page.get_by_label("Recording set (.zip)").set_input_files(zipped)
+    page.get_by_label("Recording set (.zip), or files").set_input_files(zipped)
     page.get_by_role("button", name="Import").click()
     page.get_by_text("Imported 6 trials").wait_for()
     page.get_by_role("link", name="Study").click()
