@@ -7,6 +7,7 @@ import pytest
 from scipy.special import ellipk
 
 from sim_backend.second_plant.controller import CLOSED
+from sim_backend.second_plant.friction import load_loss_n_m
 from sim_backend.second_plant.physics import Physics
 from sim_backend.second_plant.simulate import TICK_S, Plan, Traces, run
 from tests.second_plant.bench import CONTROL, PLAIN, open_loop, seconds
@@ -152,3 +153,11 @@ def test_bristles_that_are_pressed_below_breakaway_do_not_creep():
     cycles = traces.reading_rad[2000:].reshape(-1, 400).mean(axis=1)
 
     assert np.ptp(cycles[20:]) < 1e-6
+
+
+def test_teeth_that_drive_rub_more_than_teeth_that_hold_back():
+    physics = PLAIN._replace(quadrant_n_m=0.3)
+    for pulled, speed in ((1.0, 2.0), (-1.0, -2.0)):
+        driving, holding = (load_loss_n_m(physics, sign * pulled, speed) for sign in (1.0, -1.0))
+        assert driving - holding == pytest.approx(0.6)
+        assert load_loss_n_m(PLAIN, pulled, speed) == pytest.approx(0.5 * (driving + holding))
