@@ -1,6 +1,6 @@
 """What every simulated device drives: a power stage with a joint on it, advanced in ticks of a millisecond."""
 
-from math import isnan, pi
+from math import isfinite, isnan, pi
 from typing import NamedTuple, Protocol
 
 from drivers.contract import Sample, Status
@@ -69,6 +69,8 @@ class Axis:
         self._ticks = 0
         self._count_rad = 2.0 * pi / (parameters.encoder.counts_per_turn * parameters.gear.ratio)
         self._duty_counts = parameters.supply.duty_counts
+        self._motor_sign, self._encoder_sign = parameters.wiring.motor_sign, parameters.wiring.encoder_sign
+        self._held_rad: float | None = None
         self.seen = self._look()
 
     @property
@@ -125,6 +127,22 @@ class Axis:
         self.plant.hang(Load(mass_kg=load_kg, balanced=balanced))
         self.seen = self._look()
 
+    def hold_arm(self, angle_rad: float) -> None:
+        """Turn the arm by hand to an angle, the motor with it, and hold it there.
+
+        Raises:
+            ParameterError: the angle is not finite, or the stage drives the motor.
+        """
+        if self.power.on or not isfinite(angle_rad):
+            raise ParameterError(f"the arm is turned by hand to {angle_rad} rad: with the power off, and by a number")
+        self._held_rad = angle_rad
+        self.plant.place(angle_rad, angle_rad)
+        self.seen = self._look()
+
+    def release_arm(self) -> None:
+        """Let go of the arm."""
+        self._held_rad = None
+
     def _tick(self) -> None:
         demand = self._law.demand(self.seen)
         if self.script:
@@ -132,7 +150,9 @@ class Axis:
             if self.trip() is not None or self.torque_is_disabled():
                 demand = OFF
         self._apply(demand)
-        measured = self.plant.advance(self.applied.stage, self.applied.value, _STEPS)
+        measured = self.plant.advance(self.applied.stage, self._motor_sign * self.applied.value, _STEPS)
+        if self._held_rad is not None:
+            self.plant.place(self._held_rad, self._held_rad)
         self._ticks += 1
         self.seen = self._sample(*measured)
         self._count_overload()
@@ -162,9 +182,10 @@ class Axis:
         self, position_rad: float, velocity_rad_s: float, current_a: float, temperature_c: float, supply_v: float
     ) -> Sample:
         status = Status.ENABLED if self.power.on else Status.DISABLED
+        encoder, motor = self._encoder_sign, self._motor_sign
         sample = Sample(
-            self.time_s, 0.0, position_rad, velocity_rad_s, self._duty(supply_v), current_a, supply_v, temperature_c,
-            status,
+            self.time_s, 0.0, encoder * position_rad, encoder * velocity_rad_s, self._duty(supply_v), motor * current_a,
+            supply_v, temperature_c, status,
         )  # fmt: skip
         return self._play.falsify(sample) if self.script else sample
 
@@ -182,7 +203,8 @@ class Axis:
             truth.winding_c, truth.housing_c,
         )  # fmt: skip
         back_emf_v = winding.torque_constant_n_m_a * truth.rotor_rad_s * parameters.gear.ratio
-        return min(max((winding.resistance_ohm * truth.current_a + back_emf_v) / supply_v, -1.0), 1.0)
+        duty = self._motor_sign * (winding.resistance_ohm * truth.current_a + back_emf_v) / supply_v
+        return min(max(duty, -1.0), 1.0)
 
 
 __all__ = ["BRAKE", "CURRENT", "OFF", "OPEN", "TICK_S", "VOLTAGE", "Axis", "Demand", "Law", "Power"]

@@ -29,6 +29,8 @@ class Hand:
         self._deeds: dict[str, Callable[..., Answer]] = {
             "truth": self.truth,
             "hang": self.hang,
+            "hold": self.hold,
+            "release": self.release,
             "fault": self.fault,
             "link": self.link,
             "repair": self.repair,
@@ -65,6 +67,16 @@ class Hand:
     def hang(self, load_kg: float, balanced: bool = False) -> Answer:
         """Hang a load."""
         self._device.axis.hang_load(load_kg, balanced)
+        return {}
+
+    def hold(self, angle_rad: float) -> Answer:
+        """Turn the arm to an angle, and hold it there."""
+        self._device.axis.hold_arm(angle_rad)
+        return {}
+
+    def release(self) -> Answer:
+        """Let go of the arm."""
+        self._device.axis.release_arm()
         return {}
 
     def fault(self, name: str, delay_s: float = 0.0, **values: Any) -> Answer:

@@ -11,6 +11,7 @@ from sim_backend.errors import ParameterError
 from sim_backend.faults.play import FaultPlay
 from sim_backend.faults.script import Fault, FaultScript, SamplesLost, TorqueDisabled
 from sim_backend.mechanisms.joint.gravity import Load
+from sim_backend.mechanisms.joint.wiring import Wiring
 from sim_backend.mechanisms.motor.motor import BRAKE, CURRENT, OPEN, VOLTAGE
 from sim_backend.plant.parameters import PlantParameters
 from sim_backend.plant.plant import COARSEST_STEP_S, Plant
@@ -41,6 +42,8 @@ class SimulatedDrive:
         self, parameters: PlantParameters, seed: int = 0, device: str = "sim", watchdog_s: float = 0.1,
         faults: Iterable[Fault] = (),
     ) -> None:  # fmt: skip
+        if parameters.wiring != Wiring():
+            raise ParameterError("wiring: the drive in process has no leads to be swapped; simulate a device instead")
         self.plant = Plant(parameters, seed)
         self._seed = seed
         self._device = device

@@ -28,6 +28,7 @@ from sim_backend.mechanisms.joint.gravity import Arm, CentreOfMass, Load
 from sim_backend.mechanisms.joint.sensing import Encoder, Latency
 from sim_backend.mechanisms.joint.shaft import Shaft
 from sim_backend.mechanisms.joint.spring import Spring
+from sim_backend.mechanisms.joint.wiring import Wiring
 from sim_backend.mechanisms.motor.cogging import Cogging
 from sim_backend.mechanisms.motor.current_sensor import CurrentSensor
 from sim_backend.mechanisms.motor.dead_time import DeadTime
@@ -70,6 +71,7 @@ class PlantParameters:
     wall: Wall = field(default_factory=Wall)
     heat: Heat = field(default_factory=Heat)
     operator: Operator = field(default_factory=Operator)
+    wiring: Wiring = field(default_factory=Wiring)
     # mechanisms to hide from whoever explains the data
     viscous_asymmetry: ViscousAsymmetry = field(default_factory=ViscousAsymmetry)
     coulomb_asymmetry: CoulombAsymmetry = field(default_factory=CoulombAsymmetry)

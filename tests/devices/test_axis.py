@@ -98,3 +98,38 @@ def test_load_is_hung_with_the_power_off_only() -> None:
     with pytest.raises(ParameterError, match="power off"):
         axis.hang_load(0.02, balanced=False)
     assert axis.plant.parameters.load.mass_kg == 0.05
+
+
+def test_swapped_leads_turn_the_joint_and_the_count_the_other_way() -> None:
+    axes = {}
+    for motor in (False, True):
+        for encoder in (False, True):
+            axis, law = _axis(wiring={"motor_reversed": motor, "encoder_reversed": encoder})
+            law.now = Demand(VOLTAGE, 0.2)
+            axis.advance_to(0.5)
+            axes[motor, encoder] = axis
+    for (motor, encoder), axis in axes.items():
+        turned = -1.0 if motor else 1.0
+        assert axis.plant.truth().arm_rad * turned > 0.0
+        assert axis.counts() * turned * (-1.0 if encoder else 1.0) > 0
+        assert axis.seen.current_a > 0.0  # of the drive's own demand, whichever way the joint turns
+        assert axis.seen.duty == pytest.approx(0.2)
+
+
+def test_an_arm_that_is_held_stays_and_one_that_is_let_go_falls() -> None:
+    axis, law = _axis(arm={"centre_of_mass_m": 0.2, "inertia_kg_m2": 0.02})
+    axis.hold_arm(1.0)
+    axis.advance_to(0.5)
+    assert axis.seen.position_rad == pytest.approx(1.0, abs=1e-3)
+    axis.release_arm()
+    axis.advance_to(2.0)
+    assert axis.seen.position_rad < 0.5
+    law.now = Demand(VOLTAGE, 0.2)
+    axis.advance_to(2.1)
+    with pytest.raises(ParameterError, match="power off"):
+        axis.hold_arm(1.0)
+
+
+def test_the_drive_in_process_has_no_leads() -> None:
+    with pytest.raises(ParameterError, match="simulate a device instead"):
+        SimulatedDrive(behind_a_drive(changed={"wiring": {"motor_reversed": True}}))

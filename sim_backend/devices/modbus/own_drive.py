@@ -199,6 +199,7 @@ class OwnDrive:
         """Return the demand, or the limit current in its place while the duty would drive more than that."""
         motor, truth = self.axis.plant.parameters.motor, self.axis.plant.truth()
         back_emf_v = motor.torque_constant_n_m_a * truth.rotor_rad_s * self.axis.plant.parameters.gear.ratio
+        back_emf_v *= self.axis.plant.parameters.wiring.motor_sign
         driven_a = (demand.value * seen.supply_v - back_emf_v) / motor.resistance_ohm
         self._limited = abs(driven_a) > limit_a
         return Demand(CURRENT, limit_a if driven_a > 0.0 else -limit_a) if self._limited else demand
