@@ -80,7 +80,7 @@ def fit_trials(
     rest = rest_of(trials, rig)
     searched = {
         load_kg: (rest.friction_a.get(load_kg, friction_a), ids)
-        for load_kg, (friction_a, ids) in _f_loads(trials).items()
+        for load_kg, (friction_a, ids) in f_loads(trials).items()
     }
     used = {one.trial_id for found in points.values() for one in found if one.trial_id is not None}
     used |= set(rest.trial_ids)
@@ -126,7 +126,7 @@ def _points(
     return {load_kg: points[load_kg] for load_kg in sorted(points) if points[load_kg]}
 
 
-def _f_loads(trials: Sequence[Trial]) -> dict[float, tuple[float, list[int]]]:
+def f_loads(trials: Sequence[Trial]) -> dict[float, tuple[float, list[int]]]:
     """Mean F_load [A] of the searches at angle 0 under each load, and the trials that it is from."""
     found: dict[float, list[tuple[float, int]]] = defaultdict(list)
     for trial in trials:

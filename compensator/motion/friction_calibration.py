@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from compensator.line_fit import Interval, t_quantile
 from compensator.motion.calibration_points import check_accelerations, check_points
 from compensator.motion.curve_regression import Solution, solve
-from compensator.motion.kinetic_friction import KineticFriction
+from compensator.motion.kinetic_friction import FloatArray, KineticFriction
 from compensator.motor import dc_motor as motor
 from compensator.motor.dc_motor import MotorConstants
 
@@ -39,12 +39,25 @@ class FrictionFit:
             where accelerations were given, of `inertia_a_s2_rad`, by name.
         scatter_a: standard deviation of the points about the curve, outliers aside [A].
         points: number of them.
+        covariance: of Fc, Fs - Fc [A], ln vs, ln ds and b, shape (5, 5); 0 for what was not fitted or lies at a bound.
     """
 
     curve: KineticFriction
     parameters: dict[str, Interval]
     scatter_a: float
     points: int
+    covariance: FloatArray
+
+    def half_width_a(self, speed_rad_s: ArrayLike) -> FloatArray:
+        """Half of the 95 % interval of the curve at speeds, shape (n,) [A]: how well it is known there."""
+        speed, curve = np.abs(np.asarray(speed_rad_s, dtype=np.float64)), self.curve
+        power = np.minimum((speed / curve.stribeck_speed_rad_s) ** curve.shape, 700.0)
+        bump = np.exp(-power)
+        steep = (curve.static_a - curve.coulomb_a) * bump * power * curve.shape
+        slope = -steep * np.log(speed / curve.stribeck_speed_rad_s)
+        gradient = np.column_stack([np.ones_like(speed), bump, steep, slope, speed])
+        variance = np.sum((gradient @ self.covariance) * gradient, axis=1)
+        return np.asarray(t_quantile(max(self.points - len(self.covariance), 1)) * np.sqrt(variance))
 
 
 NO_PART_OF_THE_CURVE = ("offset_a", "inertia_a_s2_rad", "rise_offset_a")
@@ -74,7 +87,7 @@ def fit(
     quantile = t_quantile(len(speed) - solution.fitted)
     parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
     curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name not in NO_PART_OF_THE_CURVE})
-    return FrictionFit(curve, parameters, solution.scatter_a, len(speed))
+    return FrictionFit(curve, parameters, solution.scatter_a, len(speed), solution.covariance[:5, :5])
 
 
 def fit_duty(

@@ -5,7 +5,7 @@ import json
 import pytest
 
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
-LEVELS = ("--loads-kg", "0,0.1", "--duties", "0.2")
+LEVELS = ("--loads-kg", "0,0.1", "--duties", "0.2", "--minutes", "0.5")
 
 
 def test_run_keeps_shows_lists_and_uses(command):
@@ -13,8 +13,9 @@ def test_run_keeps_shows_lists_and_uses(command):
     assert made.exit_code == 0, made.output
     found = json.loads(made.stdout)
     assert [curve["load_kg"] for curve in found["curves"]] == [0.0, 0.1]
-    again = command("calibrate", "fit", "--experiment", "1", "--experiment", "2")
-    assert "calibration 2 of rig 'paper', from experiments 1, 2" in again.stdout
+    assert found["experiment_ids"] == [1, 2, 3]  # the search, and one batch under each load
+    again = command("calibrate", "fit", *(word for one in (1, 2, 3) for word in ("--experiment", one)))
+    assert "calibration 2 of rig 'paper', from experiments 1, 2, 3" in again.stdout
     assert "ohmmeter" in command("calibrate", "show", 1).stdout.replace("\n", " ")
     assert "calibration 2" in command("calibrate", "use", "--latest").stdout
     assert "calibration 1" in command("calibrate", "use", 1).stdout
@@ -30,4 +31,22 @@ def test_what_is_wrong_is_said_and_nothing_is_kept(command):
     assert command("calibrate", "run", "--loads-kg", "heavy").exit_code == 2
     refused = command("calibrate", "run", "--loads-kg", "0,5")
     assert refused.exit_code == 3
+    assert json.loads(command("calibrate", "list", "--json").stdout) == []
+
+
+def test_it_says_before_what_it_takes_and_goes_on_where_it_was_broken_off(command):
+    made = command("calibrate", "run", *LEVELS)
+    assert made.exit_code == 0, made.output
+    said = " ".join(made.output.split())
+    assert "2 loads are searched at rest" in said
+    assert "minutes of the joint's time" in said
+    assert said.index("minutes of the joint's time") < said.index("load-sweep: 4 trials")
+    # the records of the search and of the first load are there: only the second load is measured
+    again = command("calibrate", "run", *LEVELS, "--after", 1, "--after", 2, "--json")
+    assert json.loads(again.stdout)["experiment_ids"] == [1, 2, 4]
+
+
+def test_a_calibration_that_is_broken_off_says_how_to_go_on(command):
+    refused = command("calibrate", "run", "--loads-kg", "0,0.1", "--minutes", "0.5", "--duties", "0.9")
+    assert refused.exit_code == 3  # refused before the first stroke: the duty is above the limit
     assert json.loads(command("calibrate", "list", "--json").stdout) == []

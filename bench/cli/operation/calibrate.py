@@ -5,23 +5,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.bench_session import BenchSession, session_of
-from bench.cli.exit_codes import ExitCode
-from bench.cli.operation.run import Pace, carry_out
+from bench.cli.operation.run import Pace
 from bench.cli.output import Json, print_json, say, table
 
 if TYPE_CHECKING:
     from bench.calibration.curves import Curve, Estimate
-    from bench.json_types import Value
     from bench.store import CalibrationRow
 
 app = typer.Typer(no_args_is_help=True)
 Calibration = Annotated[int, typer.Argument(metavar="CALIBRATION", min=1, help="Number of the calibration.")]
 Note = Annotated[str, typer.Option(help="Kept with the calibration.")]
 NoStribeck = Annotated[bool, typer.Option("--no-stribeck", help="Coulomb and viscous friction alone.")]
-LOADS = ",".join(f"{0.01 * step:g}" for step in range(11))
 DUTIES = "0.1,0.2,0.3"
-STROKES = 4  # what has not saturated by then still counts: its inertia is taken off
-SEARCHES = 3
 
 
 @app.callback()
@@ -32,23 +27,35 @@ def _calibrate() -> None:
 @app.command("run")
 def run(
     context: typer.Context,
-    loads_kg: Annotated[str, typer.Option(metavar="A,B,...", help="Loads [kg].")] = LOADS,
-    duties: Annotated[str, typer.Option(metavar="A,B,...", help="Constant duties, beside constant currents.")] = DUTIES,
+    loads_kg: Annotated[
+        str, typer.Option(metavar="A,B,...", help="Loads [kg]; left out: none and the heaviest, and between if needed.")
+    ] = "",
+    accuracy_ma: Annotated[
+        float,
+        typer.Option(min=0.01, help="Half of the 95 % interval of a curve at which it is known well enough [mA]."),
+    ] = 5.0,
+    minutes: Annotated[float, typer.Option(min=0.5, help="Time of the joint for the curves.")] = 4.0,
+    duties: Annotated[
+        str, typer.Option(metavar="A,B,...", help="Constant duties, for the motor's constants.")
+    ] = DUTIES,
+    after: Annotated[
+        list[int] | None, typer.Option(metavar="EXPERIMENT", help="Records of a calibration that was broken off.")
+    ] = None,
     pace: Annotated[Pace | None, typer.Option(help="As for `friction-bench run`.")] = None,
     note: Note = "",
     as_json: Json = False,
 ) -> None:
-    """Sweep the balanced arm over speeds and loads, search F_load under each, fit, and keep. The joint moves."""
-    session, loads, levels = session_of(context), _numbers(loads_kg), _numbers(duties)
-    sweep: dict[str, Value] = {"loads_kg": loads, "duties": levels, "strokes": STROKES}
-    search: dict[str, Value] = {"loads_kg": loads, "angles_rad": [0.0, 1.5708], "searches": SEARCHES}
-    ids = []
-    for kind, parameters in (("speed-sweep", sweep), ("load-sweep", search)):
-        found, signal_code = carry_out(session, kind, parameters, "", note, pace, quiet=as_json)
-        if found.outcome != "completed":
-            say(f"experiment {found.id} ({kind}): {found.outcome}: {found.reason}. Nothing was calibrated")
-            raise typer.Exit(signal_code or ExitCode.NOT_COMPLETED)
-        ids.append(found.id)
+    """Search F_load, measure the balanced arm where its curves are known least, fit, and keep. The joint moves.
+
+    Says before what it takes. Ctrl-C pauses between two strokes' records: what was measured is kept, and the command
+    to go on is printed.
+    """
+    from bench.cli.operation.calibration_run import CalibrationRun, Wish
+
+    session, loads = session_of(context), tuple(_numbers(loads_kg))
+    wish = Wish(loads, 1e-3 * accuracy_ma, 60.0 * minutes, tuple(_numbers(duties)), pace, note, as_json)
+    with session.open_store() as store:
+        ids = CalibrationRun(session, store, wish, after or []).carry_out()
     _fit_and_show(session, ids, True, note, as_json)
 
 

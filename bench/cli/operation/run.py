@@ -102,10 +102,12 @@ def carry_out(
     note: str,
     pace: Pace | None,
     quiet: bool,
+    hung: tuple[float, bool] | None = None,
 ) -> "tuple[Experiment, int | None]":
     """Run it to its end, whatever that is.
 
-    Returns its record, and the exit code where a signal ended it.
+    Returns its record, and the exit code where a signal ended it. What hangs there already (load_kg, balanced) is not
+    asked for again.
     """
     from bench.control import scheduling
     from bench.control.drive_factory import is_simulated
@@ -119,7 +121,9 @@ def carry_out(
         runner = Runner(configuration, store, host)
         try:
             with stopping_on_signals(runner) as received:
-                experiment_id = runner.start(kind, parameters, operator=operator, note=note, pace=wanted.value)
+                experiment_id = runner.start(
+                    kind, parameters, operator=operator, note=note, pace=wanted.value, hung=hung
+                )
                 watch(runner, quiet)
         finally:
             runner.close()
