@@ -9,6 +9,7 @@ from bench.store import Experiment, Store
 from drivers.contract import Watchdog
 
 KIND = "commissioning"
+BEFORE_IT = frozenset({KIND, "identification"})  # kinds that move a drive which has not passed
 WATCHDOG_RESULT, WATCHDOG_SEEN = "watchdog", "watchdog_seen"  # results of a commissioning: how sure, and by what
 _IDENTITY = ("device", "vendor", "product", "firmware", "serial")
 _RIG = ("gear", "sensor", "motor")
@@ -18,6 +19,9 @@ _REMEMBERED = 200  # newest commissionings that are looked through
 def fingerprint(provenance: Provenance) -> str:
     """What a pass holds for: the drive's identity, its section of bench.toml, and gear, sensor and motor of the rig.
 
+    Where the arm hangs straight down is no part of it: an incremental encoder begins anew with each power cycle, and
+    signs and scales stay what they are.
+
     Args:
         provenance: as `bench.provenance.provenance` makes it, with configuration and drive.
     """
@@ -25,7 +29,7 @@ def fingerprint(provenance: Provenance) -> str:
     rig = configuration["rig"]
     held = {
         "identity": {name: drive.get(name) for name in _IDENTITY},
-        "drive": configuration.get("drive"),
+        "drive": {name: value for name, value in configuration.get("drive", {}).items() if name != "zero_rad"},
         "rig": {name: rig.get(name) for name in _RIG},
     }
     return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()[:16]

@@ -206,14 +206,16 @@ class Runner(BenchControl):
             )
             for description in self._descriptions:
                 refuse_modes(kind.name, kind.modes(parameters), description)
-            if kind.name != commissioned.KIND:
+            if kind.name not in commissioned.BEFORE_IT:
                 self._require_commissioned(station)
         except BaseException:
             station.close()
             raise
         parameters = kind.adapt(parameters, self._descriptions[0].modes)
         plans = kind.plan(parameters, configuration)
-        proves = kind.name == commissioned.KIND and not is_simulated(configuration)  # nobody is silent in virtual time
+        proves = kind.name in commissioned.BEFORE_IT and not is_simulated(
+            configuration
+        )  # virtual time knows no silence
         return Prepared(kind, parameters, plans, duration_s, station, loop, space, session, real_time, proves)
 
     def _require_commissioned(self, station: Station) -> None:

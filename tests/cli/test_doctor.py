@@ -23,3 +23,9 @@ def test_the_move_is_an_experiment_on_record(command):
         "completed",
         "R. Saini",
     )
+
+
+def test_a_zero_needs_a_drive_on_a_wire(command):
+    found = command("doctor", "--set-zero")
+    assert found.exit_code == 3
+    assert "needs a drive on a wire" in found.output

@@ -1,11 +1,12 @@
 """`friction-bench doctor --move` on a simulated device: the proof of its watchdog, in the record of every run after."""
 
 import json
+from math import pi
 
 import pytest
 import tomli_w
 
-from bench.config.configuration import default_configuration
+from bench.config.configuration import default_configuration, read_configuration
 from bench.store import Store
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 from tests.cli.conftest import command  # noqa: F401  a fixture
@@ -73,3 +74,17 @@ def test_a_pass_does_not_outlive_a_watchdog_that_has_been_seen_to_fail(on_device
     assert "does not stop it" in on_device("run", "commissioning").output.replace("\n", " ")
     refused = on_device("run", "steps", "--repeats", "1")
     assert "has not passed the commissioning move" in refused.output.replace("\n", " ")
+
+
+def test_the_zero_is_where_the_arm_is_said_to_be(on_device, device, tmp_path):
+    device.device.axis.hold_arm(0.3)
+    found = on_device("doctor", "--set-zero")
+    assert found.exit_code == 0, found.output
+    assert read_configuration(tmp_path / "bench.toml").drive.zero_rad == pytest.approx(0.3, abs=1e-3)
+    again = json.loads(on_device("doctor", "--json").stdout)
+    assert again["connection"]["sample"]["position_rad"] == pytest.approx(0.0, abs=1e-3)
+    # at an end stop of a known angle
+    found = on_device("doctor", "--set-zero", "--at-deg", "-90")
+    assert found.exit_code == 0, found.output
+    again = json.loads(on_device("doctor", "--json").stdout)
+    assert again["connection"]["sample"]["position_rad"] == pytest.approx(-pi / 2.0, abs=1e-3)

@@ -255,3 +255,14 @@ def test_the_sign_of_the_current_is_seen_by_friction(sign, passed):
     assert found["current"].passed is passed, found["current"].sentence
     assert found["velocity"].passed
     assert found["ratio"].passed is None
+
+
+def test_a_new_zero_does_not_ask_for_the_move_again():
+    drive = {"kind": "roboclaw", "port": "a", "zero_rad": 0.0}
+    bare = PROVENANCE["configuration"]
+    first, moved, other = (
+        PROVENANCE | {"configuration": bare | {"drive": one}}
+        for one in (drive, drive | {"zero_rad": 1.2}, drive | {"port": "b"})
+    )
+    assert fingerprint(first) == fingerprint(moved)
+    assert fingerprint(first) != fingerprint(other)

@@ -1,7 +1,7 @@
 """`friction-bench doctor`: is this drive wired, scaled and watched as bench.toml says?"""
 
 from dataclasses import asdict
-from math import degrees, isnan
+from math import degrees, isnan, radians
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -23,13 +23,19 @@ QUANTITIES = ("position_rad", "velocity_rad_s", "duty", "current_a", "supply_v",
 def doctor(
     context: typer.Context,
     move: Annotated[bool, typer.Option("--move", help="Power the drive and push the joint a few degrees.")] = False,
+    set_zero: Annotated[
+        bool, typer.Option("--set-zero", help="The arm hangs straight down: write that to drive.zero_rad.")
+    ] = False,
+    at_deg: Annotated[
+        float, typer.Option(help="With --set-zero: it stands at this angle [degrees], at an end stop for instance.")
+    ] = 0.0,
     operator: Annotated[str, typer.Option(help="Who stands at the bench; kept with the record.")] = "",
     as_json: Json = False,
 ) -> None:
     """Connect to the drive and say what it is, what it measures and how fast; with --move, whether it is right.
 
     A real drive has to pass `doctor --move` before experiments are run on it, and again after a change of its section
-    of bench.toml or of gear, sensor or motor of the rig.
+    of bench.toml or of gear, sensor or motor of the rig. A new zero is no such change.
     """
     from bench.doctor.connection import connect
 
@@ -37,6 +43,8 @@ def doctor(
     found = connect(session.configuration())
     if not as_json:
         _show(found)
+    if set_zero:
+        _set_zero(session, found.sample.position_rad - radians(at_deg), as_json)
     answer: dict[str, object] = {"connection": _represent(found)}
     passed = True
     if move:
@@ -47,6 +55,25 @@ def doctor(
         print_json(answer)
     if not passed:
         raise typer.Exit(ExitCode.NOT_COMPLETED)
+
+
+def _set_zero(session: BenchSession, off_rad: float, quiet: bool) -> None:
+    """Shift the zero of bench.toml by what the angle that was measured is off [rad].
+
+    Raises:
+        ConfigurationError: there is no file to be changed, or its drive has no zero.
+    """
+    from bench.config.drives.real import RealDriveSettings
+    from bench.config.toml_text import set_number
+    from bench.errors import ConfigurationError
+
+    drive = session.configuration().drive
+    if session.config is None or not isinstance(drive, RealDriveSettings):
+        raise ConfigurationError("--set-zero needs a drive on a wire, and its bench.toml: give --config")
+    zero_rad = round(drive.zero_rad + off_rad, 6)
+    set_number(session.config, "drive", "zero_rad", zero_rad)
+    if not quiet:
+        say(f"drive.zero_rad was {drive.zero_rad:g}, and is {zero_rad:g} rad now, in {session.config}.")
 
 
 def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet: bool) -> bool:
@@ -85,7 +112,7 @@ def _show(found: "Connection") -> None:
     ])  # fmt: skip
     say(
         f"The joint stands at {degrees(found.sample.position_rad):.2f} degrees. Where the arm hangs straight down now, "
-        f"add {found.sample.position_rad:.5f} to drive.zero_rad."
+        "'friction-bench doctor --set-zero' makes that 0."
     )
 
 
