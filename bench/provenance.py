@@ -104,5 +104,6 @@ def _drive(drive: Description) -> dict[str, Value]:
     found = dataclasses.asdict(drive)
     found["modes"] = sorted(mode.value for mode in drive.modes)
     found["measured"] = sorted(drive.measured)
-    del found["tables"]  # long, and for whoever commissions the drive
+    for name in ("tables", "counts_per_turn"):  # for whoever commissions the drive
+        del found[name]
     return found

@@ -161,6 +161,7 @@ class Description:
         watchdog: how sure it is that the drive stops by itself then.
         notes: what the user should know of line and host, and what to do; a sentence each.
         tables: what was found beside, in the drive's own terms.
+        counts_per_turn: encoder counts of a motor turn by the drive's own objects; NaN where it tells none.
     """
 
     device: str
@@ -179,6 +180,7 @@ class Description:
     watchdog: Watchdog = Watchdog.CONFIGURED
     notes: tuple[str, ...] = ()
     tables: tuple[FoundTable, ...] = ()
+    counts_per_turn: float = nan
 
 
 class Drive(Protocol):

@@ -52,6 +52,11 @@ COMMANDS = (
         "Connect to the drive and say what it is, what it measures and how fast; with --move, whether it is right.",
     ),
     CommandEntry(
+        "commission",
+        "bench.cli.operation.commission:commission",
+        "Find out what a joint is by small motions, and write a bench.toml that compensates, with its evidence.",
+    ),
+    CommandEntry(
         "drive",
         "bench.cli.operation.drive:app",
         "The drive itself, without an experiment: its state, and the clearing of its fault. Its power stays off.",

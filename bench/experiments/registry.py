@@ -12,6 +12,7 @@ from bench.experiments.kinds import (
     commissioning,
     excitation,
     hold_and_soak,
+    identification,
     load_sweep,
     multisine,
     reversals,
@@ -42,6 +43,7 @@ KINDS: dict[str, ExperimentKind] = {
         waveform.KIND,
         teleoperation.KIND,
         commissioning.KIND,
+        identification.KIND,
     )
 }
 

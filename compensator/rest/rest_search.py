@@ -215,7 +215,9 @@ def _begin_stand(
 def _start_a(settings: RestSearchSettings, progress: Progress) -> float:
     low_a, high_a = progress.ends_a
     if progress.sweep < COARSE_SWEEPS:
-        return progress.inside_a
+        # a servo that overshot has left the joint at the edge of friction, where it creeps: stand farther inside
+        farther_inside = progress.retries > 0 and progress.sweep > 0
+        return (progress.inside_a + high_a) / 2.0 if farther_inside else progress.inside_a
     # what the fast ramp found lies too far out, by what it gained before motion was seen
     share = settings.coarse_share if progress.sweep < 2 * COARSE_SWEEPS else settings.margin_share
     margin_a = max(progress.widen * share * (high_a - low_a), settings.margin_a)

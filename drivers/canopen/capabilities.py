@@ -37,6 +37,7 @@ class Capabilities:
         modes: the code of 0x6060 for each mode.
         scale: of drive and joint.
         units: by the drive and by the configuration.
+        told_counts: encoder counts of a motor turn, by the drive; NaN where it tells none.
     """
 
     identity: Identity
@@ -46,6 +47,7 @@ class Capabilities:
     modes: dict[Mode, int]
     scale: DriveScale
     units: tuple[UnitRow, ...]
+    told_counts: float
 
 
 def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, identity: Identity) -> Capabilities:
@@ -63,7 +65,8 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     present = frozenset(item for item in asked if table.has(item, _MEASURED))
     current = next((item for item in (profile.current, TORQUE) if item in present and scale.tells(item)), None)
     rows = (*units.rows, UnitRow("motor current of 1000 permille torque in A", _told(table, profile), rated_a))
-    return Capabilities(identity, profile, present, current, ModeChoice(table, settings, scale).choose(), scale, rows)
+    modes = ModeChoice(table, settings, scale).choose()
+    return Capabilities(identity, profile, present, current, modes, scale, rows, units.told_counts)
 
 
 def _rated_current_a(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> float:

@@ -58,6 +58,7 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
         watchdog=Watchdog.PROVEN if session.guard.tried else Watchdog.CONFIGURED,
         notes=tuple(_notes(session)),
         tables=(_units(session), _objects(session)),
+        counts_per_turn=session.found.told_counts,
     )
 
 

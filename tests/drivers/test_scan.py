@@ -23,6 +23,7 @@ def scan(*options):
     [
         ("dynamixel", ("--id", "7", "--joints", "3", "--baud", "0"), "servo_id", [7, 8, 9]),
         ("feetech", ("--id", "250", "--joints", "2", "--baud", "0"), "servo_id", [250, 251]),
+        ("roboclaw", ("--address", "130", "--baud", "0"), "address", [130]),
         ("odrive", ("--node", "12"), "node_id", [12]),
         ("damiao", ("--motor", "5", "--feedback", "37"), "motor_id", [5]),
     ],
@@ -30,7 +31,8 @@ def scan(*options):
 def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):
     with device_process(kind, *device) as running:
         is_serial = "port" in running.drive
-        place = ("--port", running.port, "--baud", "1000000") if is_serial else ("--bus", f"slcan:{running.port}")
+        bauds = ("--baud", "115200") if kind == "roboclaw" else ("--baud", "1000000")
+        place = ("--port", running.port, *bauds) if is_serial else ("--bus", f"slcan:{running.port}")
         found = json.loads(scan(*place, "--json").stdout)
         assert [one["drive"][key] for one in found if one["drive"]["kind"] == kind] == ids
         assert not running.truth()["powered"]

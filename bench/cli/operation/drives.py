@@ -35,7 +35,7 @@ def scan(
     """Say which drives answer on a serial port or a CAN bus, and print a section [drive] for each."""
     if bool(port) == bool(bus) or (bus and ":" not in bus):
         raise typer.BadParameter("one of --port PORT and --bus INTERFACE:CHANNEL is wanted")
-    found = list(_found(port, tuple(baud or ()), bus, bitrate))
+    found = list(found_at(port, tuple(baud or ()), bus, bitrate))
     if as_json:
         print_json([{"title": one.title, "drive": one.drive} for one in found])
     for one in found if not as_json else ():
@@ -46,7 +46,7 @@ def scan(
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
-def _found(port: str, baud_rates: tuple[int, ...], bus: str, bitrate: int) -> "Iterator[FoundDrive]":
+def found_at(port: str, baud_rates: tuple[int, ...], bus: str, bitrate: int) -> "Iterator[FoundDrive]":
     """What every kind finds, one kind after the other."""
     from bench.config.drives.registry import drive_kinds
     from bench.config.drives.scanning import CanPlace, SerialPlace

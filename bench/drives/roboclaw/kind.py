@@ -1,11 +1,18 @@
 """The RoboClaw as a kind of drive."""
 
+from collections.abc import Iterator
+from typing import get_args
+
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import driver_values, joint_scale
+from bench.config.drives.scanning import FoundDrive, SerialPlace
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
-from bench.drives.roboclaw.settings import RoboclawDriveSettings
+from bench.drives.roboclaw.settings import BaudRate, RoboclawDriveSettings
 from drivers.contract import Drive
+
+BAUD_RATE, ADDRESSES = 115200, range(0x80, 0x88)
+SCAN_S = 0.05  # that is waited for an answer
 
 
 def make(settings: RoboclawDriveSettings, rig: Rig) -> Drive:
@@ -23,11 +30,36 @@ def simulate() -> Simulate:
     return simulate
 
 
+def scan(place: SerialPlace) -> Iterator[FoundDrive]:
+    """Ask for the version at each address, until one answers; over USB every address is its own."""
+    from drivers.errors import DriveConnectionError
+    from drivers.roboclaw.link import Link
+    from drivers.roboclaw.settings import RoboclawSettings
+
+    for baud_rate in set(place.baud_rates or (BAUD_RATE,)) & set(get_args(BaudRate)):
+        for address in ADDRESSES:
+            settings = RoboclawSettings(port=place.port, baud_rate=baud_rate, address=address, answer_timeout_s=SCAN_S)
+            link = Link(settings, f"{place.port} address {address:#x}")
+            try:
+                link.begin()
+                version = link.version()
+            except DriveConnectionError:
+                continue
+            finally:
+                link.close()
+            yield FoundDrive(
+                version.strip(),
+                {"kind": "roboclaw", "port": place.port, "baud_rate": baud_rate, "address": address},
+            )
+            return
+
+
 KIND = DriveKind(
     title="RoboClaw motor controller, packet serial",
     settings=RoboclawDriveSettings,
     make=make,
     simulate=simulate,
+    scan_serial=scan,
     conformance=(
         ConformanceBench(
             "roboclaw", ("--baud", "0"), {"watchdog_s": 1.0, "answer_timeout_s": 0.3}, wrong_address=("address", 0x83)

@@ -2,24 +2,23 @@
 
 from collections.abc import Iterator
 from functools import partial
-from math import ceil
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
-from bench.control.cycle import OFF, Procedure, Reading
+from bench.control.cycle import Procedure
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings, position_findings
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
-from bench.experiments.parts.joint import Joint, Part
+from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.position_push import push_there_and_back
+from bench.experiments.parts.push import PushSettings, push
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
 from bench.json_types import Value
-from drivers.contract import Command, Mode
+from drivers.contract import Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
 LONGEST_RAD = 0.6
-STILL_CYCLES = 10
 NAME = "commissioning"
 
 
@@ -82,8 +81,9 @@ def commission(parameters: CommissioningParameters, configuration: BenchConfigur
             pushes = yield from push_there_and_back(joint, longer.excursion_rad, longer.coast_s, configuration)
             found = position_findings(pushes, configuration.rig)
         else:
-            forward = yield from _push(joint, 1, longer, configuration)
-            pushes = [forward, (yield from _push(joint, -1, longer, configuration))]
+            settings, way_rad = _settings(longer, configuration), longer.excursion_rad
+            forward = yield from push(joint, 1, way_rad, settings)
+            pushes = [forward, (yield from push(joint, -1, way_rad, settings))]
             found = findings(pushes, configuration.rig)
         if not any(finding.asks_for_more for finding in found):
             break
@@ -114,44 +114,12 @@ def _lengthened(
             yield parameters.model_copy(update={"excursion_rad": excursion_rad})
 
 
-def _push(
-    joint: Joint, direction: int, parameters: CommissioningParameters, configuration: BenchConfiguration
-) -> Part[Push]:
-    start_rad = joint.reading.sample.position_rad
-    step_a = parameters.rate_a_s * configuration.control.period_s
-    driven: list[Reading] = []
-    current_a = 0.0
-    # either way: a wrong sign must end the push, too
-    while not driven or abs(driven[-1].sample.position_rad - start_rad) < parameters.excursion_rad:
-        current_a += step_a
-        if current_a > configuration.search.ceiling_a:
-            raise ExperimentError(
-                f"the joint moved by {_way(driven, start_rad):.3g} rad only at {configuration.search.ceiling_a:g} A "
-                f"(search.ceiling_a); {parameters.excursion_rad:g} rad is wanted. Is the motor connected, the brake "
-                "released, the encoder plugged in, the arm free?"
-            )
-        driven.append((yield from joint.push(Command(Mode.CURRENT, direction * current_a))))
-    return Push(direction, driven, (yield from _coast(joint, parameters, configuration)))
-
-
-def _coast(joint: Joint, parameters: CommissioningParameters, configuration: BenchConfiguration) -> Part[list[Reading]]:
-    """Without power, until the joint has stood for a few cycles."""
-    readings: list[Reading] = []
-    still = 0
-    for _ in range(ceil(parameters.coast_s / configuration.control.period_s)):
-        before_rad = joint.reading.sample.position_rad
-        readings.append((yield from joint.push(OFF)))
-        still = still + 1 if readings[-1].sample.position_rad == before_rad else 0
-        if still >= STILL_CYCLES:
-            return readings
-    raise ExperimentError(
-        f"the joint still moves {parameters.coast_s:g} s after the power was taken away; let it hang free, and see "
-        "that the encoder is quiet"
-    )
-
-
-def _way(driven: list[Reading], start_rad: float) -> float:
-    return abs(driven[-1].sample.position_rad - start_rad) if driven else 0.0
+def _settings(parameters: CommissioningParameters, configuration: BenchConfiguration) -> PushSettings:
+    ceiling_a = configuration.search.ceiling_a
+    return PushSettings(
+        Mode.CURRENT, parameters.rate_a_s, ceiling_a, ceiling_a, "search.ceiling_a", parameters.coast_s,
+        configuration.control.period_s, brakes=True,
+    )  # fmt: skip
 
 
 def _duration_s(parameters: CommissioningParameters, _configuration: BenchConfiguration) -> float:

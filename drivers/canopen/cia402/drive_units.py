@@ -58,10 +58,12 @@ class DriveUnits:
     Attributes:
         velocity_rad_s: one count of velocity at the motor [rad/s]; NaN where neither drive nor settings tell.
         rows: for a person to compare.
+        told_counts: counts of a motor turn, by the drive; NaN where it tells none.
     """
 
     velocity_rad_s: float
     rows: tuple[UnitRow, ...]
+    told_counts: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +99,7 @@ def read_units(table: ObjectTable, settings: CanopenSettings, counts_per_turn: f
             UnitRow("counts per motor turn", _words(positions), counts_per_turn),
             UnitRow("one count of velocity at the motor in rad/s", _words(velocities), velocity_rad_s),
         ),
+        positions[0].value if positions else nan,
     )
 
 

@@ -1,0 +1,45 @@
+"""The person's hands at a simulated device: turns the arm and hangs the loads; the rest is still asked."""
+
+from math import pi
+
+from bench.commission.questions import Person, Question
+from bench.drives.far_joint import FarJoint
+
+
+class SimulatedHand:
+    """A person whose hands are the device's side channel.
+
+    Args:
+        person: is asked what no hand can do.
+        joint: the simulated device.
+    """
+
+    def __init__(self, person: Person, joint: FarJoint) -> None:
+        self._person, self._joint = person, joint
+
+    def number(self, question: Question) -> float | None:
+        """Ask; the arm is turned level for the question of its angle, and a weight that was answered is hung.
+
+        Raises:
+            ExperimentError: the device says no, or is not there.
+        """
+        if question.key == "hand_angle_deg":
+            self._joint.hold_arm(pi / 2.0)
+            return 90.0
+        answer = self._person.number(question)
+        if question.key == "first_load_kg" and answer:
+            self._joint.hang_load(answer, balanced=False)
+        return answer
+
+    def done(self, key: str, sentence: str) -> bool:
+        """Do it; a person has only to agree to motion.
+
+        Raises:
+            ExperimentError: the device says no, or is not there.
+        """
+        if key == "down":
+            self._joint.hang_load(0.0, balanced=False)
+            return True
+        self._joint.release_arm()
+        self._joint.hang_load(0.0, balanced=False)
+        return self._person.done(key, sentence)
