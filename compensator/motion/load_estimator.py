@@ -14,11 +14,10 @@ A pure function, (state, observation) -> (state, estimate). Where one branch tak
 between the two dies away with `blend_s`; until then it is part of the band.
 """
 
-from math import copysign, exp, hypot, inf, isnan, nan, sin, sqrt
+from math import copysign, exp, inf, isnan, nan
 
-import numpy as np
-
-from compensator.motion.joint_model import JointModel, JointUnderLoad, MotionFriction
+from compensator.motion import free_play
+from compensator.motion.joint_model import JointModel, JointUnderLoad
 from compensator.motion.load_estimate import (
     Branch,
     EstimatorSettings,
@@ -27,17 +26,15 @@ from compensator.motion.load_estimate import (
     Observation,
     RestResult,
 )
-from compensator.motion.local_motion import Window, window
+from compensator.motion.moving_load import moving_load
 
 __all__ = [
     "Branch", "EstimatorSettings", "EstimatorState", "JointModel", "LoadEstimate", "Observation", "RestResult",
     "advance", "begin",
 ]  # fmt: skip
 
-BAND = 1.96  # standard deviations in half of a 95 % interval
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
 UNEXPLAINED = 0.25  # of what the weight takes at 90 degrees: with more, the arm leans on something
-TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
 
@@ -53,7 +50,7 @@ def advance(
     if isnan(observation.position_rad) or isnan(observation.current_a):
         return _lose(state)
     joint, state = _joint(model, state, observation)
-    state = _remember(settings, _track(settings, state, observation), observation)
+    state = _remember(joint, settings, _track(settings, state, observation), observation)
     branch = _branch(joint, settings, state, observation)
     state = state._replace(leant=branch is Branch.STUCK or (state.leant and branch is not Branch.MOVING))
     own = _own(branch, joint, settings, state, observation)
@@ -92,11 +89,21 @@ def _track(settings: EstimatorSettings, state: EstimatorState, observation: Obse
     return state._replace(direction=way, turned_rad=position_rad - ahead_rad, moving_cycles=1)
 
 
-def _remember(settings: EstimatorSettings, state: EstimatorState, observation: Observation) -> EstimatorState:
+def _remember(
+    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
+) -> EstimatorState:
     moved = state.moving_cycles > settings.window and not observation.searching
+    position_rad, play_rad = observation.position_rad, settings.free_play_rad
+    more_a = 0.0 if isnan(state.known_a) or _explained(joint, state) else state.known_a
+    if state.arms:
+        arm = free_play.follow(joint, state.arms[-1], position_rad, more_a, play_rad, settings.period_s)
+    else:
+        arm = free_play.begin(position_rad, joint.gravity_at(position_rad) + more_a, play_rad)
     return state._replace(
-        positions_rad=(*state.positions_rad, observation.position_rad)[-settings.window :],
+        positions_rad=(*state.positions_rad, position_rad)[-settings.window :],
         currents_a=(*state.currents_a, observation.current_a)[-settings.window :],
+        arms=(*state.arms, arm)[-settings.window :],
+        mores_a=(*state.mores_a, more_a)[-settings.window :],
         rest=observation.rest or (None if moved else state.rest),
     )
 
@@ -140,7 +147,7 @@ def _own(
     if branch is Branch.STUCK:
         return _stuck(joint, settings, state, observation, held_a)
     if branch is Branch.MOVING:
-        return _moving(joint, settings, state, observation)
+        return moving_load(joint, settings, state, observation)
     if branch is Branch.LEAVING:
         return LoadEstimate(joint.gravity_at(observation.position_rad), state.estimate.half_width_a, branch)
     if branch is Branch.TURNING and state.still_cycles > settings.onset_cycles and not isnan(held_a):
@@ -196,65 +203,6 @@ def _stood_a(settings: EstimatorSettings, state: EstimatorState) -> float:
 def _about_to_move_a(joint: JointUnderLoad, current_a: float, way: float, margin: float) -> float:
     """I_load [A] of a joint at rest that is just about to move in a direction."""
     return joint.gear_loss.load_current_a(current_a - margin * joint.friction_a(0.0, way), way)
-
-
-def _moving(
-    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
-) -> LoadEstimate:
-    """What the window's mean current is more than the modelled load explains, and that load now."""
-    averages = window(settings.window, settings.period_s)
-    motion = averages.motion(state.positions_rad)
-    if joint.studied is not None:
-        return _studied(joint, joint.studied, settings, state, observation)
-    way, loss = state.direction, joint.gear_loss
-    friction_a = joint.friction_a(motion.speed_rad_s, way)
-    # the teeth carry the load and what accelerates the arm, but not what accelerates the rotor
-    arm_a = joint.arm_inertia_a_s2_rad * motion.acceleration_rad_s2
-    rotor_a = joint.rotor_inertia_a_s2_rad * motion.acceleration_rad_s2
-    more_a = averages.mean_held(state.currents_a) - rotor_a - friction_a
-    more_a -= _expected_a(joint, averages, state, arm_a)
-    middle_a = joint.gravity_at(motion.position_rad) + arm_a
-    known_a = loss.load_current_a(loss.motor_current_a(middle_a, way) + more_a, way) - middle_a
-    inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
-    noise_a = inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
-    spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
-    now_a = joint.gravity_at(observation.position_rad)
-    return LoadEstimate(known_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
-
-
-def _studied(
-    joint: JointUnderLoad,
-    studied: MotionFriction,
-    settings: EstimatorSettings,
-    state: EstimatorState,
-    observation: Observation,
-) -> LoadEstimate:
-    """The same with what a study found: friction wherever the window has been; the gear's loss is in it."""
-    averages = window(settings.window, settings.period_s)
-    motion, way = averages.motion(state.positions_rad), state.direction
-    positions = np.array(state.positions_rad)
-    ages_s = settings.period_s * (np.arange(len(positions)) - (len(positions) - 1) / 2.0)
-    speeds = way * np.maximum(way * (motion.speed_rad_s + motion.acceleration_rad_s2 * ages_s), 0.0)
-    friction = studied.current_a(
-        positions, np.where(speeds == 0.0, way * TINY_RAD_S, speeds), motion.acceleration_rad_s2, joint.gravity_a,
-        observation.temperature_c,
-    )  # fmt: skip
-    friction_a = averages.mean(friction.tolist())
-    inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
-    weight_a = averages.mean((joint.gravity_a * np.sin(positions)).tolist())
-    more_a = averages.mean_held(state.currents_a) - inertia * motion.acceleration_rad_s2 - friction_a - weight_a
-    noise_a = inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
-    spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
-    now_a = joint.gravity_at(observation.position_rad)
-    return LoadEstimate(more_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
-
-
-def _expected_a(joint: JointUnderLoad, averages: Window, state: EstimatorState, arm_a: float) -> float:
-    """Mean motor current of the modelled load over the window: gear loss bends where the load changes its sign."""
-    carried_a, gravity_a, way = joint.gear_loss.motor_current_a, joint.gravity_a, state.direction
-    if gravity_a == 0.0:
-        return carried_a(arm_a, way)
-    return averages.mean([carried_a(gravity_a * sin(angle_rad) + arm_a, way) for angle_rad in state.positions_rad])
 
 
 def _blend(

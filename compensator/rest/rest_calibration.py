@@ -104,9 +104,17 @@ class RestCalibration:
     def gear_loss(self) -> GearLoss:
         """The same loss as it acts on a joint in motion, never below 0."""
         more = self.gain - 1.0
-        return GearLoss(
-            max(self.slope + more, 0.0), min(max(self.slope - more, 0.0), 0.99), 2.0 * max(self.step_a, 0.0)
-        )
+        driving, back_driving = max(self.slope + more, 0.0), min(max(self.slope - more, 0.0), 0.99)
+        return GearLoss(driving, back_driving, (driving + back_driving) * self.friction_behind_a)
+
+    @property
+    def friction_behind_a(self) -> float:
+        """f [A], friction behind the teeth, 0 or more: e tells it, and c / b does; each by how sure it is."""
+        told = [(self.offset_a, self.offset_sd_a)]
+        if self.slope > 0.0:
+            told.append((self.step_a / self.slope, sqrt(self.covariance[1][1]) / self.slope))
+        weights = [1.0 / max(sd_a, FLOOR_A) ** 2 for _, sd_a in told]
+        return max(sum(w * f_a for w, (f_a, _) in zip(weights, told, strict=True)) / sum(weights), 0.0)
 
     def scatter_a(self, friction_a: float, half_a: float) -> float:
         """Standard deviation of one breakaway [A], by F and D."""

@@ -1,5 +1,6 @@
 """What known loads tell of a joint at rest, and what it corrects."""
 
+from dataclasses import replace
 from math import copysign, pi, sin
 
 import numpy as np
@@ -124,7 +125,16 @@ def test_gear_loss_in_motion_follows():
     loss = calibrate(points()).gear_loss()
     assert loss.driving == pytest.approx(SLOPE + GAIN - 1.0)
     assert loss.back_driving == pytest.approx(SLOPE - GAIN + 1.0)
-    assert loss.carried_a == pytest.approx(2.0 * STEP_A)
+    assert loss.carried_a == pytest.approx(2.0 * SLOPE * calibrate(points()).friction_behind_a)
+
+
+def test_friction_behind_the_teeth_is_what_both_constants_tell_each_as_it_is_sure():
+    told = RestCalibration(slope=0.25, step_a=0.0025, offset_a=0.006, offset_sd_a=0.001)
+    step_is_sure = ((0.0,) * 3, (0.0, 1e-12, 0.0), (0.0,) * 3)
+    step_is_unsure = ((0.0,) * 3, (0.0, 1e-4, 0.0), (0.0,) * 3)
+    assert replace(told, covariance=step_is_sure).friction_behind_a == pytest.approx(0.01, rel=1e-3)
+    assert replace(told, covariance=step_is_unsure).friction_behind_a == pytest.approx(0.006, rel=1e-2)
+    assert replace(told, covariance=step_is_unsure, offset_a=-0.01).friction_behind_a == 0.0
 
 
 def test_nothing_known_is_eqs_9_and_10():

@@ -90,7 +90,7 @@ def _row(
     drawn = [number for number in of_rigs if not isnan(number)]
     measured = asked.whole(numbers)
     judged = not isnan(asked.high)
-    reached = [_reaches(asked, number) for number in drawn]
+    reached = [_reaches(asked, number, asked.drawn_high) for number in drawn]
     return FigureRow(
         asked.name,
         asked.unit,
@@ -121,8 +121,8 @@ def _sure(asked: Asked, found: Sequence[tuple[SeedResults, BenchConfiguration]])
     return f"{100.0 * low:.1f} .. {100.0 * high:.1f} ({whole.trials})" if whole.trials else "-"
 
 
-def _reaches(asked: Asked, number: float) -> bool:
-    return asked.low <= number <= asked.high
+def _reaches(asked: Asked, number: float, high: float | None = None) -> bool:
+    return asked.low <= number <= (asked.high if high is None else high)
 
 
 def _allowed(asked: Asked) -> str:
@@ -130,7 +130,8 @@ def _allowed(asked: Asked) -> str:
         return "-"
     if asked.low > 0.0:
         return f"{asked.low:g} .. {asked.high:g}"
-    return f"at most {asked.high:.4g}"
+    drawn = "" if asked.drawn_high is None else f"; drawn rigs {asked.drawn_high:.4g}"
+    return f"at most {asked.high:.4g}{drawn}"
 
 
 def _worst(asked: Asked, numbers: Sequence[float]) -> float:
