@@ -16,6 +16,7 @@ class Branch(Enum):
     REST = "at rest"
     SEARCHING = "zero-speed search under way"
     STUCK = "stuck against something"
+    STRUCK = "has struck something"
     LEAVING = "leaving what it leant on"
     MOVING = "in motion"
     TURNING = "turning, or setting off"

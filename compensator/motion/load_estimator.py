@@ -6,7 +6,10 @@
                 pressed to the end of that band at which friction is that of motion towards the set point, and this is
                 the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
-    leaving     moving back from what it was stuck against: the weight alone, since a wall cannot pull
+    struck      stopped at once, under a current that would move it: what stops its momentum presses on, see
+                `standing_load.struck`
+    leaving     moving back from what it was stuck against: as in motion, between the weight and what it leant with,
+                since a wall cannot pull
     turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
                 the joint stands
 
@@ -16,7 +19,7 @@ between the two dies away with `blend_s`; until then it is part of the band.
 
 from math import copysign, exp, inf, isnan, nan
 
-from compensator.motion import free_play
+from compensator.motion import free_play, standing_load
 from compensator.motion.joint_model import JointModel, JointUnderLoad
 from compensator.motion.load_estimate import (
     Branch,
@@ -35,6 +38,7 @@ __all__ = [
 
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
 UNEXPLAINED = 0.25  # of what the weight takes at 90 degrees: with more, the arm leans on something
+SUDDEN = (Branch.STRUCK, Branch.LEAVING)
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
 
@@ -52,7 +56,8 @@ def advance(
     joint, state = _joint(model, state, observation)
     state = _remember(joint, settings, _track(settings, state, observation), observation)
     branch = _branch(joint, settings, state, observation)
-    state = state._replace(leant=branch is Branch.STUCK or (state.leant and branch is not Branch.MOVING))
+    leans = branch in (Branch.STUCK, Branch.STRUCK)
+    state = state._replace(leant=leans or (state.leant and branch is not Branch.MOVING))
     own = _own(branch, joint, settings, state, observation)
     return _blend(joint, settings, state, own, observation)
 
@@ -126,6 +131,8 @@ def _branch(
     travel_rad = abs(state.extreme_rad - state.turned_rad)
     # what follows the last motion may be at rest already, held by any friction
     window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
+    if travel_rad > settings.free_play_rad and standing_load.strikes(joint, settings, state, observation):
+        return Branch.STRUCK
     if not window_moves or travel_rad <= settings.free_play_rad:
         return Branch.LEAVING if _leaves(joint, settings, state) else Branch.TURNING
     return Branch.MOVING
@@ -134,7 +141,8 @@ def _branch(
 def _leaves(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState) -> bool:
     """Whether the joint moves away from what it leant on: that can only push it on, and less and less."""
     moves = state.still_cycles <= settings.onset_cycles
-    return moves and state.leant and not _explained(joint, state) and state.direction * state.known_a < 0.0
+    pushed = not _explained(joint, state) or state.estimate.branch is Branch.LEAVING
+    return moves and state.leant and pushed and state.direction * state.known_a < 0.0
 
 
 def _own(
@@ -143,66 +151,18 @@ def _own(
     """The value of the branch alone, whatever was given out before."""
     held_a = state.known_a + joint.gravity_at(observation.position_rad)
     if branch is Branch.REST:
-        return _at_rest(joint, settings, state, held_a)
+        return standing_load.at_rest(joint, settings, state, held_a)
     if branch is Branch.STUCK:
-        return _stuck(joint, settings, state, observation, held_a)
+        return standing_load.stuck(joint, settings, state, observation, held_a)
+    if branch is Branch.STRUCK:
+        return standing_load.struck(joint, settings, state, held_a)
     if branch is Branch.MOVING:
         return moving_load(joint, settings, state, observation)
     if branch is Branch.LEAVING:
-        return LoadEstimate(joint.gravity_at(observation.position_rad), state.estimate.half_width_a, branch)
+        return standing_load.leaving(joint, state, observation)
     if branch is Branch.TURNING and state.still_cycles > settings.onset_cycles and not isnan(held_a):
-        return _allowed(joint, settings, state, held_a, nan, branch)
+        return standing_load.allowed(joint, settings, state, held_a, nan, branch)
     return LoadEstimate(held_a, state.estimate.half_width_a, branch)
-
-
-def _at_rest(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, held_a: float) -> LoadEstimate:
-    """The search's result, or what was known before it, as far as static friction allows it."""
-    if state.rest is None:
-        return _allowed(joint, settings, state, held_a, nan, Branch.REST)
-    known_a, half_a, _ = state.rest
-    given = _allowed(joint, settings, state, known_a, nan, Branch.REST)
-    return given._replace(half_width_a=half_a) if given.load_current_a == known_a else given
-
-
-def _stuck(
-    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation, held_a: float
-) -> LoadEstimate:
-    """The near end of the band of static friction, as for motion towards the set point: a push that grows lies there.
-
-    What was known before stands for as long as the band holds it: then friction alone may be what holds the joint.
-    """
-    way = copysign(1.0, observation.target_rad - observation.position_rad)
-    near_a = _about_to_move_a(joint, _stood_a(settings, state), way, 1.0)
-    given = _allowed(joint, settings, state, held_a, near_a, Branch.STUCK)
-    return given._replace(friction_current_a=joint.friction_a(0.0, way))
-
-
-def _allowed(
-    joint: JointUnderLoad,
-    settings: EstimatorSettings,
-    state: EstimatorState,
-    known_a: float,
-    else_a: float,
-    branch: Branch,
-) -> LoadEstimate:
-    """What is known, as far as static friction allows it: eq. (1); the middle, or something else, where nothing is."""
-    margin = 1.0 + 3.0 * joint.friction_scatter
-    low_a, high_a = sorted(_about_to_move_a(joint, _stood_a(settings, state), way, margin) for way in (1.0, -1.0))
-    if isnan(known_a):
-        known_a = (low_a + high_a) / 2.0 if isnan(else_a) else else_a
-    given_a = min(max(known_a, low_a), high_a)
-    return LoadEstimate(given_a, max(high_a - given_a, given_a - low_a), branch)
-
-
-def _stood_a(settings: EstimatorSettings, state: EstimatorState) -> float:
-    """The newest current [A] that is known not to have moved the joint: motion shows only after a while."""
-    seen = state.currents_a
-    return seen[-min(settings.onset_cycles, state.still_cycles, len(seen) - 1) - 1]
-
-
-def _about_to_move_a(joint: JointUnderLoad, current_a: float, way: float, margin: float) -> float:
-    """I_load [A] of a joint at rest that is just about to move in a direction."""
-    return joint.gear_loss.load_current_a(current_a - margin * joint.friction_a(0.0, way), way)
 
 
 def _blend(
@@ -217,7 +177,8 @@ def _blend(
     change_a = state.known_a + gravity_a - own.load_current_a
     offset_a = state.offset_a * exp(-settings.period_s / settings.blend_s)
     if observation.rest is not None or own.branch is not state.estimate.branch:
-        offset_a = 0.0 if isnan(change_a) else change_a
+        # a hit, and a push that is let go, are as sudden as they look
+        offset_a = 0.0 if isnan(change_a) or own.branch in SUDDEN else change_a
     given = own._replace(load_current_a=own.load_current_a + offset_a, half_width_a=own.half_width_a + abs(offset_a))
     state = state._replace(estimate=given, known_a=given.load_current_a - gravity_a, offset_a=offset_a)
     return _spread(settings, state, own.load_current_a - gravity_a), given

@@ -17,7 +17,7 @@ from compensator.motion.local_motion import LEAST_READINGS
 
 RIGHT_ANGLE_RAD = pi / 2
 LEAST_SCATTER = 0.02  # of friction along the path, where the joint at rest does not show more
-WINDOW_S = 0.15  # that speed and acceleration are taken from; free play lets the arm rattle faster than that
+WINDOW_S = 0.2  # that speed and acceleration are taken from; free play lets the arm rattle faster than that
 STUCK_S = 0.2
 NO_CURVES = (
     "there are no friction curves to compensate motion with. Run `friction-bench calibrate run`, or choose a "
