@@ -10,7 +10,7 @@ LEAST_TURNS = 4  # two periods
 JUMP_SAMPLES = 4  # within which a jump is over
 SUDDEN = 0.5  # of a jump, within that
 LEVEL_SAMPLES = 10  # that tell a level
-RISEN = 1.0 - np.exp(-1.0)
+RISEN = 0.5
 LEAST_CORRELATION = 0.5  # below, what is reflected is no image of the truth, and has no delay
 
 
@@ -85,11 +85,12 @@ def unexplained(reflected: FloatArray, truth: FloatArray, latest: int) -> FloatA
     """
     padded = np.concatenate([np.full(latest, truth[0]), truth])
     recent = np.lib.stride_tricks.sliding_window_view(padded, latest + 1)
-    return np.maximum(np.maximum(np.min(recent, axis=1) - reflected, reflected - np.max(recent, axis=1)), 0.0)
+    outside = np.maximum(np.min(recent, axis=1) - reflected, reflected - np.max(recent, axis=1))
+    return np.asarray(np.maximum(outside, 0.0))
 
 
 def rise_s(reflected: FloatArray, truth: FloatArray, period_s: float, least_jump: float) -> float | None:
-    """From the greatest jump of the truth until 63 % of it is reflected [s].
+    """From the greatest jump of the truth until half of it is reflected [s].
 
     The truth is taken from the median before to the median after: what a hit does for a moment is no level.
 
@@ -97,14 +98,17 @@ def rise_s(reflected: FloatArray, truth: FloatArray, period_s: float, least_jump
         None where the truth nowhere jumps by the least jump, or it is not reflected.
     """
     lead, settle = LEVEL_SAMPLES, JUMP_SAMPLES
-    places = range(lead, len(truth) - lead - settle)
-    jumps = [float(np.median(truth[k + settle : k + settle + lead]) - np.median(truth[k - lead : k])) for k in places]
-    if not jumps:
+    jumps = {
+        k: float(np.median(truth[k + settle : k + settle + lead]) - np.median(truth[k - lead : k]))
+        for k in range(lead, len(truth) - lead - settle)
+        # what takes longer is no jump
+        if abs(truth[k + settle] - truth[k - 1]) >= least_jump
+    }
+    sudden = {k: jump for k, jump in jumps.items() if abs(truth[k + settle] - truth[k - 1]) >= SUDDEN * abs(jump)}
+    if not sudden:
         return None
-    most = int(np.argmax(np.abs(jumps)))
-    place, jump = places[most], jumps[most]
-    at_once = np.abs(truth[settle:] - truth[:-settle])[place - lead : place + lead]
-    if abs(jump) < least_jump or float(np.max(at_once)) < SUDDEN * abs(jump):
+    place, jump = max(sudden.items(), key=lambda one: abs(one[1]))
+    if abs(jump) < least_jump:
         return None
     way, before = (1.0 if jump > 0.0 else -1.0), float(np.median(truth[place - lead : place]))
     # the jump begins where the truth leaves the level before it by a tenth

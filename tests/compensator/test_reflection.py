@@ -133,7 +133,7 @@ def test_the_rise_after_a_hit_is_its_delay(height):
     _, truth = hit(height=height)
     slow = truth.copy()
     slow[50:] -= height * np.exp(-np.arange(50) / 10.0)
-    assert rise_s(slow, truth, 0.005, 0.1) == pytest.approx(10 * 0.005, abs=0.005)
+    assert rise_s(slow, truth, 0.005, 0.1) == pytest.approx(10 * np.log(2.0) * 0.005, abs=0.005)
 
 
 def test_without_a_jump_there_is_no_rise():

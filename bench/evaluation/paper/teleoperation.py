@@ -58,7 +58,7 @@ def teleoperation(store: Store, weight: Experiment, wall: Experiment) -> Row:
             "torque of the hand, the master's own friction and inertia included, which nothing compensates here.",
             "A hit is over within a control cycle: the truth itself, a cycle late and no faster than the master may "
             "change it, errs by what stands beside the largest error. Beyond 30 ms is the largest error that no delay "
-            "of up to 30 ms explains. The rise is to 63 % of the greatest jump. Drag is by how much the hand is "
+            "of up to 30 ms explains. The rise is to half of the greatest jump. Drag is by how much the hand is "
             "resisted more than by the load, over its way; below 0 it is driven on, and the master's own friction has "
             "to take what it is given.",
             "A limit cycle is a joint that turns back at least four times a second by more than 8 encoder counts "

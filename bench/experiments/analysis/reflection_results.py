@@ -43,7 +43,7 @@ def error_results(
         least_error_max_g: the largest error of the truth itself, a cycle late and changed no faster than allowed.
         late_error_max_g: the largest error that no delay of up to 30 ms explains.
         latency_s: by how much it comes later; None where it is no image of the truth.
-        rise_s: from the greatest jump of the truth until 63 % of it is reflected; None where there is none.
+        rise_s: from the greatest jump of the truth until half of it is reflected; None where there is none.
         drag_n_m: by how much it resists the hand more than the load does; below 0 it drives the hand on.
         felt_error_rms_n_m: of what the hand truly feels, the master's own friction and inertia included; None where
             nobody knows.
