@@ -42,7 +42,9 @@ def strikes(
 ) -> bool:
     """Whether a joint stands that its momentum and its current would have moved on, under the load that is known."""
     still, way = state.still_cycles, state.direction
-    if still == 0 or state.moving_cycles <= still or isnan(state.known_a) or len(state.arms) < still + LOOKED_BACK:
+    if still == 0 or state.moving_cycles <= still or len(state.arms) < still + LOOKED_BACK:
+        return False
+    if isnan(state.known_a) or _inertia(joint) == 0.0:
         return False
     # teeth that meet stop a motor, too; and an arm that nothing stops flies on from a motor that stands
     touches_rad = settings.free_play_rad / 2.0 - STOPPED_COUNTS * settings.count_rad

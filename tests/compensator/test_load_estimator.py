@@ -275,3 +275,10 @@ def test_a_push_that_is_let_go_falls_with_the_current():
     found = follow([*seen, *(one for _, one in back)], WEIGHED)[len(seen) :]
     errors_a = [one.load_current_a - load_a for one, (load_a, _) in zip(found, back, strict=True)]
     assert max(abs(error_a) for error_a in errors_a[3:]) < 0.02
+
+
+def test_without_a_known_inertia_no_momentum_is_missed():
+    light = replace(WEIGHED, rotor_inertia_a_s2_rad=0.0, arm_inertia_a_s2_rad=(0.0, 0.0))
+    free = slide(0.2, 0.0)
+    hit = [*free, *stand(free[-1].current_a, 30, free[-1].position_rad + 0.0004, 2.0)]
+    assert Branch.STRUCK not in {one.branch for one in follow(hit, light)}
