@@ -159,7 +159,7 @@ def test_searches_that_do_not_tell_are_refused(few):
 
 
 def weighed(generator, known):
-    """Searches whose ramps gain as the inertia says that they set in motion: the rotor's, and the arm's under a load."""
+    """Searches whose ramps gain as the inertia says: the rotor's, and under a load the arm's, too."""
     found = []
     for point in points(generator, repeats=3):
         inertia = 0.012 + (0.01 + 0.25 * point.load_kg if point.load_current_a != 0.0 else 0.0)

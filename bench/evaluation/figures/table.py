@@ -10,7 +10,9 @@ from bench.config.configuration import BenchConfiguration
 from bench.evaluation.figures.coverage import Share
 from bench.evaluation.figures.rows import ASKED, BESIDE, Asked
 from bench.evaluation.figures.trials import SeedResults
+from bench.evaluation.figures.wall import ASKED_AT_A_WALL, BESIDE_A_WALL
 
+ALL = (*ASKED, *ASKED_AT_A_WALL, *BESIDE, *BESIDE_A_WALL)
 COLUMNS = (
     "quantity", "paper", "asked", "measured#", "of trials, 95 %", "worst seed#", "reached", "rigs: mean#",
     "of trials, 95 % ", "rigs: median#", "rigs: worst#", "rigs: reached#",
@@ -76,7 +78,7 @@ def figures_table(
         drawn: the rigs drawn round it.
         rigs: what each of them gave.
     """
-    return [_row(asked, own, seeds, list(zip(drawn, rigs, strict=True))) for asked in (*ASKED, *BESIDE)]
+    return [_row(asked, own, seeds, list(zip(drawn, rigs, strict=True))) for asked in ALL]
 
 
 def _row(

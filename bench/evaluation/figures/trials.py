@@ -13,7 +13,7 @@ from bench.calibration import calibrate, friction_of
 from bench.calibration.selection import rest_settings_of
 from bench.config.configuration import BenchConfiguration
 from bench.evaluation.figures.rigs import seed_of, with_seed
-from bench.evaluation.paper.measurements import Measurement, measure, quietly
+from bench.evaluation.paper.measurements import Measurement, Plan, measure, quietly
 from bench.store import Store
 
 RIGHT_ANGLE_RAD = pi / 2
@@ -30,6 +30,7 @@ TRIALS = {
     "steps": Measurement("steps", {}),
     "speeds": Measurement("steady-speeds", {}),
     "sinusoid": Measurement("sinusoid", {}),
+    "wall": Plan().measurements()["wall"],
 }
 DRAWN = 5  # loads, and as many angles
 FLATTEST_RAD = 0.25  # of the angles drawn, either side of straight down: below, hardly any load reaches the teeth
@@ -42,7 +43,7 @@ class SeedResults:
     """Summaries of the experiments of one seed, by name; and why one is missing.
 
     Attributes:
-        results: "loads", "steps", "speeds", "sinusoid"; "drawn": loads and angles drawn at random; "paper" and
+        results: "loads", "steps", "speeds", "sinusoid", "wall"; "drawn": loads and angles drawn at random; "paper" and
             "quick": one flow chart, and one search of two breakaways each way, under the same loads.
         failures: name -> reason.
     """
