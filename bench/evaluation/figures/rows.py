@@ -187,7 +187,7 @@ ASKED = (
     Asked(
         "steady speeds, each stroke by itself: mean absolute error", "g", 0.0, 0.5, "-", _strokes_g, mean,
         "the way there and the way back as two estimates: an error that is odd in direction shows here, and not in "
-        "their mean; the bound of a stroke is below",
+        "their mean; what free play alone would leave is below",
         drawn_high=1.2,
     ),
     Asked(
@@ -242,14 +242,15 @@ BESIDE = (
         "what the scatter of breakaway from stop to stop leaves of so many breakaways",
     ),
     Asked(
-        "bound of a stroke's mean error, by free play and count",
+        "a stroke's mean error, where nobody knows on which flank the arm lies",
         "g",
         0.0,
         nan,
         "-",
         _stroke_bound,
         mean,
-        "what the motor's encoder does not know of the arm's acceleration, taken for load",
+        "what free play and count hide of the arm's acceleration, taken for load; its weight tells the flank, and "
+        "friction along the path is what is left",
     ),
 )
 """Shown beside, for what bounds the others."""
