@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
-from math import isfinite, sin
+from math import isfinite, nan, sin
 from typing import NamedTuple
 
 from bench.config.reflected_load import LEAST_LEVER, arm_angle_rad, load_current_a
@@ -53,10 +53,21 @@ def searched_trials(trials: Iterable[Trial], rig: Rig) -> list[SearchedTrial]:
         fitted = fit([Breakaway(*one) for one in breakaways])
         if isfinite(fitted.scatter_a):
             load_kg = float(trial.conditions["load_kg"])
-            found.append(
-                SearchedTrial(trial.id, RestPoint(_known_load_a(load_kg, angle_rad, fitted, rig), load_kg, fitted))
-            )
+            load_a = _known_load_a(load_kg, angle_rad, fitted, rig)
+            point = RestPoint(load_a, load_kg, fitted, _moved_kg_m2(load_kg, load_a, rig))
+            found.append(SearchedTrial(trial.id, point))
     return found
+
+
+def _moved_kg_m2(load_kg: float, load_a: float, rig: Rig) -> float:
+    """Inertia that a breakaway sets in motion: the rotor's, and the arm's where the teeth touch; NaN if not known."""
+    rotor, ratio, arm, length_m = (
+        rig.motor.rotor_inertia_kg_m2, rig.gear.ratio, rig.arm.inertia_kg_m2, rig.arm.length_m,
+    )  # fmt: skip
+    if rotor is None or ratio is None or arm is None or length_m is None:
+        return nan
+    touches = load_a != 0.0 or rig.gear.backlash_rad == 0.0
+    return rotor * ratio**2 + (arm + load_kg * length_m**2 if touches else 0.0)
 
 
 def _known_load_a(load_kg: float, angle_rad: float, fitted: BreakawayFit, rig: Rig) -> float:

@@ -63,6 +63,12 @@ class JointUnderLoad:
         unequal_a = self.offset_a + self.rise_offset_a * (light + share * (heavy - light))
         return direction * max(light_a + share * (heavy_a - light_a), 0.0) + unequal_a
 
+    @property
+    def arm_friction_a(self) -> float:
+        """Friction behind the teeth [A], as what they lose of it tells: `GearLoss.carried_a`."""
+        loss = self.gear_loss
+        return loss.carried_a / (loss.driving + loss.back_driving) if loss.carried_a > 0.0 else 0.0
+
     def gravity_at(self, angle_rad: float) -> float:
         """What the load takes at an angle [A]."""
         return self.gravity_a * sin(angle_rad)

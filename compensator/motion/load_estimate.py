@@ -5,6 +5,7 @@ from enum import Enum
 from math import inf, nan
 from typing import NamedTuple
 
+from compensator.motion.free_play import ArmState
 from compensator.motion.joint_model import JointUnderLoad
 
 
@@ -15,6 +16,7 @@ class Branch(Enum):
     REST = "at rest"
     SEARCHING = "zero-speed search under way"
     STUCK = "stuck against something"
+    STRUCK = "has struck something"
     LEAVING = "leaving what it leant on"
     MOVING = "in motion"
     TURNING = "turning, or setting off"
@@ -109,6 +111,8 @@ class EstimatorState(NamedTuple):
     joint: JointUnderLoad | None = None  # the model at the selector
     positions_rad: tuple[float, ...] = ()
     currents_a: tuple[float, ...] = ()
+    arms: tuple[ArmState, ...] = ()  # where the arm was, behind the free play
+    mores_a: tuple[float, ...] = ()  # load beyond the weight that it was taken to have then
     extreme_rad: float = nan  # farthest in the present direction
     direction: float = 0.0  # of the last motion
     turned_rad: float = nan  # where it last turned back

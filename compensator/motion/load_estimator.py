@@ -6,7 +6,10 @@
                 pressed to the end of that band at which friction is that of motion towards the set point, and this is
                 the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
-    leaving     moving back from what it was stuck against: the weight alone, since a wall cannot pull
+    struck      stopped at once, under a current that would move it: what stops its momentum presses on, see
+                `standing_load.struck`
+    leaving     moving back from what it was stuck against: as in motion, between the weight and what it leant with,
+                since a wall cannot pull
     turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
                 the joint stands
 
@@ -14,11 +17,10 @@ A pure function, (state, observation) -> (state, estimate). Where one branch tak
 between the two dies away with `blend_s`; until then it is part of the band.
 """
 
-from math import copysign, exp, hypot, inf, isnan, nan, sin, sqrt
+from math import copysign, exp, inf, isnan, nan
 
-import numpy as np
-
-from compensator.motion.joint_model import JointModel, JointUnderLoad, MotionFriction
+from compensator.motion import free_play, standing_load
+from compensator.motion.joint_model import JointModel, JointUnderLoad
 from compensator.motion.load_estimate import (
     Branch,
     EstimatorSettings,
@@ -27,17 +29,16 @@ from compensator.motion.load_estimate import (
     Observation,
     RestResult,
 )
-from compensator.motion.local_motion import Window, window
+from compensator.motion.moving_load import moving_load
 
 __all__ = [
     "Branch", "EstimatorSettings", "EstimatorState", "JointModel", "LoadEstimate", "Observation", "RestResult",
     "advance", "begin",
 ]  # fmt: skip
 
-BAND = 1.96  # standard deviations in half of a 95 % interval
 MISSED_CYCLES = 3  # without motion, before the joint may be standing
 UNEXPLAINED = 0.25  # of what the weight takes at 90 degrees: with more, the arm leans on something
-TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
+SUDDEN = (Branch.STRUCK, Branch.LEAVING)
 SPREAD_WINDOWS = 4.0  # over which the scatter in motion is observed
 
 
@@ -53,9 +54,10 @@ def advance(
     if isnan(observation.position_rad) or isnan(observation.current_a):
         return _lose(state)
     joint, state = _joint(model, state, observation)
-    state = _remember(settings, _track(settings, state, observation), observation)
+    state = _remember(joint, settings, _track(settings, state, observation), observation)
     branch = _branch(joint, settings, state, observation)
-    state = state._replace(leant=branch is Branch.STUCK or (state.leant and branch is not Branch.MOVING))
+    leans = branch in (Branch.STUCK, Branch.STRUCK)
+    state = state._replace(leant=leans or (state.leant and branch is not Branch.MOVING))
     own = _own(branch, joint, settings, state, observation)
     return _blend(joint, settings, state, own, observation)
 
@@ -92,11 +94,21 @@ def _track(settings: EstimatorSettings, state: EstimatorState, observation: Obse
     return state._replace(direction=way, turned_rad=position_rad - ahead_rad, moving_cycles=1)
 
 
-def _remember(settings: EstimatorSettings, state: EstimatorState, observation: Observation) -> EstimatorState:
+def _remember(
+    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
+) -> EstimatorState:
     moved = state.moving_cycles > settings.window and not observation.searching
+    position_rad, play_rad = observation.position_rad, settings.free_play_rad
+    more_a = 0.0 if isnan(state.known_a) or _explained(joint, state) else state.known_a
+    if state.arms:
+        arm = free_play.follow(joint, state.arms[-1], position_rad, more_a, play_rad, settings.period_s)
+    else:
+        arm = free_play.begin(position_rad, joint.gravity_at(position_rad) + more_a, play_rad)
     return state._replace(
-        positions_rad=(*state.positions_rad, observation.position_rad)[-settings.window :],
+        positions_rad=(*state.positions_rad, position_rad)[-settings.window :],
         currents_a=(*state.currents_a, observation.current_a)[-settings.window :],
+        arms=(*state.arms, arm)[-settings.window :],
+        mores_a=(*state.mores_a, more_a)[-settings.window :],
         rest=observation.rest or (None if moved else state.rest),
     )
 
@@ -119,6 +131,8 @@ def _branch(
     travel_rad = abs(state.extreme_rad - state.turned_rad)
     # what follows the last motion may be at rest already, held by any friction
     window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
+    if travel_rad > settings.free_play_rad and standing_load.strikes(joint, settings, state, observation):
+        return Branch.STRUCK
     if not window_moves or travel_rad <= settings.free_play_rad:
         return Branch.LEAVING if _leaves(joint, settings, state) else Branch.TURNING
     return Branch.MOVING
@@ -127,7 +141,8 @@ def _branch(
 def _leaves(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState) -> bool:
     """Whether the joint moves away from what it leant on: that can only push it on, and less and less."""
     moves = state.still_cycles <= settings.onset_cycles
-    return moves and state.leant and not _explained(joint, state) and state.direction * state.known_a < 0.0
+    pushed = not _explained(joint, state) or state.estimate.branch is Branch.LEAVING
+    return moves and state.leant and pushed and state.direction * state.known_a < 0.0
 
 
 def _own(
@@ -136,125 +151,18 @@ def _own(
     """The value of the branch alone, whatever was given out before."""
     held_a = state.known_a + joint.gravity_at(observation.position_rad)
     if branch is Branch.REST:
-        return _at_rest(joint, settings, state, held_a)
+        return standing_load.at_rest(joint, settings, state, held_a)
     if branch is Branch.STUCK:
-        return _stuck(joint, settings, state, observation, held_a)
+        return standing_load.stuck(joint, settings, state, observation, held_a)
+    if branch is Branch.STRUCK:
+        return standing_load.struck(joint, settings, state, held_a)
     if branch is Branch.MOVING:
-        return _moving(joint, settings, state, observation)
+        return moving_load(joint, settings, state, observation)
     if branch is Branch.LEAVING:
-        return LoadEstimate(joint.gravity_at(observation.position_rad), state.estimate.half_width_a, branch)
+        return standing_load.leaving(joint, state, observation)
     if branch is Branch.TURNING and state.still_cycles > settings.onset_cycles and not isnan(held_a):
-        return _allowed(joint, settings, state, held_a, nan, branch)
+        return standing_load.allowed(joint, settings, state, held_a, nan, branch)
     return LoadEstimate(held_a, state.estimate.half_width_a, branch)
-
-
-def _at_rest(joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, held_a: float) -> LoadEstimate:
-    """The search's result, or what was known before it, as far as static friction allows it."""
-    if state.rest is None:
-        return _allowed(joint, settings, state, held_a, nan, Branch.REST)
-    known_a, half_a, _ = state.rest
-    given = _allowed(joint, settings, state, known_a, nan, Branch.REST)
-    return given._replace(half_width_a=half_a) if given.load_current_a == known_a else given
-
-
-def _stuck(
-    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation, held_a: float
-) -> LoadEstimate:
-    """The near end of the band of static friction, as for motion towards the set point: a push that grows lies there.
-
-    What was known before stands for as long as the band holds it: then friction alone may be what holds the joint.
-    """
-    way = copysign(1.0, observation.target_rad - observation.position_rad)
-    near_a = _about_to_move_a(joint, _stood_a(settings, state), way, 1.0)
-    given = _allowed(joint, settings, state, held_a, near_a, Branch.STUCK)
-    return given._replace(friction_current_a=joint.friction_a(0.0, way))
-
-
-def _allowed(
-    joint: JointUnderLoad,
-    settings: EstimatorSettings,
-    state: EstimatorState,
-    known_a: float,
-    else_a: float,
-    branch: Branch,
-) -> LoadEstimate:
-    """What is known, as far as static friction allows it: eq. (1); the middle, or something else, where nothing is."""
-    margin = 1.0 + 3.0 * joint.friction_scatter
-    low_a, high_a = sorted(_about_to_move_a(joint, _stood_a(settings, state), way, margin) for way in (1.0, -1.0))
-    if isnan(known_a):
-        known_a = (low_a + high_a) / 2.0 if isnan(else_a) else else_a
-    given_a = min(max(known_a, low_a), high_a)
-    return LoadEstimate(given_a, max(high_a - given_a, given_a - low_a), branch)
-
-
-def _stood_a(settings: EstimatorSettings, state: EstimatorState) -> float:
-    """The newest current [A] that is known not to have moved the joint: motion shows only after a while."""
-    seen = state.currents_a
-    return seen[-min(settings.onset_cycles, state.still_cycles, len(seen) - 1) - 1]
-
-
-def _about_to_move_a(joint: JointUnderLoad, current_a: float, way: float, margin: float) -> float:
-    """I_load [A] of a joint at rest that is just about to move in a direction."""
-    return joint.gear_loss.load_current_a(current_a - margin * joint.friction_a(0.0, way), way)
-
-
-def _moving(
-    joint: JointUnderLoad, settings: EstimatorSettings, state: EstimatorState, observation: Observation
-) -> LoadEstimate:
-    """What the window's mean current is more than the modelled load explains, and that load now."""
-    averages = window(settings.window, settings.period_s)
-    motion = averages.motion(state.positions_rad)
-    if joint.studied is not None:
-        return _studied(joint, joint.studied, settings, state, observation)
-    way, loss = state.direction, joint.gear_loss
-    friction_a = joint.friction_a(motion.speed_rad_s, way)
-    # the teeth carry the load and what accelerates the arm, but not what accelerates the rotor
-    arm_a = joint.arm_inertia_a_s2_rad * motion.acceleration_rad_s2
-    rotor_a = joint.rotor_inertia_a_s2_rad * motion.acceleration_rad_s2
-    more_a = averages.mean_held(state.currents_a) - rotor_a - friction_a
-    more_a -= _expected_a(joint, averages, state, arm_a)
-    middle_a = joint.gravity_at(motion.position_rad) + arm_a
-    known_a = loss.load_current_a(loss.motor_current_a(middle_a, way) + more_a, way) - middle_a
-    inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
-    noise_a = inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
-    spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
-    now_a = joint.gravity_at(observation.position_rad)
-    return LoadEstimate(known_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
-
-
-def _studied(
-    joint: JointUnderLoad,
-    studied: MotionFriction,
-    settings: EstimatorSettings,
-    state: EstimatorState,
-    observation: Observation,
-) -> LoadEstimate:
-    """The same with what a study found: friction wherever the window has been; the gear's loss is in it."""
-    averages = window(settings.window, settings.period_s)
-    motion, way = averages.motion(state.positions_rad), state.direction
-    positions = np.array(state.positions_rad)
-    ages_s = settings.period_s * (np.arange(len(positions)) - (len(positions) - 1) / 2.0)
-    speeds = way * np.maximum(way * (motion.speed_rad_s + motion.acceleration_rad_s2 * ages_s), 0.0)
-    friction = studied.current_a(
-        positions, np.where(speeds == 0.0, way * TINY_RAD_S, speeds), motion.acceleration_rad_s2, joint.gravity_a,
-        observation.temperature_c,
-    )  # fmt: skip
-    friction_a = averages.mean(friction.tolist())
-    inertia = joint.rotor_inertia_a_s2_rad + joint.arm_inertia_a_s2_rad
-    weight_a = averages.mean((joint.gravity_a * np.sin(positions)).tolist())
-    more_a = averages.mean_held(state.currents_a) - inertia * motion.acceleration_rad_s2 - friction_a - weight_a
-    noise_a = inertia * averages.acceleration_noise_rad_s2(settings.count_rad)
-    spread_a = hypot(joint.friction_scatter * friction_a, noise_a, sqrt(state.variance_a2))
-    now_a = joint.gravity_at(observation.position_rad)
-    return LoadEstimate(more_a + now_a, BAND * spread_a, Branch.MOVING, friction_a)
-
-
-def _expected_a(joint: JointUnderLoad, averages: Window, state: EstimatorState, arm_a: float) -> float:
-    """Mean motor current of the modelled load over the window: gear loss bends where the load changes its sign."""
-    carried_a, gravity_a, way = joint.gear_loss.motor_current_a, joint.gravity_a, state.direction
-    if gravity_a == 0.0:
-        return carried_a(arm_a, way)
-    return averages.mean([carried_a(gravity_a * sin(angle_rad) + arm_a, way) for angle_rad in state.positions_rad])
 
 
 def _blend(
@@ -269,7 +177,8 @@ def _blend(
     change_a = state.known_a + gravity_a - own.load_current_a
     offset_a = state.offset_a * exp(-settings.period_s / settings.blend_s)
     if observation.rest is not None or own.branch is not state.estimate.branch:
-        offset_a = 0.0 if isnan(change_a) else change_a
+        # a hit, and a push that is let go, are as sudden as they look
+        offset_a = 0.0 if isnan(change_a) or own.branch in SUDDEN else change_a
     given = own._replace(load_current_a=own.load_current_a + offset_a, half_width_a=own.half_width_a + abs(offset_a))
     state = state._replace(estimate=given, known_a=given.load_current_a - gravity_a, offset_a=offset_a)
     return _spread(settings, state, own.load_current_a - gravity_a), given

@@ -1,8 +1,10 @@
 """From the load of a slave to the torque of its master's motor, and from the master's motion to the slave's set point.
 
-    t* = g T_load, |t*| <= limit;    |dt/dt| <= slew;    master's motor: -t - b w
+    t* = T0 + g (T_load - T0), |t*| <= limit;    |dt/dt| <= slew;    master's motor: -t - b w
 
-g is the force scale, b the damping. What is not known (NaN) is not reflected: the torque goes to 0 as fast as it may.
+g is the force scale, b the damping. T0 is 0, so that the load is scaled; where a stability margin is looked for, it is
+the load at rest: then g scales its changes alone, and the limit, which the load itself reaches, hides nothing of them.
+What is not known (NaN) is not reflected: the torque goes to 0 as fast as it may.
 """
 
 from dataclasses import dataclass
@@ -22,6 +24,7 @@ class Reflection:
         slew_n_m_s: fastest change of it.
         damping_n_m_s_rad: b.
         period_s: of the control loop.
+        about_n_m: T0.
     """
 
     force_scale: float
@@ -29,6 +32,7 @@ class Reflection:
     slew_n_m_s: float
     damping_n_m_s_rad: float
     period_s: float
+    about_n_m: float = 0.0
 
     def __post_init__(self) -> None:
         if not (self.force_scale >= 0.0 and self.damping_n_m_s_rad >= 0.0):
@@ -43,7 +47,8 @@ class Reflection:
             before_n_m: what was reflected in the cycle before.
             load_n_m: of the slave; NaN where it is not known.
         """
-        wanted_n_m = 0.0 if isnan(load_n_m) else self.force_scale * load_n_m
+        changed_n_m = self.about_n_m + self.force_scale * (load_n_m - self.about_n_m)
+        wanted_n_m = 0.0 if isnan(load_n_m) else changed_n_m
         wanted_n_m = min(max(wanted_n_m, -self.torque_n_m), self.torque_n_m)
         step_n_m = self.slew_n_m_s * self.period_s
         return min(max(wanted_n_m, before_n_m - step_n_m), before_n_m + step_n_m)

@@ -1,4 +1,4 @@
-"""How well a load is reflected, from recorded samples: error, delay, and whether a joint swings without end."""
+"""How well a load is reflected, from recorded samples: error, delay, drag, and whether a joint swings without end."""
 
 from typing import NamedTuple
 
@@ -7,6 +7,10 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 LEAST_TURNS = 4  # two periods
+JUMP_SAMPLES = 4  # within which a jump is over
+SUDDEN = 0.5  # of a jump, within that
+LEVEL_SAMPLES = 10  # that tell a level
+RISEN = 0.5
 LEAST_CORRELATION = 0.5  # below, what is reflected is no image of the truth, and has no delay
 
 
@@ -69,6 +73,64 @@ def delay_s(reflected: FloatArray, truth: FloatArray, period_s: float, longest_s
     before, at, after = alike[best - 1 : best + 2]
     bend = before - 2.0 * at + after
     return float((best - most + (0.5 * (before - after) / bend if bend < 0.0 else 0.0)) * period_s)
+
+
+def unexplained(reflected: FloatArray, truth: FloatArray, latest: int) -> FloatArray:
+    """How far what is reflected lies outside of all that the truth was within the last few samples, shape (n,).
+
+    Args:
+        reflected: samples, shape (n,); finite.
+        truth: at the same times.
+        latest: samples of delay that are no error.
+    """
+    padded = np.concatenate([np.full(latest, truth[0]), truth])
+    recent = np.lib.stride_tricks.sliding_window_view(padded, latest + 1)
+    outside = np.maximum(np.min(recent, axis=1) - reflected, reflected - np.max(recent, axis=1))
+    return np.asarray(np.maximum(outside, 0.0))
+
+
+def rise_s(reflected: FloatArray, truth: FloatArray, period_s: float, least_jump: float) -> float | None:
+    """From the greatest jump of the truth until half of it is reflected [s].
+
+    The truth is taken from the median before to the median after: what a hit does for a moment is no level.
+
+    Returns:
+        None where the truth nowhere jumps by the least jump, or it is not reflected.
+    """
+    lead, settle = LEVEL_SAMPLES, JUMP_SAMPLES
+    jumps = {
+        k: float(np.median(truth[k + settle : k + settle + lead]) - np.median(truth[k - lead : k]))
+        for k in range(lead, len(truth) - lead - settle)
+        # what takes longer is no jump
+        if abs(truth[k + settle] - truth[k - 1]) >= least_jump
+    }
+    sudden = {k: jump for k, jump in jumps.items() if abs(truth[k + settle] - truth[k - 1]) >= SUDDEN * abs(jump)}
+    if not sudden:
+        return None
+    place, jump = max(sudden.items(), key=lambda one: abs(one[1]))
+    if abs(jump) < least_jump:
+        return None
+    way, before = (1.0 if jump > 0.0 else -1.0), float(np.median(truth[place - lead : place]))
+    # the jump begins where the truth leaves the level before it by a tenth
+    left = np.flatnonzero(way * (truth[place:] - before) > 0.1 * abs(jump))
+    risen = np.flatnonzero(way * (reflected[place + left[0] :] - before) >= RISEN * abs(jump))
+    return float(risen[0] * period_s) if len(risen) else None
+
+
+def drag(reflected: FloatArray, truth: FloatArray, hand_rad: FloatArray) -> float:
+    """Torque with which what is reflected resists the hand more than the truth does, mean over the hand's way.
+
+    Below 0 it drives the hand on: then hand and master have to take the energy, or the pair swings. In haptics this is
+    the balance of a passivity observer (Hannaford and Ryu, IEEE Trans. Robot. Autom. 18 (2002), 1) over the way.
+
+    Args:
+        reflected: samples, shape (n,); finite.
+        truth: at the same times.
+        hand_rad: angle of the master's arm, at the same times.
+    """
+    step = np.diff(hand_rad)
+    way = float(np.sum(np.abs(step)))
+    return float(np.sum((reflected - truth)[1:] * step)) / way if way > 0.0 else 0.0
 
 
 def _shifted(reflected: FloatArray, truth: FloatArray, lag: int) -> tuple[FloatArray, FloatArray]:

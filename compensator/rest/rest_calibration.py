@@ -8,7 +8,9 @@ current of the load. Then the two currents of breakaway have mean and half diffe
     F = f0 + f1 W
 
 D is what the breakaways show less what the ramps gained: k r^(2/3), k = k0 + k1 [L != 0] + k2 |L| of all searches
-together, since one alone tells it badly. It grows with what is set in motion: with the arm, where the teeth touch.
+together, since one alone tells it badly. It grows with the inertia J that is set in motion, with the arm's where the
+teeth touch: k = q J^(1/3) (`breakaway_fit`). Where J is known, one unknown q tells k far better than three, and with it
+b and e.
 
 r: friction is (1 + r) F forwards, (1 - r) F backwards. a, b, c: gear loss (`gear_loss`); the teeth lose b L on average,
 (a - 1) L more in driving than in being driven, and pass on c of the friction behind them. e: friction behind the teeth,
@@ -21,7 +23,7 @@ that the load lies within -e .. e, or how large it is beyond.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import copysign, hypot, sqrt
+from math import copysign, hypot, nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -50,11 +52,13 @@ class RestPoint(NamedTuple):
         load_current_a: L, by weight, lever, gear ratio and torque constant [A]; 0 where the load hangs straight down.
         load_kg: W.
         found: M and D, with their scatter.
+        inertia_kg_m2: that a breakaway sets in motion, at the joint; NaN where it is not known.
     """
 
     load_current_a: float
     load_kg: float
     found: BreakawayFit
+    inertia_kg_m2: float = nan
 
 
 class RestEstimate(NamedTuple):
@@ -104,9 +108,17 @@ class RestCalibration:
     def gear_loss(self) -> GearLoss:
         """The same loss as it acts on a joint in motion, never below 0."""
         more = self.gain - 1.0
-        return GearLoss(
-            max(self.slope + more, 0.0), min(max(self.slope - more, 0.0), 0.99), 2.0 * max(self.step_a, 0.0)
-        )
+        driving, back_driving = max(self.slope + more, 0.0), min(max(self.slope - more, 0.0), 0.99)
+        return GearLoss(driving, back_driving, (driving + back_driving) * self.friction_behind_a)
+
+    @property
+    def friction_behind_a(self) -> float:
+        """f [A], friction behind the teeth, 0 or more: e tells it, and c / b does; each by how sure it is."""
+        told = [(self.offset_a, self.offset_sd_a)]
+        if self.slope > 0.0:
+            told.append((self.step_a / self.slope, sqrt(self.covariance[1][1]) / self.slope))
+        weights = [1.0 / max(sd_a, FLOOR_A) ** 2 for _, sd_a in told]
+        return max(sum(w * f_a for w, (f_a, _) in zip(weights, told, strict=True)) / sum(weights), 0.0)
 
     def scatter_a(self, friction_a: float, half_a: float) -> float:
         """Standard deviation of one breakaway [A], by F and D."""
@@ -208,8 +220,11 @@ def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
     delays, columns = [ones, touches, np.abs(load_a)], [ones, weight_kg, np.abs(load_a), touches]
 
     def ramps_off_a(weights: NDArray[np.float64]) -> tuple[list[float], NDArray[np.float64]]:
-        delay, _ = _fit(delays, _column(found, "delay"), weights)
-        return delay, ramped_a - (np.column_stack(delays) @ delay) * ramp
+        told = _column(found, "delay")
+        known = _by_inertia(_column(points, "inertia_kg_m2"), told, weights)
+        delay, _ = _fit(delays, told if known is None else known, weights)
+        gained = np.column_stack(delays) @ delay if known is None else known
+        return delay, ramped_a - gained * ramp
 
     # once with equal weights, for what the scatter goes with
     _, half_a = ramps_off_a(counts)
@@ -226,6 +241,16 @@ def calibrate(points: Sequence[RestPoint]) -> RestCalibration:
     return RestCalibration(
         gain, step_a, asymmetry, known, slope, offset_a, offset_sd_a, tuple(delay), floor_a, scatter, moment_scatter
     )
+
+
+def _by_inertia(
+    inertia_kg_m2: NDArray[np.float64], delay: NDArray[np.float64], weights: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """k of each search, by the inertia that it sets in motion; None where that is not known."""
+    if not np.all(inertia_kg_m2 > 0.0):
+        return None
+    root = np.cbrt(inertia_kg_m2)
+    return np.asarray(root * np.sum(weights**2 * root * delay) / np.sum((weights * root) ** 2))
 
 
 def _column(items: Sequence[RestPoint] | Sequence[BreakawayFit], name: str) -> NDArray[np.float64]:

@@ -221,3 +221,64 @@ def test_a_sine_is_followed_through_its_reversals():
 def test_models_that_do_not_fit_together_are_refused(wrong):
     with pytest.raises(ModelParameterError, match=next(iter(wrong))):
         replace(MODEL, **wrong)
+
+
+WEIGHED = replace(MODEL, gravity_a=(0.3, 0.3))
+
+
+def slide(speed, deceleration, start_rad=0.8, seconds=0.5):
+    """A weight pushed up at a speed; with a deceleration it is slowed to a stop, by no more than its motor gives up."""
+    at_rad, seen = start_rad, []
+    for _ in range(round(seconds / PERIOD_S)):
+        seen.append(Observation(counted(at_rad), motor_current_a(0.3 * sin(at_rad), speed, 0.0), 2.0))
+        at_rad += speed * PERIOD_S
+    while deceleration and speed > 0.0:
+        seen.append(Observation(counted(at_rad), motor_current_a(0.3 * sin(at_rad), speed, -deceleration), 2.0))
+        at_rad += speed * PERIOD_S
+        speed -= deceleration * PERIOD_S
+    return [*stand(0.3 * sin(start_rad), 60, start_rad, rest=RestResult(0.3 * sin(start_rad), 0.005, 0.1)), *seen]
+
+
+def test_what_stops_a_joint_at_once_is_felt_at_once():
+    free = slide(0.2, 0.0)
+    # 2 ms of its speed into the wall, and there it stands under the same current
+    at_rad, current_a = free[-1].position_rad + 0.0004, free[-1].current_a
+    estimates = follow([*free, *stand(current_a, 30, at_rad, 2.0)], WEIGHED)[len(free) :]
+    weight_a = 0.3 * sin(at_rad)
+    assert Branch.STRUCK in {one.branch for one in estimates[:3]}
+    # friction may hide any load up to 0.1 A more each way; its middle is far from the weight
+    assert estimates[4].load_current_a > weight_a + 0.05
+    assert estimates[-1].load_current_a == pytest.approx(estimates[4].load_current_a, abs=0.02)
+    assert abs(estimates[-1].load_current_a - weight_a) < estimates[-1].half_width_a + 0.1
+
+
+@pytest.mark.parametrize("deceleration", [0.5, 2.0, 8.0])
+def test_a_joint_that_its_motor_lets_stop_has_struck_nothing(deceleration):
+    slowed = slide(0.2, deceleration)
+    # friction holds it then, at what the motor last gave
+    held = stand(slowed[-1].current_a, 30, slowed[-1].position_rad, 2.0)
+    assert Branch.STRUCK not in {one.branch for one in follow([*slowed, *held], WEIGHED)}
+
+
+def test_a_push_that_is_let_go_falls_with_the_current():
+    pushed = slide(0.2, 0.0)
+    at_rad = pushed[-1].position_rad + 0.0002
+    # pressed to 0.7 A, then let go: the teeth spring back, a count in each cycle
+    press = [Observation(at_rad, 0.3 + 0.01 * cycle, 2.0) for cycle in range(60)]
+    held = stand(press[-1].current_a, 60, at_rad, 2.0)
+    joint, back = WEIGHED.under(0.1), []
+    for cycle in range(1, 40):
+        load_a = max(0.6 - 0.01 * cycle, 0.3 * sin(at_rad))
+        current_a = joint.gear_loss.motor_current_a(load_a, -1.0) + joint.friction_a(0.0, -1.0)
+        back.append((load_a, Observation(at_rad - 2.0 * COUNT_RAD * cycle, current_a, 0.5)))
+    seen = [*pushed, *press, *held]
+    found = follow([*seen, *(one for _, one in back)], WEIGHED)[len(seen) :]
+    errors_a = [one.load_current_a - load_a for one, (load_a, _) in zip(found, back, strict=True)]
+    assert max(abs(error_a) for error_a in errors_a[3:]) < 0.02
+
+
+def test_without_a_known_inertia_no_momentum_is_missed():
+    light = replace(WEIGHED, rotor_inertia_a_s2_rad=0.0, arm_inertia_a_s2_rad=(0.0, 0.0))
+    free = slide(0.2, 0.0)
+    hit = [*free, *stand(free[-1].current_a, 30, free[-1].position_rad + 0.0004, 2.0)]
+    assert Branch.STRUCK not in {one.branch for one in follow(hit, light)}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from compensator.errors import ModelParameterError
 from compensator.reflection.reflection import Following, Reflection
-from compensator.reflection.reflection_quality import delay_s, swing
+from compensator.reflection.reflection_quality import delay_s, drag, rise_s, swing, unexplained
 
 LAW = Reflection(force_scale=2.0, torque_n_m=1.0, slew_n_m_s=20.0, damping_n_m_s_rad=0.1, period_s=0.005)
 PATH = Following(
@@ -103,3 +103,55 @@ def test_what_creeps_settles_or_trembles_by_a_count_is_none():
     trembling = 1e-4 * (np.arange(200) % 2)
     for position in (creeping, settling, trembling, np.zeros(200)):
         assert not swing(position, threshold_rad=0.002).is_limit_cycle
+
+
+def test_changes_alone_are_scaled_about_a_load():
+    about = Reflection(3.0, 1.0, 20.0, 0.0, 0.005, about_n_m=0.6)
+    assert after(about, 0.6, 50) == pytest.approx(0.6)
+    # without it, three times the load is beyond the limit, and changes nothing
+    assert after(about, 0.7, 50) == pytest.approx(0.9)
+    assert after(Reflection(3.0, 1.0, 20.0, 0.0, 0.005), 0.7, 50) == after(LAW, 0.7, 50) == 1.0
+
+
+def hit(late=0, height=1.0):
+    """A load that jumps from 0.2, and what is reflected of it so many samples later."""
+    truth = np.concatenate([np.full(50, 0.2), np.full(50, 0.2 + height)])
+    return np.concatenate([np.full(late, 0.2), truth[: len(truth) - late]]), truth
+
+
+def test_what_a_short_delay_explains_is_no_error():
+    reflected, truth = hit(late=6)
+    assert np.max(np.abs(reflected - truth)) == pytest.approx(1.0)
+    assert np.max(unexplained(reflected, truth, 6)) == 0.0
+    assert np.max(unexplained(reflected, truth, 5)) == pytest.approx(1.0)
+    assert np.max(unexplained(reflected + 0.1, truth, 6)) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("height", [1.0, -1.0])
+def test_the_rise_after_a_hit_is_its_delay(height):
+    assert rise_s(*hit(late=6, height=height), 0.005, 0.1) == pytest.approx(6 * 0.005)
+    _, truth = hit(height=height)
+    slow = truth.copy()
+    slow[50:] -= height * np.exp(-np.arange(50) / 10.0)
+    assert rise_s(slow, truth, 0.005, 0.1) == pytest.approx(10 * np.log(2.0) * 0.005, abs=0.005)
+
+
+def test_without_a_jump_there_is_no_rise():
+    ramp = np.linspace(0.0, 1.0, 100)
+    assert rise_s(ramp, ramp, 0.005, 0.1) is None
+    assert rise_s(*hit(height=0.05), 0.005, 0.1) is None
+    assert rise_s(np.zeros(5), np.zeros(5), 0.005, 0.1) is None
+    reflected, truth = hit()
+    assert rise_s(np.zeros_like(reflected), truth, 0.005, 0.1) is None
+
+
+def test_drag_is_what_resists_the_hand_beside_the_load():
+    hand_rad = np.concatenate([np.linspace(0.0, 1.0, 101), np.linspace(1.0, 0.0, 101)])
+    truth = 0.5 * np.sin(hand_rad)
+    way = np.sign(np.diff(hand_rad, prepend=-0.01))
+    assert drag(truth, truth, hand_rad) == 0.0
+    assert drag(truth + 0.1 * way, truth, hand_rad) == pytest.approx(0.1, rel=0.02)
+    # what comes late drives the hand on: a spring that gives back more than it took
+    late = np.concatenate([truth[:5], truth[:-5]])
+    assert drag(late, truth, hand_rad) < -0.01
+    assert drag(truth, truth, np.zeros_like(hand_rad)) == 0.0

@@ -1,5 +1,6 @@
 """What known loads tell of a joint at rest, and what it corrects."""
 
+from dataclasses import replace
 from math import copysign, pi, sin
 
 import numpy as np
@@ -124,7 +125,16 @@ def test_gear_loss_in_motion_follows():
     loss = calibrate(points()).gear_loss()
     assert loss.driving == pytest.approx(SLOPE + GAIN - 1.0)
     assert loss.back_driving == pytest.approx(SLOPE - GAIN + 1.0)
-    assert loss.carried_a == pytest.approx(2.0 * STEP_A)
+    assert loss.carried_a == pytest.approx(2.0 * SLOPE * calibrate(points()).friction_behind_a)
+
+
+def test_friction_behind_the_teeth_is_what_both_constants_tell_each_as_it_is_sure():
+    told = RestCalibration(slope=0.25, step_a=0.0025, offset_a=0.006, offset_sd_a=0.001)
+    step_is_sure = ((0.0,) * 3, (0.0, 1e-12, 0.0), (0.0,) * 3)
+    step_is_unsure = ((0.0,) * 3, (0.0, 1e-4, 0.0), (0.0,) * 3)
+    assert replace(told, covariance=step_is_sure).friction_behind_a == pytest.approx(0.01, rel=1e-3)
+    assert replace(told, covariance=step_is_unsure).friction_behind_a == pytest.approx(0.006, rel=1e-2)
+    assert replace(told, covariance=step_is_unsure, offset_a=-0.01).friction_behind_a == 0.0
 
 
 def test_nothing_known_is_eqs_9_and_10():
@@ -146,3 +156,25 @@ def test_nothing_known_is_eqs_9_and_10():
 def test_searches_that_do_not_tell_are_refused(few):
     with pytest.raises(CalibrationError, match="load sweep"):
         calibrate(few)
+
+
+def weighed(generator, known):
+    """Searches whose ramps gain as the inertia says: the rotor's, and under a load the arm's, too."""
+    found = []
+    for point in points(generator, repeats=3):
+        inertia = 0.012 + (0.01 + 0.25 * point.load_kg if point.load_current_a != 0.0 else 0.0)
+        gained = 0.1 * inertia ** (1.0 / 3.0) - 0.03
+        shifted = point.found._replace(
+            delay=point.found.delay + gained, ramped_a=point.found.ramped_a + gained * point.found.ramp
+        )
+        found.append(point._replace(found=shifted, inertia_kg_m2=inertia if known else float("nan")))
+    return found
+
+
+def test_where_the_inertia_is_known_gear_loss_is_told_better():
+    errors = {
+        known: [calibrate(weighed(np.random.default_rng(seed), known)).slope - SLOPE for seed in range(30)]
+        for known in (True, False)
+    }
+    assert abs(np.mean(errors[True])) < 0.002
+    assert np.std(errors[True]) < 0.5 * np.std(errors[False])

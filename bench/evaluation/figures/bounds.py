@@ -39,12 +39,12 @@ def rest_bound_g(rows: Sequence[Mapping[str, Any]], configuration: BenchConfigur
 
 
 def stroke_bound_g(configuration: BenchConfiguration) -> float | None:
-    """Mean absolute error [g] of a stroke of the steady speeds, by what the motor's encoder knows of the arm.
+    """Mean absolute error [g] of a stroke of the steady speeds, by what the motor's encoder alone knows of the arm.
 
     The arm lies anywhere within free play and encoder count, d wide: variance d^2 / 12. Its mean acceleration over a
     time T is at best a second difference of where it is at the ends and in the middle, 4 (x1 - 2 x2 + x3) / T^2, of
-    variance 16 (1 + 4 + 1) / T^4 d^2 / 12 = (8 / T^4) d^2; and what accelerates it is taken for load. A search before
-    the stroke tells of the load as well, so the error may be less.
+    variance 16 (1 + 4 + 1) / T^4 d^2 / 12 = (8 / T^4) d^2; and what accelerates it is taken for load. Whoever knows
+    the weight knows the flank that the arm lies on (`free_play`), and does better.
 
     Returns:
         The mean over the speeds of `steady-speeds`; None where the rig leaves out inertia, length or free play.

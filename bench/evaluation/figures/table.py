@@ -10,7 +10,9 @@ from bench.config.configuration import BenchConfiguration
 from bench.evaluation.figures.coverage import Share
 from bench.evaluation.figures.rows import ASKED, BESIDE, Asked
 from bench.evaluation.figures.trials import SeedResults
+from bench.evaluation.figures.wall import ASKED_AT_A_WALL, BESIDE_A_WALL
 
+ALL = (*ASKED, *ASKED_AT_A_WALL, *BESIDE, *BESIDE_A_WALL)
 COLUMNS = (
     "quantity", "paper", "asked", "measured#", "of trials, 95 %", "worst seed#", "reached", "rigs: mean#",
     "of trials, 95 % ", "rigs: median#", "rigs: worst#", "rigs: reached#",
@@ -76,7 +78,7 @@ def figures_table(
         drawn: the rigs drawn round it.
         rigs: what each of them gave.
     """
-    return [_row(asked, own, seeds, list(zip(drawn, rigs, strict=True))) for asked in (*ASKED, *BESIDE)]
+    return [_row(asked, own, seeds, list(zip(drawn, rigs, strict=True))) for asked in ALL]
 
 
 def _row(
@@ -90,7 +92,7 @@ def _row(
     drawn = [number for number in of_rigs if not isnan(number)]
     measured = asked.whole(numbers)
     judged = not isnan(asked.high)
-    reached = [_reaches(asked, number) for number in drawn]
+    reached = [_reaches(asked, number, asked.drawn_high) for number in drawn]
     return FigureRow(
         asked.name,
         asked.unit,
@@ -121,8 +123,8 @@ def _sure(asked: Asked, found: Sequence[tuple[SeedResults, BenchConfiguration]])
     return f"{100.0 * low:.1f} .. {100.0 * high:.1f} ({whole.trials})" if whole.trials else "-"
 
 
-def _reaches(asked: Asked, number: float) -> bool:
-    return asked.low <= number <= asked.high
+def _reaches(asked: Asked, number: float, high: float | None = None) -> bool:
+    return asked.low <= number <= (asked.high if high is None else high)
 
 
 def _allowed(asked: Asked) -> str:
@@ -130,7 +132,8 @@ def _allowed(asked: Asked) -> str:
         return "-"
     if asked.low > 0.0:
         return f"{asked.low:g} .. {asked.high:g}"
-    return f"at most {asked.high:.4g}"
+    drawn = "" if asked.drawn_high is None else f"; drawn rigs {asked.drawn_high:.4g}"
+    return f"at most {asked.high:.4g}{drawn}"
 
 
 def _worst(asked: Asked, numbers: Sequence[float]) -> float:

@@ -13,14 +13,16 @@ from bench.calibration import calibrate, friction_of
 from bench.calibration.selection import rest_settings_of
 from bench.config.configuration import BenchConfiguration
 from bench.evaluation.figures.rigs import seed_of, with_seed
-from bench.evaluation.paper.measurements import Measurement, measure, quietly
+from bench.evaluation.paper.measurements import Measurement, Plan, measure, quietly
 from bench.store import Store
 
 RIGHT_ANGLE_RAD = pi / 2
 CALIBRATED_KG = (0.0, 0.03, 0.06, 0.1)
-HELD_RAD_S = (0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.8, 3.0, 4.5, 5.8)
+HELD_RAD_S = (0.05, 0.1, 0.2, 0.35, 0.6, 1.0)
+# under a held current the teeth stay in touch; a servo that holds a high speed lets the arm rattle in the free play
+HELD_A = (0.2, 0.3, 0.4, 0.5)
 CALIBRATION = (
-    Measurement("speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": (), "speeds_rad_s": HELD_RAD_S}),
+    Measurement("speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": HELD_A, "speeds_rad_s": HELD_RAD_S}),
     Measurement("load-sweep", {"loads_kg": CALIBRATED_KG, "angles_rad": (0.0, RIGHT_ANGLE_RAD), "searches": 5}),
 )
 TRIALS = {
@@ -28,6 +30,7 @@ TRIALS = {
     "steps": Measurement("steps", {}),
     "speeds": Measurement("steady-speeds", {}),
     "sinusoid": Measurement("sinusoid", {}),
+    "wall": Plan().measurements()["wall"],
 }
 DRAWN = 5  # loads, and as many angles
 FLATTEST_RAD = 0.25  # of the angles drawn, either side of straight down: below, hardly any load reaches the teeth
@@ -40,7 +43,7 @@ class SeedResults:
     """Summaries of the experiments of one seed, by name; and why one is missing.
 
     Attributes:
-        results: "loads", "steps", "speeds", "sinusoid"; "drawn": loads and angles drawn at random; "paper" and
+        results: "loads", "steps", "speeds", "sinusoid", "wall"; "drawn": loads and angles drawn at random; "paper" and
             "quick": one flow chart, and one search of two breakaways each way, under the same loads.
         failures: name -> reason.
     """

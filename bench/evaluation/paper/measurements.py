@@ -72,7 +72,7 @@ class Plan:
 
     reaches_rad: tuple[float, ...] = (1.2, 0.6, 1.5, -0.8)
     wall_reaches_rad: tuple[float, ...] = (0.83, 0.4, 0.85)
-    largest_force_scale: float = 4.0
+    largest_force_scale: float = 20.0
 
     @property
     def middle_kg(self) -> float:

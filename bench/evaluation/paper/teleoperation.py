@@ -11,8 +11,9 @@ from compensator.motion.kinetic_friction import FloatArray
 
 CHANNELS = ("time_s", "reflected_n_m", "interaction_n_m", "hand_n_m", "position_rad")
 COLUMNS = (
-    "what is reflected", "error rms [g]#", "largest [g]#", "at rest, rms [N m]#", "felt, rms [N m]#", "delay [ms]#",
-    "limit cycle at rest", "calm up to force scale#",
+    "what is reflected", "error rms [g]#", "largest [g]#", "of the truth, a cycle late [g]#", "beyond 30 ms [g]#",
+    "at rest, rms [N m]#", "felt, rms [N m]#", "delay [ms]#", "rise [ms]#", "drag [N m]#", "limit cycle at rest",
+    "calm up to force scale#",
 )  # fmt: skip
 
 
@@ -33,6 +34,15 @@ def teleoperation(store: Store, weight: Experiment, wall: Experiment) -> Row:
         "wall_compensated_error_rms_g": leant.get("compensated_reflected_error_rms_g"),
         "wall_uncompensated_error_rms_g": leant.get("raw_reflected_error_rms_g"),
         "wall_delay_ms": _ms(leant.get("compensated_latency_s")),
+        "wall_rise_ms": _ms(leant.get("compensated_rise_s")),
+        "wall_largest_error_g": leant.get("compensated_reflected_error_max_g"),
+        "wall_largest_error_of_the_truth_g": leant.get("compensated_least_error_max_g"),
+        "wall_largest_error_beyond_30_ms_g": leant.get("compensated_late_error_max_g"),
+        "wall_uncompensated_largest_error_beyond_30_ms_g": leant.get("raw_late_error_max_g"),
+        "drag_n_m": told.get("compensated_drag_n_m"),
+        "uncompensated_drag_n_m": told.get("raw_drag_n_m"),
+        "wall_drag_n_m": leant.get("compensated_drag_n_m"),
+        "wall_uncompensated_drag_n_m": leant.get("raw_drag_n_m"),
         "trials_with_limit_cycle": sum(bool(row.get("limit_cycle")) for row in (*told["rows"], *leant["rows"])),
         "calm_up_to_force_scale": told.get("compensated_stability_margin"),
         "uncompensated_calm_up_to_force_scale": told.get("raw_stability_margin"),
@@ -46,10 +56,15 @@ def teleoperation(store: Store, weight: Experiment, wall: Experiment) -> Row:
             "and its load is reflected to his hand: compensated, and in a trial of its own the whole current. The "
             "truth is the torque that holds up the slave's arm and presses it against a wall. What is felt is the "
             "torque of the hand, the master's own friction and inertia included, which nothing compensates here.",
+            "A hit is over within a control cycle: the truth itself, a cycle late and no faster than the master may "
+            "change it, errs by what stands beside the largest error. Beyond 30 ms is the largest error that no delay "
+            "of up to 30 ms explains. The rise is to half of the greatest jump. Drag is by how much the hand is "
+            "resisted more than by the load, over its way; below 0 it is driven on, and the master's own friction has "
+            "to take what it is given.",
             "A limit cycle is a joint that turns back at least four times a second by more than 8 encoder counts "
-            "while it should rest. The force scale is raised, with a nudge each time, until there is one; 'at least' "
-            "where there was none. An arm that hits a wall wedges its gear: then the motor current does not tell all "
-            "of the push.",
+            "while it should rest. The force scale of the load's changes is raised, with a nudge each time, until "
+            "there is one; 'at least' where there was none. An arm that hits a wall wedges its gear: then the motor "
+            "current does not tell all of the push.",
         ],
         tables=[_table("A weight", weight), _table("A wall", wall)],
         figures=[_figure(store, name, found) for name, found in trials.items()],
@@ -73,9 +88,13 @@ def _cells(row: Mapping[str, object]) -> tuple[object, ...]:
         row["reflect"],
         _short(row.get("reflected_error_rms_g")),
         _short(row.get("reflected_error_max_g")),
+        _short(row.get("least_error_max_g")),
+        _short(row.get("late_error_max_g")),
         _short(row.get("rest_error_rms_n_m")),
         _short(row.get("felt_error_rms_n_m")),
         _short(row.get("latency_s"), 1e3),
+        _short(row.get("rise_s"), 1e3),
+        _short(row.get("drag_n_m")),
         "yes" if row.get("limit_cycle") else "no",
         "-" if calm is None else f"{least}{_short(calm)}",
     )

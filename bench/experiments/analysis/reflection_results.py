@@ -8,10 +8,12 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
 from bench.config.rig import resolution_rad
-from bench.experiments.parts.pair_joints import Conveyed
+from bench.experiments.parts.pair_joints import Conveyed, reflection_of
 from bench.json_types import Value
-from compensator.reflection.reflection_quality import FloatArray, Swing, delay_s, swing
+from compensator.reflection.reflection_quality import FloatArray, Swing, delay_s, drag, rise_s, swing, unexplained
 
+LATE_S = 0.03  # of delay that is told apart from an error
+LEAST_JUMP_N_M = 0.1  # within a few cycles, that counts as a hit
 SWING_COUNTS = 8.0  # of the encoder; what turns back by less does not swing
 
 
@@ -38,7 +40,11 @@ def error_results(
     Returns:
         reflected_error_rms_n_m, reflected_error_max_n_m, and the same as grams at 90 degrees (`_g`): of the reflected
             torque, the force scale taken off.
+        least_error_max_g: the largest error of the truth itself, a cycle late and changed no faster than allowed.
+        late_error_max_g: the largest error that no delay of up to 30 ms explains.
         latency_s: by how much it comes later; None where it is no image of the truth.
+        rise_s: from the greatest jump of the truth until half of it is reflected; None where there is none.
+        drag_n_m: by how much it resists the hand more than the load does; below 0 it drives the hand on.
         felt_error_rms_n_m: of what the hand truly feels, the master's own friction and inertia included; None where
             nobody knows.
         Nothing where the truth is not known.
@@ -46,18 +52,34 @@ def error_results(
     known = np.isfinite(truth)
     if not np.any(known):
         return {}
-    reflected = np.array([one.reflected_n_m for one in conveyed]) / force_scale
+    reflected = (np.array([one.reflected_n_m for one in conveyed]) / force_scale)[known]
     felt = np.array([one.reading.truth.hand_n_m for one in conveyed]) / force_scale - truth
-    error, per_g = (reflected - truth)[known], 1e-3 * _per_kg_n_m(configuration)
+    master_rad = np.array([one.reading.master.sample.position_rad for one in conveyed])[known]
+    true, period_s, per_g = truth[known], configuration.control.period_s, 1e-3 * _per_kg_n_m(configuration)
+    error, readings = reflected - true, max(round(LATE_S / period_s), 1)
     rms, most = float(np.sqrt(np.mean(error**2))), float(np.max(np.abs(error)))
+    least = np.abs(_at_best(true, force_scale, configuration) - true)
     return {
         "reflected_error_rms_n_m": rms,
         "reflected_error_max_n_m": most,
         "reflected_error_rms_g": rms / per_g,
         "reflected_error_max_g": most / per_g,
-        "latency_s": delay_s(reflected[known], truth[known], configuration.control.period_s),
+        "least_error_max_g": float(np.max(least)) / per_g,
+        "late_error_max_g": float(np.max(unexplained(reflected, true, readings))) / per_g,
+        "latency_s": delay_s(reflected, true, period_s),
+        "rise_s": rise_s(reflected, true, period_s, LEAST_JUMP_N_M),
+        "drag_n_m": drag(reflected, true, master_rad),
         "felt_error_rms_n_m": None if np.any(np.isnan(felt)) else float(np.sqrt(np.mean(felt**2))),
     }
+
+
+def _at_best(truth: FloatArray, force_scale: float, configuration: BenchConfiguration) -> FloatArray:
+    """What a pair would reflect that knew the truth of the cycle before."""
+    law, given_n_m, given = reflection_of(configuration, force_scale), force_scale * float(truth[0]), []
+    for true_n_m in [truth[0], *truth[:-1]]:
+        given_n_m = law.reflected_n_m(given_n_m, float(true_n_m))
+        given.append(given_n_m / force_scale)
+    return np.array(given)
 
 
 def rest_results(rests: Sequence[tuple[Swing, float]]) -> dict[str, Value]:

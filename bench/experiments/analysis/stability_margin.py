@@ -63,8 +63,9 @@ def margin(
 def _swings(
     pair: PairJoints, configuration: BenchConfiguration, angle_rad: float, force_scale: float
 ) -> PairPart[bool]:
-    yield from pair.convey(CALM_S, Reach(angle_rad, CALM_S / 2.0), force_scale=0.0)
-    yield from pair.convey(NUDGE_S, Reach(angle_rad + NUDGE_RAD, NUDGE_S), force_scale)
-    yield from pair.convey(NUDGE_S + DIE_AWAY_S, Reach(angle_rad, NUDGE_S), force_scale)
-    watched = yield from pair.convey(WATCH_S, None, force_scale)
+    rested = yield from pair.convey(CALM_S, Reach(angle_rad, CALM_S / 2.0), force_scale=1.0)
+    about_n_m = rested[-1].reflected_n_m
+    yield from pair.convey(NUDGE_S, Reach(angle_rad + NUDGE_RAD, NUDGE_S), force_scale, about_n_m)
+    yield from pair.convey(NUDGE_S + DIE_AWAY_S, Reach(angle_rad, NUDGE_S), force_scale, about_n_m)
+    watched = yield from pair.convey(WATCH_S, None, force_scale, about_n_m)
     return widest_swing(watched, configuration).is_limit_cycle

@@ -102,7 +102,11 @@ class PairJoints:
         )
 
     def convey(
-        self, seconds: float, reach: Reach | None = None, force_scale: float | None = None
+        self,
+        seconds: float,
+        reach: Reach | None = None,
+        force_scale: float | None = None,
+        about_n_m: float = 0.0,
     ) -> PairPart[list[Conveyed]]:
         """Teleoperate for a while.
 
@@ -110,8 +114,9 @@ class PairJoints:
             seconds: how long.
             reach: what the operator does from now on.
             force_scale: another than the coupling's.
+            about_n_m: load of which only the changes are scaled by that.
         """
-        law = self._law if force_scale is None else reflection_of(self._configuration, force_scale)
+        law = self._law if force_scale is None else reflection_of(self._configuration, force_scale, about_n_m)
         conveyed = []
         for _ in range(ceil(seconds / self._configuration.control.period_s)):
             conveyed.append((yield from self._convey_cycle(law, reach)))
@@ -170,7 +175,7 @@ class PairJoints:
         return self._following
 
 
-def reflection_of(configuration: BenchConfiguration, force_scale: float) -> Reflection:
+def reflection_of(configuration: BenchConfiguration, force_scale: float, about_n_m: float = 0.0) -> Reflection:
     """The law of reflection, as bench.toml has it.
 
     Raises:
@@ -183,4 +188,5 @@ def reflection_of(configuration: BenchConfiguration, force_scale: float) -> Refl
         slew_n_m_s=settings.slew_n_m_s,
         damping_n_m_s_rad=settings.damping_n_m_s_rad,
         period_s=configuration.control.period_s,
+        about_n_m=about_n_m,
     )

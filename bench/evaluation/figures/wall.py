@@ -1,0 +1,45 @@
+"""What a master is given while its slave hits a wall and lets go of it: `teleoperation` with a wall, of each seed."""
+
+from collections.abc import Callable
+from math import inf, nan
+
+from bench.config.configuration import BenchConfiguration
+from bench.evaluation.figures.rows import Asked, Numbers, mean, most, summary
+from bench.evaluation.figures.trials import SeedResults
+
+MS = 1e3
+
+
+def _of(key: str, scale: float = 1.0) -> Callable[[SeedResults, BenchConfiguration], Numbers]:
+    def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
+        return summary(seed, "wall", key, scale)
+
+    return numbers
+
+
+ASKED_AT_A_WALL = (
+    Asked(
+        "wall, reflected: largest error that no delay up to 30 ms explains", "g", 0.0, 60.0, "-",
+        _of("compensated_late_error_max_g"), mean,
+        "a hit is over within a control cycle; what the largest error is whatever one does stands below",
+    ),
+    Asked("wall, reflected: delay", "ms", 0.0, 30.0, "-", _of("compensated_latency_s", MS), mean),
+    Asked(
+        "wall: torque that drives the hand on", "N m", -inf, 0.03, "-", _of("compensated_drag_n_m", -1.0), mean,
+        "mean over the hand's way, beyond what the load does; the master's own friction takes 0.07 N m and more",
+    ),
+)  # fmt: skip
+BESIDE_A_WALL = (
+    Asked("the same of the raw current: it drags", "N m", 0.0, nan, "-", _of("raw_drag_n_m", -1.0), mean),
+    Asked(
+        "wall, raw current: largest error that no delay up to 30 ms explains", "g", 0.0, nan, "-",
+        _of("raw_late_error_max_g"), mean,
+    ),
+    Asked("wall, reflected: time to half of a hit", "ms", 0.0, nan, "-", _of("compensated_rise_s", MS), mean),
+    Asked("wall, reflected: largest error", "g", 0.0, nan, "-", _of("compensated_reflected_error_max_g"), most),
+    Asked(
+        "bound of it: the truth itself, a cycle late", "g", 0.0, nan, "-", _of("compensated_least_error_max_g"), most,
+        "and changed no faster than the master may change it",
+    ),
+)  # fmt: skip
+"""Shown beside, for what bounds the others, or to tell the raw current apart."""
