@@ -69,6 +69,6 @@ def require_commissioned(store: Store, provenance: Provenance) -> None:
         return
     raise NotCommissionedError(
         f"drive '{provenance['drive']['device']}' has not passed the commissioning move with this configuration "
-        "(drive, gear, sensor, motor); take the load off and run 'friction-bench doctor --move' (or the experiment "
-        f"'{KIND}'): the joint moves a few degrees. Then start again"
+        "(drive, gear, sensor, motor) in this store; take the load off and run 'friction-bench doctor --move' (or the "
+        f"experiment '{KIND}'): the joint moves a few degrees. Then start again"
     )
