@@ -7,6 +7,7 @@ from typing import Any
 from unittest import mock
 
 import can
+from pymodbus.framer import FramerRTU
 
 from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.modbus.own_drive import OwnDrive
@@ -116,12 +117,7 @@ def _told(words: list[int]) -> bytes:
 
 
 def _crc(data: bytes) -> bytes:
-    crc = 0xFFFF
-    for byte in data:
-        crc ^= byte
-        for _ in range(8):
-            crc = crc >> 1 ^ 0xA001 if crc & 1 else crc >> 1
-    return crc.to_bytes(2, "little")
+    return FramerRTU.compute_CRC(data).to_bytes(2)
 
 
 class CanWire:
