@@ -18,6 +18,20 @@ def test_what_a_host_waits_for_its_processor_is_no_time_of_the_drive(monkeypatch
     assert found.note.startswith("this host is busy: a cycle waits for its processor for 20 ms")
 
 
+@pytest.mark.parametrize("counted_late", [1, 15])
+def test_a_wait_that_is_counted_in_the_cycle_after_makes_no_cycle_of_no_time(monkeypatch, counted_late):
+    """A rate is one over it."""
+    monkeypatch.setattr(host_time, "processor_wait_s", _counted(counted_late).__next__)
+    assert 0.002 <= measure_cycle(lambda: time.sleep(0.002)).quickest_s < 0.1
+
+
+def _counted(late_cycles):
+    """The counter before and after each cycle: one second of waiting is counted in each of so many."""
+    for cycle in range(100):
+        yield float(min(cycle, late_cycles))
+        yield float(min(cycle + 1, late_cycles))
+
+
 def test_a_host_that_has_its_time_is_not_mentioned():
     assert CycleTime(0.002, 0.0001).note == ""
 
