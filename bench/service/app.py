@@ -17,6 +17,7 @@ from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
 from bench.service.auth.token_register import REFRESH_S
 from bench.service.http import conditional, openapi, page, problems, turns
+from bench.service.http.faults import Faults
 from bench.service.http.guard import Guard
 from bench.service.http.limits import Limits
 from bench.service.lab import Lab, LabHere
@@ -162,6 +163,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     openapi.install(app)
     app.add_middleware(Limits, access=access)
     app.add_middleware(AuditTrail, add=trail.add)
+    app.add_middleware(Faults)
     app.add_middleware(Guard, hosts=access.hosts)
     return app
 

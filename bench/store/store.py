@@ -48,6 +48,8 @@ class Store(ExperimentStore, TrialStore, StudyStore):
     def open(cls, url: str, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Self:
         """Open a database; create or upgrade its tables; mark as interrupted what a dead process left running.
 
+        A file that may not be written is read as it is.
+
         Args:
             url: "sqlite:///bench.sqlite", or "postgresql://user@host/database".
             busy_timeout_s: how long a write waits for another one before `StoreLockedError` [s].
@@ -60,7 +62,8 @@ class Store(ExperimentStore, TrialStore, StudyStore):
         store = cls(Database(url, busy_timeout_s))
         try:
             migrate(store._database)
-            store.custody.settle()
+            if not store._database.backend.is_read_only:
+                store.custody.settle()
         except BaseException:
             store.close()
             raise
