@@ -35,6 +35,7 @@ from bench.service.routes import (
     live,
     queue,
     recording_sets,
+    removal,
     studies,
     study_answers,
     study_check,
@@ -104,6 +105,7 @@ _ROOMS = (
     study_rounds,
     effects,
     challenges,
+    removal,
     audit,
 )
 

@@ -14,6 +14,7 @@ from bench.store.tables.queue import QueueTable
 from bench.store.tables.start_keys import StartKeys
 from bench.store.trial_store import TrialStore
 from bench.store.upkeep.custody import Custody
+from bench.store.upkeep.removal import Removal
 from bench.store.upkeep.retention import Retention
 from bench.store.upkeep.space import SpaceNeed
 from bench.store.upkeep.upkeep import Upkeep
@@ -91,6 +92,11 @@ class Store(ExperimentStore, TrialStore, StudyStore):
     def retention(self) -> Retention:
         """Removing what nobody needs any more."""
         return Retention(self._database)
+
+    @property
+    def removal(self) -> Removal:
+        """Removing one experiment or one study."""
+        return Removal(self._database)
 
     def __enter__(self) -> Self:
         return self
