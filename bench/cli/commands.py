@@ -118,7 +118,9 @@ COMMANDS = (
         "Compare measured with predicted, name the missing effect, add it, watch the error fall.",
     ),
     CommandEntry(
-        "store", "bench.cli.records.store:app", "Look after the store: information, check, backup, vacuum, prune."
+        "store",
+        "bench.cli.records.store:app",
+        "Look after the store: information, check, backup, vacuum, prune, remove.",
     ),
     CommandEntry(
         "token",

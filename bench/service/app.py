@@ -18,6 +18,7 @@ from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
 from bench.service.auth.token_register import REFRESH_S
 from bench.service.http import conditional, openapi, page, problems, turns
+from bench.service.http.faults import Faults
 from bench.service.http.guard import Guard
 from bench.service.http.limits import Limits
 from bench.service.lab import Lab, LabHere
@@ -36,6 +37,7 @@ from bench.service.routes import (
     live,
     queue,
     recording_sets,
+    removal,
     studies,
     study_answers,
     study_check,
@@ -113,6 +115,7 @@ _ROOMS = (
     study_rounds,
     effects,
     challenges,
+    removal,
     audit,
 )
 
@@ -175,6 +178,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     openapi.install(app)
     app.add_middleware(Limits, access=access)
     app.add_middleware(AuditTrail, add=trail.add)
+    app.add_middleware(Faults)
     app.add_middleware(Guard, hosts=access.hosts)
     return app
 

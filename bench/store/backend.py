@@ -40,6 +40,13 @@ class Backend(Protocol):
     engine: Engine
     write_options: Mapping[str, str | bool]
 
+    @property
+    def is_read_only(self) -> bool:
+        """It may be read alone: nobody can write to it from here, and nothing is settled in it."""
+
+    def begin_read(self) -> None:
+        """First thing before a transaction that reads: make sure that the database is still there."""
+
     def begin_write(self, connection: Connection) -> None:
         """First thing in a transaction that writes: wait for other writers, and make sure that it can be kept."""
 

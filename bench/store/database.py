@@ -37,6 +37,7 @@ class Database:
     @contextmanager
     def reading(self) -> Iterator[Connection]:
         """A transaction that sees one state of the database throughout."""
+        self.backend.begin_read()
         with self.explained(), self.backend.engine.connect() as connection, connection.begin():
             yield connection
 

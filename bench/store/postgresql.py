@@ -60,6 +60,14 @@ class Postgresql:
             json_serializer=to_json,
         )
 
+    @property
+    def is_read_only(self) -> bool:
+        """The server says so where it is, at the first statement that writes."""
+        return False
+
+    def begin_read(self) -> None:
+        """The server knows whether its database is there."""
+
     def begin_write(self, connection: Connection) -> None:
         """Wait for other writers."""
         connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": WRITER_KEY})

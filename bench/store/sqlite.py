@@ -24,6 +24,7 @@ from bench.store.errors import (
     StoreLockedError,
     StoreReadOnlyError,
 )
+from bench.store.sqlite_file import SqliteFile
 from bench.store.tables.json_text import to_json
 from bench.store.upkeep import owner
 
@@ -46,25 +47,27 @@ class Sqlite:
     """
 
     def __init__(self, url: URL, busy_timeout_s: float) -> None:
-        self.path = file_of(url)
+        self.file = SqliteFile(file_of(url))
+        self.path = self.file.path
         self.where = str(self.path)
         self.write_options: Mapping[str, str | bool] = {WRITES: True}
         self._busy_timeout_s = busy_timeout_s
-        self._inode: int | None = None
-        self.engine = _engine(self.path, busy_timeout_s)
+        self.engine = _engine(self.file, busy_timeout_s)
+
+    @property
+    def is_read_only(self) -> bool:
+        """The file or its folder may not be written."""
+        return self.file.is_read_only
+
+    def begin_read(self) -> None:
+        """Refuse to read of a file that is not there any more: connections that are open would go on as if it were."""
+        self.file.require()
 
     def begin_write(self, connection: Connection) -> None:  # noqa: ARG002  BEGIN IMMEDIATE has waited already
-        """Refuse to write into a file that is not there any more: SQLite would, and every row would be lost."""
-        try:
-            found = self.path.stat().st_ino
-        except FileNotFoundError:
-            found = None
-        self._inode = self._inode or found
-        if found is None or found != self._inode:
-            raise StoreFileError(
-                f"store '{self.path}' was deleted, moved or replaced while it was in use; nothing more can be kept. "
-                "Put the file back if you can, and start this program again"
-            )
+        """Refuse to write into a file that is not there any more, or may not be written: every row would be lost."""
+        self.file.require()
+        if self.is_read_only:
+            raise _read_only(self.path)
 
     def explain(self, error: BaseException | None) -> StoreError | None:
         """By SQLite's name of the error."""
@@ -72,7 +75,7 @@ class Sqlite:
 
     def size_bytes(self) -> int:
         """Of the file and its log."""
-        files = (self.path, self.path.with_name(f"{self.path.name}-wal"))
+        files = (self.path, self.file.log)
         return sum(file.stat().st_size for file in files if file.exists())
 
     def free_bytes(self) -> int:
@@ -81,7 +84,7 @@ class Sqlite:
 
     def check(self) -> list[str]:
         """By SQLite's own check of the whole file, and of what belongs to what."""
-        with closing(sqlite3.connect(self.path)) as connection:
+        with closing(self.file.connect(self._busy_timeout_s)) as connection:
             found = [str(row[0]) for row in connection.execute("PRAGMA integrity_check") if row[0] != "ok"]
             broken = connection.execute("PRAGMA foreign_key_check").fetchall()
         return found + [f"{table}, row {row}: its {parent} is gone" for table, row, parent, _ in broken]
@@ -127,23 +130,25 @@ def file_of(url: URL) -> Path:
     return path
 
 
-def _engine(path: Path, busy_timeout_s: float) -> Engine:
-    fresh = not path.exists()
+def _engine(file: SqliteFile, busy_timeout_s: float) -> Engine:
+    fresh = not file.path.exists()
     engine = create_engine(
-        URL.create("sqlite", database=str(path)),
-        connect_args={"timeout": busy_timeout_s},  # set as the connection opens: before any statement can meet a lock
+        URL.create("sqlite", database=str(file.path)),
+        creator=lambda: file.connect(busy_timeout_s),
         max_overflow=-1,
         json_serializer=to_json,
     )
 
     def prepare(connection: sqlite3.Connection, record: ConnectionPoolEntry | Pool) -> None:  # noqa: ARG001
         connection.isolation_level = None  # transactions are begun by _begin, not by Python's module
+        connection.execute("PRAGMA foreign_keys = ON")
+        if file.is_read_only:
+            return
         connection.execute(f"PRAGMA page_size = {PAGE_BYTES}")
         _use_wal(connection, busy_timeout_s)
         if fresh:
-            path.chmod(OWNERS_MODE)
+            file.path.chmod(OWNERS_MODE)
         connection.execute("PRAGMA synchronous = NORMAL")
-        connection.execute("PRAGMA foreign_keys = ON")
         connection.execute(f"PRAGMA journal_size_limit = {WAL_LIMIT_BYTES}")
 
     event.listen(engine.pool, "connect", prepare)
@@ -187,9 +192,12 @@ def explain(error: BaseException | None, path: Path, busy_timeout_s: float) -> S
     if name.startswith("SQLITE_FULL"):
         return StoreFullError(f"{where}: the disk is full; free some space, then start again. Earlier blocks are kept")
     if name.startswith("SQLITE_READONLY"):
-        return StoreReadOnlyError(f"{where} is read-only; make the file and its folder writable, or name another file")
+        return _read_only(path)
     if name.startswith("SQLITE_CANTOPEN"):
-        return StoreReadOnlyError(f"{where} cannot be opened or created; make its folder readable and writable")
+        return StoreReadOnlyError(
+            f"{where} cannot be opened or created; make its folder readable and writable, or copy the file, with its "
+            "-wal where it has one, to a folder that is"
+        )
     if name.startswith("SQLITE_NOTADB"):
         return StoreFileError(f"{where} is not an SQLite database; name another file")
     if name.startswith("SQLITE_CORRUPT"):
@@ -199,3 +207,8 @@ def explain(error: BaseException | None, path: Path, busy_timeout_s: float) -> S
             f"{where}: the disk reports an error ({name}: {error}); check the disk and its free space"
         )
     return None
+
+
+def _read_only(path: Path) -> StoreReadOnlyError:
+    where = f"store '{path}'"
+    return StoreReadOnlyError(f"{where} is read-only; make the file and its folder writable, or name another file")

@@ -14,6 +14,7 @@ from bench.store.tables.queue import QueueTable
 from bench.store.tables.start_keys import StartKeys
 from bench.store.trial_store import TrialStore
 from bench.store.upkeep.custody import Custody
+from bench.store.upkeep.removal import Removal
 from bench.store.upkeep.retention import Retention
 from bench.store.upkeep.space import SpaceNeed
 from bench.store.upkeep.upkeep import Upkeep
@@ -48,6 +49,8 @@ class Store(ExperimentStore, TrialStore, StudyStore):
     def open(cls, url: str, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Self:
         """Open a database; create or upgrade its tables; mark as interrupted what a dead process left running.
 
+        A file that may not be written is read as it is.
+
         Args:
             url: "sqlite:///bench.sqlite", or "postgresql://user@host/database".
             busy_timeout_s: how long a write waits for another one before `StoreLockedError` [s].
@@ -60,7 +63,8 @@ class Store(ExperimentStore, TrialStore, StudyStore):
         store = cls(Database(url, busy_timeout_s))
         try:
             migrate(store._database)
-            store.custody.settle()
+            if not store._database.backend.is_read_only:
+                store.custody.settle()
         except BaseException:
             store.close()
             raise
@@ -88,6 +92,11 @@ class Store(ExperimentStore, TrialStore, StudyStore):
     def retention(self) -> Retention:
         """Removing what nobody needs any more."""
         return Retention(self._database)
+
+    @property
+    def removal(self) -> Removal:
+        """Removing one experiment or one study."""
+        return Removal(self._database)
 
     def __enter__(self) -> Self:
         return self

@@ -8,7 +8,6 @@ from bench.study.material import Material, load, model_of
 from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
 from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import widened
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 
@@ -47,10 +46,12 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
-    whole = widened(material.fit_of(parent), material.dataset.choice_for([*fit.effects, *changed]))
-    before, after = held_out(whole, rows), held_out(fit, rows)
+    old = material.fit_of(parent, beside=effects)
+    alike = bool((fit.training == old.training).all())
+    new = fit if alike else material.fit(effects, fit.shapes, beside=parent.effects)
+    before, after = held_out(old, rows), held_out(new, rows)
     gain = held_out_gain(before, after)
-    starts = held_out_both(whole, fit) if any(effect.breakaway for effect in changed) else None
+    starts = held_out_both(old, new) if any(effect.breakaway for effect in changed) else None
     only_there = all(effect.rows == "breakaway" for effect in changed)
     sentence = "" if only_there else _sentence(what, "held-out error", before.relative, after.relative, gain)
     if starts is not None:

@@ -1,6 +1,6 @@
 """A study's material: its definition, its trials as the lab wants them, and its models fitted."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from typing import Any
@@ -108,18 +108,28 @@ class Material:
             for trial, held in zip(self.trials, self.definition.held_out, strict=True)
         ]
 
-    def fit(self, effects: list[str], shapes: dict[str, tuple[float, ...]] | None = None) -> Fit:
+    def fit(
+        self,
+        effects: Sequence[str],
+        shapes: dict[str, tuple[float, ...]] | None = None,
+        beside: Sequence[str] = (),
+    ) -> Fit:
         """Fit a model to the training rows; errors of the lab become `StudyError`.
 
         Effects with memory are fitted to rows near reversals too, whatever the study counts: they live there.
+
+        Args:
+            effects: of the model.
+            shapes: that are kept; the others are found.
+            beside: effects of a model that it is held against: both are then fitted to the rows that either needs.
         """
         with lab_errors():
-            rows = self.dataset.choice_for([effect_named(name) for name in effects])
+            rows = self.dataset.choice_for([effect_named(name) for name in (*effects, *beside)])
             return fit_model(self.dataset, effects, self._training(rows), shapes)
 
-    def fit_of(self, model: ModelRow) -> Fit:
-        """The stored model again, at the very shapes that were found when it was made."""
-        return self.fit(model.effects, kept_of(model).shapes)
+    def fit_of(self, model: ModelRow, beside: Sequence[str] = ()) -> Fit:
+        """The stored model again, at the very shapes that were found when it was made; `beside` as in `fit`."""
+        return self.fit(model.effects, kept_of(model).shapes, beside)
 
 
 def facts_of(rig: Rig) -> Facts:

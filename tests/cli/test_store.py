@@ -71,3 +71,20 @@ def test_a_damaged_store_has_an_exit_code(path: Path) -> None:
     code, text = run(path, "check")
     assert code == 1
     assert "trial 2 has 120 rows" in text
+
+
+def test_remove_by_number_with_a_reason_that_is_kept(path: Path) -> None:
+    assert run(path, "remove", "experiment", "1")[0] == 2  # no reason
+    code, text = run(path, "remove", "experiment", "1", "--reason", " ")
+    assert (code, "the reason is empty" in text) == (2, True)
+    code, text = run(path, "remove", "experiment", "1", "--reason", "wrong arm")
+    assert (code, "study 1" in text) == (3, True), text
+    assert run(path, "remove", "study", "1", "--reason", "a draft")[0] == 0
+    code, text = run(path, "remove", "experiment", "1", "--reason", "wrong arm")
+    assert (code, "experiment 1 (" in text) == (0, True), text
+    with Store.open(f"sqlite:///{path}") as store:
+        assert [one.id for one in store.experiments()] == [2]
+        newest = store.access.audit.find()[0]
+    assert newest.path == "store remove experiment 1"
+    assert newest.detail.startswith("removed experiment 1 (")
+    assert "wrong arm, by user" in newest.detail

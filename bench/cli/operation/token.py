@@ -2,15 +2,13 @@
 
 from datetime import timedelta
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from bench.cli.audit_note import note
 from bench.cli.bench_session import session_of
 from bench.cli.output import Json, print_json, say, table
-
-if TYPE_CHECKING:
-    from bench.store import Store
 
 app = typer.Typer(no_args_is_help=True)
 Name = Annotated[str, typer.Argument(help="Of the person or the program that gets it; never given twice.")]
@@ -50,7 +48,7 @@ def new(
     expires_utc = None if expires_days is None else now() + timedelta(days=expires_days)
     with session_of(context).open_store() as store:
         store.access.tokens.add(name, role, digest_of(made), expires_utc)
-        _note(store, f"token new {name}", f"made token '{name}' with the role {role}")
+        note(store, f"token new {name}", f"made token '{name}' with the role {role}")
     if as_json:
         print_json({"name": name, "role": str(role), "expires_utc": expires_utc, "token": made})
         return
@@ -83,19 +81,5 @@ def revoke(context: typer.Context, name: Annotated[str, typer.Argument(help="Of 
     """Take a token back: it opens nothing any more, and its name stays in the audit log."""
     with session_of(context).open_store() as store:
         store.access.tokens.revoke(name)
-        _note(store, f"token revoke {name}", f"revoked token '{name}'")
+        note(store, f"token revoke {name}", f"revoked token '{name}'")
     say(f"token '{name}' is revoked")
-
-
-def _note(store: "Store", command: str, detail: str) -> None:
-    import getpass
-
-    from bench.store.tables.audit import AuditEntry
-    from bench.store.tables.experiments import now
-
-    try:
-        user = getpass.getuser()
-    except (OSError, KeyError):  # a user without a name
-        user = "?"
-    entry = AuditEntry(now(), "command-line", "admin", "", "CLI", command, 0, f"{detail}, by user {user}")
-    store.access.audit.add([entry])

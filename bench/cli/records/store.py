@@ -1,6 +1,7 @@
 """`friction-bench store`: what is in it, is it sound, a copy, space, and what is kept how long."""
 
 from dataclasses import asdict
+from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,7 +18,7 @@ app = typer.Typer(no_args_is_help=True)
 
 @app.callback()
 def _store() -> None:
-    """Look after the store: information, check, backup, vacuum, prune."""
+    """Look after the store: information, check, backup, vacuum, prune, remove."""
 
 
 @app.command()
@@ -66,6 +67,31 @@ def vacuum(context: typer.Context) -> None:
     with session_of(context).open_store() as store:
         saved = store.upkeep.vacuum()
     say(f"the store is {_mb(max(0, saved))} smaller")
+
+
+class Record(StrEnum):
+    """What can be removed by number."""
+
+    EXPERIMENT = "experiment"
+    STUDY = "study"
+
+
+@app.command()
+def remove(
+    context: typer.Context,
+    what: Annotated[Record, typer.Argument(help="An experiment goes with all its data, a study with its models.")],
+    number: Annotated[int, typer.Argument(min=1, help="Its number.")],
+    reason: Annotated[str, typer.Option(help="Why; kept in the audit log, with who and when.")],
+) -> None:
+    """Remove one record for good. Refused while it runs, or while a study or a calibration uses it."""
+    from bench.cli.audit_note import note
+
+    if not reason.strip():
+        raise typer.BadParameter("the reason is empty; say why it is removed", param_hint="--reason")
+    with session_of(context).open_store() as store:
+        removed = store.removal.experiment(number) if what is Record.EXPERIMENT else store.removal.study(number)
+        note(store, f"store remove {what} {number}", f"removed {removed}: {reason}")
+    say(f"{removed} is removed; a file shrinks by: friction-bench store vacuum")
 
 
 @app.command()

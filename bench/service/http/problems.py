@@ -174,11 +174,6 @@ def install(app: FastAPI) -> None:
     async def invalid_value(_request: Request, error: ValidationError) -> JSONResponse:
         return _invalid(field_problems(error))
 
-    @app.exception_handler(Exception)
-    async def unforeseen(_request: Request, error: Exception) -> JSONResponse:
-        detail = "this is a fault of the software; its log shows where. Nothing was changed on purpose"
-        return problem_response(500, detail, kind=type(error).__name__)
-
     @app.exception_handler(HTTPException)
     async def http(_request: Request, error: HTTPException) -> JSONResponse:
         if error.status_code == 400:  # FastAPI's word for a body that is no text

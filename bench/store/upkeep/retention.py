@@ -65,7 +65,7 @@ class Retention:
         """What the policy does not keep, oldest first. Nothing is removed."""
         moment = at_utc or now()
         with self._database.reading() as connection:
-            used = _uses(connection)
+            used = uses(connection)
             query = select(EXPERIMENT).where(
                 EXPERIMENT.c.finished_utc.is_not(None), EXPERIMENT.c.outcome.not_in(("running", *HIDDEN))
             )
@@ -85,8 +85,8 @@ class Retention:
             remove(self._database, experiment_id)
 
 
-def _uses(connection: Connection) -> dict[int, list[str]]:
-    """Experiment -> who uses it."""
+def uses(connection: Connection) -> dict[int, list[str]]:
+    """Experiment -> who uses it, in words: the studies and calibrations of the store."""
     of_trial = {row.id: row.experiment_id for row in connection.execute(select(TRIAL.c.id, TRIAL.c.experiment_id))}
     users: dict[int, list[str]] = {}
 
@@ -111,12 +111,17 @@ def _size(connection: Connection, experiment_id: int) -> tuple[int, int]:
 BLOCKS_AT_ONCE = 64
 
 
+def mark(connection: Connection, experiment_id: int) -> None:
+    """From now on nobody sees it. Where the process ends meanwhile, the next to open the store goes on."""
+    ends = update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(outcome=REMOVING, owner=None)
+    connection.execute(ends)
+    connection.execute(update(TRIAL).where(TRIAL.c.experiment_id == experiment_id).values(outcome=REMOVING))
+
+
 def remove(database: Database, experiment_id: int) -> None:
     """Remove an experiment, its trials and their samples. Nothing happens where it is gone."""
     with database.writing() as connection:
-        mark = update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(outcome=REMOVING, owner=None)
-        connection.execute(mark)
-        connection.execute(update(TRIAL).where(TRIAL.c.experiment_id == experiment_id).values(outcome=REMOVING))
+        mark(connection, experiment_id)
     with database.reading() as connection:
         trials = connection.execute(select(TRIAL.c.id).where(TRIAL.c.experiment_id == experiment_id)).scalars().all()
     for trial_id in trials:
