@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import asdict
-from typing import Any, Literal
+from typing import Literal
 
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -18,6 +18,7 @@ from bench.runs.bench_control import BenchControl
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
 from bench.service.http.downloads import attachment
+from bench.service.http.openapi import Document
 from bench.service.http.problems import problems
 from bench.service.live.status import PromptNow
 from bench.service.routes.leases import LeaseOf, require_lease
@@ -26,6 +27,7 @@ from bench.store.errors import NotFoundError
 
 router = APIRouter(prefix="/commission", tags=["commission"], dependencies=[Depends(allow_read)])
 BENCH_FILE, EVIDENCE_FILE = "bench.toml", "bench.evidence.json"
+FILE = "application/octet-stream"  # to be kept, not shown
 QUESTION = {
     "number": 1, "key": ARM_LENGTH.key, "sentence": ARM_LENGTH.sentence, "wants_value": True, "optional": False,
     "unit": ARM_LENGTH.unit, "least": ARM_LENGTH.least, "most": ARM_LENGTH.most,
@@ -34,7 +36,6 @@ FINDING = {
     "name": "resistance_ohm", "value": 0.61, "unit": "ohm", "low": 0.58, "high": 0.64,
     "how": "pushes of the unloaded joint", "experiment_id": 7,
 }  # fmt: skip
-FINDINGS = {"type": "array", "items": {"$ref": "#/components/schemas/Finding"}}
 
 
 class StepNow(BaseModel):
@@ -147,8 +148,8 @@ def answer(guide: GuideOf, runner: RunnerOf, request: Request, body: Answer) -> 
     return _represent(guide, runner)
 
 
-def _file(name: str, media_type: str, said: dict[str, Any]) -> dict[int | str, dict[str, Any]]:
-    content = {media_type: said}
+def _file(name: str) -> dict[int | str, Document]:
+    content = {FILE: {"schema": {"type": "string", "format": "binary"}}}
     return {200: {"description": "the file", "content": content, "headers": attachment(name)}, **problems(404)}
 
 
@@ -156,18 +157,18 @@ def _file(name: str, media_type: str, said: dict[str, Any]) -> dict[int | str, d
     "/bench.toml",
     summary="The bench.toml that was found",
     response_class=Response,
-    responses=_file(BENCH_FILE, "application/toml", {"schema": {"type": "string", "format": "binary"}}),
+    responses=_file(BENCH_FILE),
 )
 def bench_file(guide: GuideOf) -> Response:
     """Of the last commissioning that this service saw through; 404 before its end, or where it was refused."""
-    return _download(bench_text(_ended(guide).bench, EVIDENCE_FILE), BENCH_FILE, "application/toml")
+    return _download(bench_text(_ended(guide).bench, EVIDENCE_FILE), BENCH_FILE)
 
 
 @router.get(
     "/evidence.json",
     summary="How each value was found",
     response_class=Response,
-    responses=_file(EVIDENCE_FILE, "application/json", {"schema": FINDINGS, "example": [FINDING]}),
+    responses=_file(EVIDENCE_FILE),
 )
 def evidence_file(guide: GuideOf) -> Response:
     """Each value with its 95 % interval, from what it was told, and in which experiment; also of one that was refused.
@@ -176,7 +177,7 @@ def evidence_file(guide: GuideOf) -> Response:
     """
     if guide.course is None:
         raise NotFoundError("nothing was commissioned since this service started; POST /commission begins it")
-    return _download(evidence_text(guide.course.evidence), EVIDENCE_FILE, "application/json")
+    return _download(evidence_text(guide.course.evidence), EVIDENCE_FILE)
 
 
 def _ended(guide: Guide) -> Commissioned:
@@ -185,8 +186,8 @@ def _ended(guide: Guide) -> Commissioned:
     return guide.course.ended
 
 
-def _download(text: str, name: str, media_type: str) -> Response:
-    return Response(text, media_type=media_type, headers={"Content-Disposition": f'attachment; filename="{name}"'})
+def _download(text: str, name: str) -> Response:
+    return Response(text, media_type=FILE, headers={"Content-Disposition": f'attachment; filename="{name}"'})
 
 
 def _represent(guide: Guide, runner: BenchControl) -> Commission:
