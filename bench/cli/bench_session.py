@@ -31,7 +31,10 @@ class BenchSession:
         """The configuration, with the store that the options choose."""
         from bench.config.configuration import default_configuration, read_configuration
 
-        found = default_configuration() if self.config is None else read_configuration(self.config)
+        return self.with_store(default_configuration() if self.config is None else read_configuration(self.config))
+
+    def with_store(self, found: "BenchConfiguration") -> "BenchConfiguration":
+        """A configuration with the store that the options choose."""
         url = self._store_url(found.store.url)
         return found.model_copy(update={"store": found.store.model_copy(update={"url": url})})
 

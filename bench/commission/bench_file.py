@@ -27,18 +27,26 @@ def refuse_taken(path: Path) -> None:
         raise CommissionError(f"{path.parent}: is no folder; make it, or name another with --out")
 
 
+def bench_text(configuration: BenchConfiguration, evidence_name: str) -> str:
+    """Text of bench.toml; its first line names the file of the evidence."""
+    values = configuration.model_dump(mode="json", exclude_none=True, exclude_defaults=True, exclude=LEFT_OUT)
+    values.setdefault("drive", {})["kind"] = configuration.drive.kind
+    return HEADER.format(evidence=evidence_name) + tomli_w.dumps(values)
+
+
+def evidence_text(evidence: Evidence) -> str:
+    """Text of the file of the evidence, JSON."""
+    return json.dumps([one.model_dump() for one in evidence], indent=2) + "\n"
+
+
 def write_bench(path: Path, configuration: BenchConfiguration, evidence: Evidence) -> None:
     """Write both files.
 
     Raises:
         CommissionError: a file cannot be written.
     """
-    values = configuration.model_dump(mode="json", exclude_none=True, exclude_defaults=True, exclude=LEFT_OUT)
-    values.setdefault("drive", {})["kind"] = configuration.drive.kind
-    head = HEADER.format(evidence=evidence_path(path).name)
-    found = [one.model_dump() for one in evidence]
     try:
-        path.write_text(head + tomli_w.dumps(values), encoding="utf-8")
-        evidence_path(path).write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+        path.write_text(bench_text(configuration, evidence_path(path).name), encoding="utf-8")
+        evidence_path(path).write_text(evidence_text(evidence), encoding="utf-8")
     except OSError as error:
         raise CommissionError(f"{path}: cannot be written: {error.strerror}") from error

@@ -20,6 +20,8 @@ from drivers.contract import Description, Mode, Sample
 WATCHDOG_S = 0.3
 SLOWEST_PERIOD_S = 0.02
 SPARE_RATE = {0.005: 2.0, 0.01: 1.3}  # that the line has to carry more cycles than the period asks for
+UNKNOWN_COUNTS = 1.0  # per turn of the joint: a position is a number of counts then
+FOUND_OUT = ("motor_sign", "encoder_sign", "zero_rad")
 MARGIN_RAD = 0.05
 GUESSED_GROWTH = 2.0  # of the inertia by the load, before torque per current is known
 
@@ -64,10 +66,9 @@ class BenchTable:
         more = {"units_from_configuration": True} if "units_from_configuration" in self._fields() else {}
         return self._parsed(
             {
-                "rig": {"name": self._name, "gear": {"ratio": 1.0}, "sensor": {"counts_per_turn": 1.0}},
+                "rig": {"name": self._name, "gear": {"ratio": 1.0}, "sensor": {"counts_per_turn": UNKNOWN_COUNTS}},
                 "drive": {**self._drive, **more},
                 "control": {"period_s": SLOWEST_PERIOD_S},
-                "limits": {"position_min_rad": -1e15, "position_max_rad": 1e15, "speed_rad_s": 1e15},
             }
         )
 
@@ -203,12 +204,16 @@ class BenchTable:
         )
 
     def _adapted(self, drive: DriveTable) -> DriveTable:
-        """The section with a watchdog that waits long enough, and without a speed that is filtered in the drive."""
+        """The section as commissioning begins with it.
+
+        Its watchdog waits long enough, its speed is not filtered in the drive, and of signs and zero nothing is known:
+        those of an earlier commissioning would turn round what is found now.
+        """
         fields = drive_kind(str(drive.get("kind", ""))).settings.model_fields
         more: DriveTable = {"watchdog_s": WATCHDOG_S} if "watchdog_s" in fields else {}
         if "velocity" in fields:
             more["velocity"] = "none"
-        return {**more, **drive}
+        return {**more, **{name: value for name, value in drive.items() if name not in FOUND_OUT}}
 
     def _fields(self) -> frozenset[str]:
         return frozenset(drive_kind(str(self._drive["kind"])).settings.model_fields)

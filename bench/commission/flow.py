@@ -1,5 +1,6 @@
 """The steps of commissioning, in their order; each is refused where the one before has left doubt."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import isnan, nan, pi, radians
 
@@ -13,8 +14,8 @@ from bench.commission.questions import FIRST_LOAD, HAND_ANGLE, CommissionError, 
 from bench.commission.scale import Scale, scale_of
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import unit_of
-from bench.doctor.connection import Connection, connect
 from bench.json_types import Value, Values, number, numbers, objects
+from bench.runs.connection import Connection
 from compensator.line_fit import Interval
 from drivers.contract import Mode
 
@@ -51,10 +52,19 @@ class Commission:
         person: who stands at the bench.
         motions: what moves the joint.
         evidence: where findings are kept, also those of a commissioning that is refused.
+        on_step: told the key of each step (`steps.STEPS`) as it begins.
     """
 
-    def __init__(self, table: BenchTable, person: Person, motions: Motions, evidence: Evidence) -> None:
+    def __init__(
+        self,
+        table: BenchTable,
+        person: Person,
+        motions: Motions,
+        evidence: Evidence,
+        on_step: Callable[[str], None] = lambda _key: None,
+    ) -> None:
         self._table, self._person, self._motions, self._evidence = table, person, motions, evidence
+        self._on_step = on_step
 
     def run(self) -> Commissioned:
         """All steps.
@@ -63,20 +73,28 @@ class Commission:
             CommissionError: a step left doubt; the joint is without power.
             BenchError, DriveError: a motion is refused, or the drive does not answer.
         """
+        self._on_step("look")
         found = self._look()
+        self._on_step("know")
         known = ask_all(self._person, found.description.measured, Mode.CURRENT in found.description.modes)
         self._table.know(known, found.description, found.sample.supply_v)
+        self._on_step("scale")
         self._table.scale(self._find_scale(known, found))
+        self._on_step("push")
         self._identify()
         self._table.tune(self._evidence)
+        self._on_step("signs")
         self._try_signs(BARE)
+        self._on_step("weigh")
         self._weigh(known)
+        self._on_step("signs-again")
         self._try_signs(BARE)
+        self._on_step("first-load")
         first_kg, found_kg = self._first_load()
         return Commissioned(self._table.bench(), known, first_kg, found_kg)
 
     def _look(self) -> Connection:
-        found = connect(self._table.looking())
+        found = self._motions.look(self._table.looking())
         described = found.description
         identity = " ".join(filter(None, (described.vendor, described.product, described.firmware, described.serial)))
         self._evidence.add("drive", identity or described.device, "", "what the drive says of itself")
@@ -86,9 +104,9 @@ class Commission:
     def _find_scale(self, known: Known, found: Connection) -> Scale:
         """Zero, sign and size of the counts, with the power off."""
         self._do("down", "Take every load off, and let the arm hang straight down. Nothing is powered yet.")
-        down = self._table.counts(connect(self._table.looking()).sample)
+        down = self._counts()
         angle_deg = need(self._person, HAND_ANGLE)
-        turned = self._table.counts(connect(self._table.looking()).sample)
+        turned = self._counts()
         scale = scale_of(down, turned, radians(angle_deg), known, found.description.counts_per_turn)
         how = f"the arm turned by hand to {angle_deg:g} degrees"
         self._evidence.add_interval(
@@ -100,6 +118,9 @@ class Commission:
         self._evidence.add("drive.encoder_sign", scale.encoder_sign, "", how)
         self._evidence.add("drive.zero_rad", scale.zero_rad, "rad", "the arm hung straight down")
         return scale
+
+    def _counts(self) -> float:
+        return self._table.counts(self._motions.look(self._table.looking()).sample)
 
     def _identify(self) -> None:
         """Pushes without load."""

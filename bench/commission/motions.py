@@ -1,16 +1,18 @@
 """Experiments run for commissioning, one after the other, each to its end."""
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
-from bench.commission.questions import CommissionError, Person
+from bench.commission.questions import CommissionError
 from bench.config.configuration import BenchConfiguration
 from bench.errors import PromptError
 from bench.json_types import Values
-from bench.runs.runner import HostProcess, Runner
+from bench.runs.bench_control import BenchControl, Request
+from bench.runs.connection import Connection
 from bench.store import Experiment, Store
 
+NOTE = "friction-bench commission"
 _POLL_S = 0.05
 
 
@@ -18,20 +20,29 @@ class Motions:
     """What moves the joint.
 
     Args:
+        runner: of the bench; closed by whoever made it.
         store: where each motion is recorded.
-        person: is asked to hang loads.
-        guarded: entered with each runner: what stops it on signals.
-        host: what its runs take from this process.
+        hang: asks the person at the bench to hang a load; False where the person gives up. None: what the runner asks
+            is answered elsewhere.
+        guarded: entered round each motion: what stops the runner on signals.
+        given_up: why nothing more may move; "" where it may. Asked all the time.
     """
 
     def __init__(
         self,
+        runner: BenchControl,
         store: Store,
-        person: Person,
-        guarded: Callable[[Runner], AbstractContextManager[Any]],
-        host: HostProcess | None = None,
+        hang: Callable[[str], bool] | None = None,
+        guarded: Callable[[BenchControl], AbstractContextManager[Any]] = nullcontext,
+        given_up: Callable[[], str] = lambda: "",
     ) -> None:
-        self._store, self._person, self._guarded, self._host = store, person, guarded, host
+        self._runner, self._store, self._hang = runner, store, hang
+        self._guarded, self._given_up = guarded, given_up
+
+    def look(self, bench: BenchConfiguration) -> Connection:
+        """See `BenchControl.look`; nothing is powered."""
+        self._refuse_given_up()
+        return self._runner.look(bench)
 
     def run(self, bench: BenchConfiguration, kind: str, parameters: Values, hung: tuple[float, bool]) -> Experiment:
         """One experiment to its end.
@@ -46,27 +57,31 @@ class Motions:
             CommissionError: it did not complete, with the reason.
             BenchError, DriveError: it is refused, or the drive cannot be opened.
         """
-        runner = Runner(bench, self._store, self._host)
-        try:
-            with self._guarded(runner):
-                number = runner.start(kind, parameters, note="friction-bench commission", hung=hung)
-                while not runner.wait(_POLL_S):
-                    self._attend(runner)
-        finally:
-            runner.close()
+        self._refuse_given_up()
+        with self._guarded(self._runner):
+            number = self._runner.begin(Request(kind, parameters, note=NOTE, hung=hung, bench=bench))
+            while not self._runner.wait(_POLL_S):
+                # also of a stop that came while the run was being started
+                if reason := self._given_up():
+                    self._runner.stop(reason)
+                self._attend()
         found = self._store.experiment(number)
         if found.outcome != "completed":
             raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")
         return found
 
-    def _attend(self, runner: Runner) -> None:
-        prompt = runner.status().prompt
-        if prompt is None:
+    def _refuse_given_up(self) -> None:
+        if reason := self._given_up():
+            raise CommissionError(reason)
+
+    def _attend(self) -> None:
+        prompt = None if self._hang is None else self._runner.status().prompt
+        if prompt is None or self._hang is None:
             return
-        if not self._person.done("hang", prompt.sentence):
-            runner.stop("the person at the bench gave up")
+        if not self._hang(prompt.sentence):
+            self._runner.stop("the person at the bench gave up")
             return
         try:
-            runner.answer(prompt.number)
+            self._runner.answer(prompt.number)
         except PromptError:  # stopped meanwhile
             return

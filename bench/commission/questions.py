@@ -10,6 +10,10 @@ class CommissionError(BenchError, RuntimeError):
     """Raised when a step has left doubt, or a person has given up: what was found, what is wanted, what to do."""
 
 
+class AnswerError(CommissionError, ValueError):
+    """Raised when an answer is missing, or out of what is allowed."""
+
+
 @dataclass(frozen=True, slots=True)
 class Question:
     """A number that a person may know.
@@ -33,15 +37,15 @@ class Question:
         """The answer, if it can be.
 
         Raises:
-            CommissionError: it is missing, or out of what is allowed.
+            AnswerError: it is missing, or out of what is allowed.
         """
         if answer is None:
             if self.optional:
                 return None
-            raise CommissionError(f"{self.key}: an answer is needed: {self.sentence}")
+            raise AnswerError(f"{self.key}: an answer is needed: {self.sentence}")
         if not self.least <= answer <= self.most:
             allowed = f"{self.least:g} .. {self.most:g} {self.unit}".strip()
-            raise CommissionError(f"{self.key} is {answer:g} {self.unit}; allowed is {allowed}".replace("  ", " "))
+            raise AnswerError(f"{self.key} is {answer:g} {self.unit}; allowed is {allowed}".replace("  ", " "))
         return answer
 
 

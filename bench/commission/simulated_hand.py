@@ -3,6 +3,7 @@
 from math import pi
 
 from bench.commission.questions import Person, Question
+from bench.config.drives.simulated_device import DriveTable
 from bench.drives.far_joint import FarJoint
 
 
@@ -43,3 +44,9 @@ class SimulatedHand:
         self._joint.release_arm()
         self._joint.hang_load(0.0, balanced=False)
         return self._person.done(key, sentence)
+
+
+def hands_at(section: DriveTable, person: Person) -> Person:
+    """The person, or the hands of a simulated device before the person, as the drive's section says."""
+    side_channel = str(section.get("side_channel", ""))
+    return SimulatedHand(person, FarJoint(side_channel)) if side_channel else person

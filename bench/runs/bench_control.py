@@ -11,6 +11,7 @@ from bench.control.drive_faults import DriveState
 from bench.control.ending import OutcomeName
 from bench.control.prompt import Prompt
 from bench.json_types import Values
+from bench.runs.connection import Connection
 from bench.runs.live import LiveRows
 from drivers.contract import Description
 
@@ -21,7 +22,11 @@ PACES: tuple[Pace, ...] = ("real-time", "fast")
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """An experiment that a user asks for; see `BenchControl.start`."""
+    """An experiment that a user asks for; see `BenchControl.start`.
+
+    Attributes:
+        bench: configuration of this one experiment, where it is not the bench's own: commissioning is finding it out.
+    """
 
     kind: str
     parameters: Values
@@ -29,6 +34,7 @@ class Request:
     note: str = ""
     pace: Pace | None = None
     hung: tuple[float, bool] | None = None
+    bench: BenchConfiguration | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +134,19 @@ class BenchControl(ABC):
 
         Raises:
             PromptError: nothing is asked, or something else.
+        """
+
+    @abstractmethod
+    def look(self, bench: BenchConfiguration) -> Connection:
+        """Open a drive, run cycles with the power off, and close it.
+
+        Args:
+            bench: with the drive's section; the bench's own, or one that commissioning is finding out.
+
+        Raises:
+            BusyError: an experiment runs, or the runner is closed.
+            DriveError: it cannot be opened, or does not answer.
+            ConfigurationError: it does not fit the control period.
         """
 
     @abstractmethod

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from bench.errors import BenchError
+from bench.errors import BenchError, BusyError
 
 DEFAULT_S = 60.0
 SHORTEST_S, LONGEST_S = 5.0, 3600.0
@@ -65,11 +65,18 @@ class Lease:
     Args:
         run: the experiment that runs now, None where none does; a lease that a start took by itself lasts as long.
         now_s: a clock that never goes back [s].
+        engaged: why nothing may start whoever has it, "" where it may: a commissioning is under way between motions.
     """
 
-    def __init__(self, run: Callable[[], int | None], now_s: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        run: Callable[[], int | None],
+        now_s: Callable[[], float] = time.monotonic,
+        engaged: Callable[[], str] = lambda: "",
+    ) -> None:
         self._run = run
         self._now_s = now_s
+        self._engaged = engaged
         self._lock = threading.Lock()
         self._grant: _Grant | None = None
 
@@ -131,14 +138,21 @@ class Lease:
             self._require(token)
 
     @contextmanager
-    def starting(self, token: str) -> Iterator[None]:
+    def starting(self, token: str, engages: bool = False) -> Iterator[None]:
         """While an experiment starts, and as long as it then runs, the bench is this token's; a lease stays as it is.
+
+        Args:
+            token: name of the token.
+            engages: it is a commissioning that starts, and asks by itself whether it may.
 
         Raises:
             LeaseHeldError: somebody else has it.
+            BusyError: nothing may start now.
         """
         with self._lock:
             self._require(token)
+            if not engages and (reason := self._engaged()):
+                raise BusyError(reason)
             mine = self._current()
             if mine is None or mine.remaining_s is None:
                 self._grant = _Grant(token, token, None)

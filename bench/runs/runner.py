@@ -22,6 +22,7 @@ from bench.experiments.registry import ExperimentKind, find_kind, parse_paramete
 from bench.json_types import Values
 from bench.provenance import provenance
 from bench.runs.bench_control import PACES, BenchControl, Pace, Request, RunnerStatus
+from bench.runs.connection import Connection, connect
 from bench.runs.experiment_run import ExperimentRun, Prepared
 from bench.runs.live import LiveBuffer, LiveRows
 from bench.runs.session import session_of
@@ -84,7 +85,8 @@ class Runner(BenchControl):
 
     def status(self) -> RunnerStatus:
         """See `BenchControl`."""
-        run, limits = self._run, self.configuration.limits
+        run = self._run
+        limits = (self._configuration_of(run.request) if run is not None else self.configuration).limits
         description = self._descriptions[0] if self._descriptions else None
         if run is None:
             return RunnerStatus(None, "", "", "", 0, 0, 0.0, None, description, limits)
@@ -98,6 +100,12 @@ class Runner(BenchControl):
     def answer(self, prompt_number: int) -> None:
         """See `BenchControl`."""
         self._desk.answer(prompt_number)
+
+    def look(self, bench: BenchConfiguration) -> Connection:
+        """See `BenchControl`."""
+        with self._starting:
+            self._refuse_when_busy()
+            return connect(bench)
 
     def read_drives(self) -> tuple[DriveState, ...]:
         """See `BenchControl`."""
@@ -155,7 +163,7 @@ class Runner(BenchControl):
             raise BusyError(f"{name} is running; wait for its end, or stop it")
 
     def _launch(self, run: ExperimentRun, kind: ExperimentKind) -> int:
-        configuration = with_friction(self._store, self.configuration)
+        configuration = with_friction(self._store, self._configuration_of(run.request))
         try:
             prepared = self._prepare(configuration, run, kind)
         except (BenchError, DriveError) as error:
@@ -180,7 +188,7 @@ class Runner(BenchControl):
 
     def _prepare(self, configuration: BenchConfiguration, run: ExperimentRun, kind: ExperimentKind) -> Prepared:
         """Check everything that can be checked before motion, and open the drive."""
-        real_time = self._is_real_time(run.request.pace)
+        real_time = _is_real_time(configuration, run.request.pace)
         clock = WallClock() if real_time else VirtualClock()
         parameters = parse_parameters(kind, run.request.parameters)
         kind.refuse(parameters, configuration)
@@ -231,13 +239,8 @@ class Runner(BenchControl):
         seen = commissioned.watchdog_of(self._store, provenance(bench, found))
         return found if seen is None else replace(found, watchdog=seen)
 
-    def _is_real_time(self, pace: Pace | None) -> bool:
-        simulated = is_simulated(self.configuration)
-        if pace is not None and pace not in PACES:
-            raise ParameterError(f"pace is '{pace}'; allowed is {' or '.join(PACES)}")
-        if pace == "fast" and not simulated:
-            raise ParameterError("pace is 'fast'; a real drive runs in real time")
-        return pace == "real-time" or not simulated
+    def _configuration_of(self, request: Request) -> BenchConfiguration:
+        return request.bench or self.configuration
 
     def _begin(self, configuration: BenchConfiguration, request: Request, parameters: Values) -> int:
         drives, benches = self._descriptions, [configuration]
@@ -260,3 +263,12 @@ class Runner(BenchControl):
             request.operator,
             request.note,
         )
+
+
+def _is_real_time(configuration: BenchConfiguration, pace: Pace | None) -> bool:
+    simulated = is_simulated(configuration)
+    if pace is not None and pace not in PACES:
+        raise ParameterError(f"pace is '{pace}'; allowed is {' or '.join(PACES)}")
+    if pace == "fast" and not simulated:
+        raise ParameterError("pace is 'fast'; a real drive runs in real time")
+    return pace == "real-time" or not simulated

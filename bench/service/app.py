@@ -9,6 +9,7 @@ import anyio.to_thread
 from fastapi import APIRouter, FastAPI
 
 from bench import __version__
+from bench.commission.guide import ENDED, Guide
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
@@ -27,6 +28,7 @@ from bench.service.routes import (
     bench_state,
     calibrations,
     challenges,
+    commission,
     drive,
     effects,
     experiment_plan,
@@ -71,6 +73,13 @@ Friction curves, calibrated and used:
     POST /api/v1/calibrations       {"experiment_ids": [1, 2]}
     GET  /api/v1/calibrations/1/picture
 
+A joint of your own, by questions and small motions:
+
+    POST /api/v1/commission         {}
+    GET  /api/v1/commission         step, what moves and how far, question, evidence so far
+    POST /api/v1/commission/answer  {"question": 1, "value": 0.35}
+    GET  /api/v1/commission/bench.toml
+
 Many experiments, one after the other; what goes wrong holds the queue:
 
     POST /api/v1/queue              {"items": [{"kind": "steps"}, {"kind": "coast-down"}]}
@@ -91,6 +100,7 @@ A missing effect, found and added:
 _ROOMS = (
     bench_state,
     drive,
+    commission,
     leases,
     experiment_plan,
     experiments,
@@ -120,7 +130,8 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         lab: computes fits and diagnoses; closed when the application ends. In this process where left out.
     """
     trail = AuditWriter(store.access.audit.add)
-    lease = Lease(lambda: _running(runner))
+    guide = Guide(runner, store)
+    lease = Lease(lambda: _under_way(guide, runner), engaged=lambda: guide.engaged)
     conductor = Conductor(runner, store, lease.starting)
 
     @asynccontextmanager
@@ -132,7 +143,9 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         yield
         looking.cancel()
         conductor.end()
+        guide.stop(ENDED)
         runner.close()
+        guide.close()
         app.state.lab.close()
         conductor.close()
         trail.close()
@@ -151,7 +164,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
     app.state.lease = lease
     app.state.lab = lab or LabHere(store)
-    app.state.conductor = conductor
+    app.state.conductor, app.state.guide = conductor, guide
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     app.state.live_events = LiveEvents(app.state, store, runner, lease)
     compute.install(app)
@@ -170,8 +183,10 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     return app
 
 
-def _running(runner: BenchControl) -> int | None:
-    """The experiment that runs, 0 while it has no number yet; None where none does."""
+def _under_way(guide: Guide, runner: BenchControl) -> int | None:
+    """The experiment that runs, 0 while it has no number yet; below 0 a commissioning; None where nothing does."""
+    if guide.is_under_way and guide.course is not None:
+        return -guide.course.number
     found = runner.status()
     return (found.experiment_id or 0) if found.outcome == "running" else None
 

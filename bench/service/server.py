@@ -11,6 +11,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from bench import __version__
+from bench.commission.guide import ENDED
 from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
 from bench.runs import event_log
@@ -72,7 +73,8 @@ class BenchServer(uvicorn.Server):
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002  uvicorn's signature
         """Stop the joint, end the live streams, then the server; a second signal does not wait for connections."""
         self._app.state.conductor.end()
-        self._runner.stop("the service was ended")
+        self._app.state.guide.stop(ENDED)
+        self._runner.stop(ENDED)
         self.end_streams()
         self.force_exit = self.should_exit
         self.should_exit = True

@@ -4,6 +4,7 @@ from typing import Annotated, cast
 
 from fastapi import Depends, Request
 
+from bench.commission.guide import Guide
 from bench.runs.bench_control import BenchControl
 from bench.runs.queue import Conductor
 from bench.store import Store
@@ -21,6 +22,11 @@ async def _conductor(request: Request) -> Conductor:
     return cast(Conductor, request.app.state.conductor)
 
 
+async def _guide(request: Request) -> Guide:
+    return cast(Guide, request.app.state.guide)
+
+
 StoreOf = Annotated[Store, Depends(_store)]
 RunnerOf = Annotated[BenchControl, Depends(_runner)]
 ConductorOf = Annotated[Conductor, Depends(_conductor)]
+GuideOf = Annotated[Guide, Depends(_guide)]

@@ -1,9 +1,11 @@
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.browser.browser import ARGUMENTS, CHROMIUM, WITH_TOKEN
+from tests.commission.scripted import scripted_service
 from tests.service.running_service import RunningService, running_service
 
 OpenPage = Callable[..., Any]
@@ -12,6 +14,13 @@ OpenPage = Callable[..., Any]
 @pytest.fixture(scope="package")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
     with running_service(tmp_path_factory.mktemp("browser")) as running:
+        yield running
+
+
+@pytest.fixture
+def commissioning(tmp_path: Path) -> Iterator[RunningService]:
+    """A service on a joint that is not known; its commissioning asks, and moves nothing."""
+    with scripted_service(tmp_path) as running:
         yield running
 
 
@@ -38,7 +47,13 @@ def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
     complaints: list[str] = []
     pages = []
 
-    def opened(view: str = "#bench", token: bool = True, width: int = 1280, scheme: str = "light") -> Any:
+    def opened(
+        view: str = "#bench",
+        token: bool = True,
+        width: int = 1280,
+        scheme: str = "light",
+        service: RunningService = service,
+    ) -> Any:
         page = chromium.new_page()
         pages.append(page)
         page.set_viewport_size({"width": width, "height": 900})

@@ -2,10 +2,11 @@
 
 import pytest
 
+from tests.browser.commissioned import walked
 from tests.service.recorded_joint import recording_set_zip
 
 pytestmark = pytest.mark.browser
-VIEWS = ("#home", "#bench", "#queue", "#trials", "#study", "#learn", "#learn/backlash")
+VIEWS = ("#home", "#bench", "#commission", "#queue", "#trials", "#study", "#learn", "#learn/backlash")
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +69,15 @@ def test_no_view_breaks_a_rule(axe, open_page, study, width, scheme):
         if view == study:
             broken += steps_broken(axe, page)
         broken += [f"{view} {one}" for one in violations(axe, page)]
+    assert broken == []
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (1440, "dark"), (390, "light"), (390, "dark")])
+def test_no_step_of_commissioning_breaks_a_rule(axe, commissioning, open_page, width, scheme):
+    page = open_page("#commission", width=width, scheme=scheme, service=commissioning)
+    broken = [f"before {one}" for one in violations(axe, page)]
+    for key in walked(page):
+        broken += [f"{key} {one}" for one in violations(axe, page)]
     assert broken == []
 
 

@@ -6,9 +6,10 @@ are the time of the bench, the answers that were asked for, and the first load b
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from math import isnan, nan, pi, radians
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,6 +26,7 @@ from bench.commission.motions import Motions
 from bench.commission.questions import Question
 from bench.config.configuration import read_configuration
 from bench.errors import BenchError
+from bench.runs.runner import Runner
 from bench.store import Store
 from drivers.errors import DriveError
 from sim_backend.devices.axis import TICK_S, Axis
@@ -160,9 +162,9 @@ def commission(rig: DrawnRig) -> Ending:
         wire.device.axis.meet(fault_by_name("encoder-stuck", 0.0, duration_s=1e9))
     owner, evidence, began = Owner(rig, wire), Evidence(), datetime.now()
     refusal, first_kg, found_kg, start_s = "", nan, nan, TIME.now()
-    with plugged_in(port), store() as (trials, folder):
-        table = BenchTable("drawn", drive, TRAVEL_RAD)
-        motions = Motions(trials, owner, lambda _runner: nullcontext())
+    table = BenchTable("drawn", drive, TRAVEL_RAD)
+    with plugged_in(port), store() as (trials, folder), closing(Runner(table.looking(), trials)) as runner:
+        motions = Motions(runner, trials, partial(owner.done, "hang"))
         try:
             ended = Commission(table, owner, motions, evidence).run()
             first_kg, found_kg = rig.first_kg, ended.found_kg

@@ -27,6 +27,7 @@ TAGS = [
     "bench",
     "calibrations",
     "challenges",
+    "commission",
     "effects",
     "experiments",
     "lease",

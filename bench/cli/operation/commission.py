@@ -1,5 +1,7 @@
 """`friction-bench commission`: from a joint of which little is known to a bench.toml that compensates."""
 
+from contextlib import closing
+from functools import partial
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -44,14 +46,18 @@ def commission(
     from bench.commission.flow import Commission
     from bench.commission.motions import Motions
     from bench.control import scheduling
-    from bench.runs.runner import HostProcess
+    from bench.runs.runner import HostProcess, Runner
 
     refuse_taken(out)
     section = _section(drive, port, bus)
     person, evidence = _person(section, answers), Evidence()
-    with session_of(context).open_store() as store:
-        motions = Motions(store, person, stopping_on_signals, HostProcess(during_run=scheduling.undisturbed))
-        flow = Commission(BenchTable(name, section, radians(travel_deg)), person, motions, evidence)
+    bench_table = BenchTable(name, section, radians(travel_deg))
+    with (
+        session_of(context).open_store() as store,
+        closing(Runner(bench_table.looking(), store, HostProcess(during_run=scheduling.undisturbed))) as runner,
+    ):
+        motions = Motions(runner, store, partial(person.done, "hang"), stopping_on_signals)
+        flow = Commission(bench_table, person, motions, evidence)
         try:
             ended = flow.run()
         finally:
@@ -64,20 +70,12 @@ def commission(
 
 def _section(drive: Path | None, port: str, bus: str) -> "DriveTable":
     """The section of the drive: as given, or of the one drive that answers."""
-    from bench.config.drives.real import RealDriveSettings
-    from bench.config.drives.registry import drive_kind
-    from bench.config.toml_text import read_toml
+    from bench.commission.drive_section import read_section
 
     if sum(map(bool, (drive, port, bus))) != 1:
         raise typer.BadParameter("one of --drive FILE, --port PORT and --bus INTERFACE:CHANNEL is wanted")
     if drive is not None:
-        values = read_toml(drive)
-        section = values.get("drive", values)
-        if not isinstance(section, dict) or "kind" not in section:
-            raise ConfigurationError(f"{drive}: holds no section [drive] with a kind")
-        if not issubclass(drive_kind(str(section["kind"])).settings, RealDriveSettings):
-            raise ConfigurationError(f"{drive}: kind is '{section['kind']}'; commissioning is for drives on a wire")
-        return section
+        return read_section(drive)
     found = list(found_at(port, (), bus, 1_000_000))
     if len(found) != 1:
         seen = ", ".join(one.title for one in found) or "nothing"
@@ -89,13 +87,10 @@ def _section(drive: Path | None, port: str, bus: str) -> "DriveTable":
 
 
 def _person(section: "DriveTable", answers: Path | None) -> "Person":
-    from bench.commission.simulated_hand import SimulatedHand
+    from bench.commission.simulated_hand import hands_at
     from bench.config.toml_text import read_toml
-    from bench.drives.far_joint import FarJoint
 
-    person = _Terminal({} if answers is None else read_toml(answers))
-    side_channel = str(section.get("side_channel", ""))
-    return SimulatedHand(person, FarJoint(side_channel)) if side_channel else person
+    return hands_at(section, _Terminal({} if answers is None else read_toml(answers)))
 
 
 class _Terminal:

@@ -12,7 +12,7 @@ from bench.cli.output import Json, print_json, say, table, text
 from bench.config.quantities import unit_of
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.doctor.connection import Connection
+    from bench.runs.connection import Connection
     from bench.store import Experiment
     from drivers.contract import Description
 
@@ -37,7 +37,7 @@ def doctor(
     A real drive has to pass `doctor --move` before experiments are run on it, and again after a change of its section
     of bench.toml or of gear, sensor or motor of the rig. A new zero is no such change.
     """
-    from bench.doctor.connection import connect
+    from bench.runs.connection import connect
 
     session = session_of(context)
     found = connect(session.configuration())

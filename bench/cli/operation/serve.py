@@ -1,12 +1,15 @@
 """`friction-bench serve`: the REST interface and the page."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.bench_session import session_of
+from bench.cli.bench_session import BenchSession, session_of
 from bench.cli.output import say
+
+if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.config.configuration import BenchConfiguration
 
 
 def serve(
@@ -25,10 +28,24 @@ def serve(
     plain_http: Annotated[
         bool, typer.Option("--plain-http", help="No TLS beyond loopback: the network is the bench's own.")
     ] = False,
+    drive: Annotated[
+        Path | None,
+        typer.Option(help="TOML file with the section [drive] alone: its joint is to be commissioned on the page."),
+    ] = None,
 ) -> None:
     """Serve the page and the REST interface for the bench, until Ctrl-C. Stops the joint when it ends."""
     from bench.service.auth.tls import certificate
     from bench.service.server import Address, serve_bench
 
     tls = certificate(tls_certificate, tls_key)
-    serve_bench(session_of(context).configuration(), Address(host, port, tuple(allow_host or ()), plain_http), say, tls)
+    session = session_of(context)
+    configuration = session.configuration() if drive is None else _unknown_joint(drive, session)
+    serve_bench(configuration, Address(host, port, tuple(allow_host or ()), plain_http), say, tls)
+
+
+def _unknown_joint(drive: Path, session: BenchSession) -> "BenchConfiguration":
+    from bench.commission.drive_section import bench_of, read_section
+
+    if session.config is not None:
+        raise typer.BadParameter("one of --config FILE and serve --drive FILE is wanted")
+    return session.with_store(bench_of(read_section(drive)))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from bench.cli.exit_codes import ExitCode
 
 if TYPE_CHECKING:
-    from bench.runs.runner import Runner
+    from bench.runs.bench_control import BenchControl
 
 _CODES = {
     signal.SIGINT: ExitCode.INTERRUPTED,
@@ -32,7 +32,7 @@ class Received:
 
 
 @contextmanager
-def stopping_on_signals(runner: "Runner") -> Iterator[Received]:
+def stopping_on_signals(runner: "BenchControl") -> Iterator[Received]:
     """While it lasts a signal stops the joint and raises nothing, so a second Ctrl-C cannot cut off the power-off."""
     received = Received()
 

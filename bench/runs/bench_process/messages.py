@@ -14,10 +14,10 @@ from bench.config.configuration import BenchConfiguration
 from bench.runs.bench_control import RunnerStatus
 from bench.runs.live import LiveRows
 
-VERSION = b"friction-bench bench process, 3"
+VERSION = b"friction-bench bench process, 4"
 """First on the line from both ends, as bytes. A service outlives an update of its files: then these differ."""
 
-Method = Literal["begin", "answer", "pause", "resume", "read_drives", "clear_faults"]
+Method = Literal["begin", "answer", "pause", "resume", "look", "read_drives", "clear_faults"]
 """Of `BenchControl`, called in the bench process; the others a service answers from what it has seen."""
 
 
@@ -99,7 +99,7 @@ class Seen:
     rows: LiveRows
 
 
-SLOW: tuple[Method, ...] = ("begin", "read_drives", "clear_faults")
+SLOW: tuple[Method, ...] = ("begin", "look", "read_drives", "clear_faults")
 """Methods that wait for a drive or a disk; they take turns, and the others do not wait for them."""
 
 

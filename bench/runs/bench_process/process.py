@@ -54,6 +54,7 @@ class BenchProcess:
             "answer": runner.answer,
             "pause": runner.pause,
             "resume": runner.resume,
+            "look": runner.look,
             "read_drives": runner.read_drives,
             "clear_faults": runner.clear_faults,
         }

@@ -14,6 +14,7 @@ from bench.runs.bench_process.messages import Call, Hello, Method
 from bench.runs.bench_process.mirror import Mirror
 from bench.runs.bench_process.stop_line import StopLine
 from bench.runs.bench_process.supervisor import Supervisor
+from bench.runs.connection import Connection
 from bench.runs.live import LiveRows
 from bench.store import Store
 from bench.store.errors import StoreError
@@ -56,6 +57,11 @@ class RemoteRunner(BenchControl):
     def answer(self, prompt_number: int) -> None:
         """See `BenchControl`."""
         self._call("answer", prompt_number)
+
+    def look(self, bench: BenchConfiguration) -> Connection:
+        """See `BenchControl`."""
+        found: Connection = self._call("look", bench)
+        return found
 
     def read_drives(self) -> tuple[DriveState, ...]:
         """See `BenchControl`."""

@@ -1,6 +1,7 @@
 // The page: which view is shown, and what is there in every view (status, STOP, what the bench asks for, token, units).
 
 import { benchView } from "../bench/bench.js";
+import { commissionView } from "../commission/commission.js";
 import { homeView } from "../home/home.js";
 import { learnView } from "../learn/learn.js";
 import { queueView } from "../queue/view.js";
@@ -21,6 +22,7 @@ const VIEWS = {
   "": { open: homeView },
   home: { open: homeView },
   bench: { open: benchView, tab: "Bench" },
+  commission: { open: commissionView },
   queue: { open: queueView, tab: "Queue" },
   trials: { open: trialsView, tab: "Trials" },
   study: { open: studiesView, tab: "Study" },

@@ -37,7 +37,7 @@ export function rigOf(bench) {
 }
 
 // the newest row; before any came, the last reading
-function rowOf(live, { status, running, fresh }) {
+export function rowOf(live, { status, running, fresh }) {
   const last = (name) => live.rows.column(name)?.at(-1);
   const first = (...values) => values.find((value) => Number.isFinite(value));
   const reading = status?.reading ?? {};
