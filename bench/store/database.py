@@ -8,7 +8,7 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import StatementError
 
 from bench.store.backend import Claim, backend_of
-from bench.store.errors import StoreLockedError, StoreValueError
+from bench.store.errors import StoreFileError, StoreLockedError, StoreValueError
 from bench.store.tables.json_text import NoJsonError
 
 
@@ -78,6 +78,9 @@ class Database:
             NoJsonError,
         ) as error:  # a number or text that the database cannot hold
             raise StoreValueError(f"store '{self.where}': {error}") from error
+        except UnicodeDecodeError as error:  # what the database keeps, or says of itself, is no text any more
+            damaged = f"store '{self.where}' is damaged ({error}); restore a copy, or save what can be read of it"
+            raise StoreFileError(damaged) from error
         except StatementError as error:
             if isinstance(error.orig, (TypeError, ValueError)):
                 raise StoreValueError(f"store '{self.where}': {error.orig}") from error

@@ -232,6 +232,19 @@ AUDIT = Table(
     Index(None, "token"),
 )
 
+# see tables/chain.py
+CHAIN = Table(
+    "chain",
+    METADATA,
+    Column("id", Integer, primary_key=True, autoincrement=False),  # without gaps
+    Column("at_utc", UtcDateTime, nullable=False),
+    Column("subject", PlainText, nullable=False),
+    Column("row_id", Integer, nullable=False),
+    Column("state", PlainText, nullable=False),
+    Column("digest", PlainText, nullable=False),
+    Column("link", PlainText, nullable=False),
+)
+
 # answers to starts that carried an Idempotency-Key
 START_KEY = Table(
     "start_key",

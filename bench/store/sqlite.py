@@ -84,9 +84,12 @@ class Sqlite:
 
     def check(self) -> list[str]:
         """By SQLite's own check of the whole file, and of what belongs to what."""
-        with closing(self.file.connect(self._busy_timeout_s)) as connection:
-            found = [str(row[0]) for row in connection.execute("PRAGMA integrity_check") if row[0] != "ok"]
-            broken = connection.execute("PRAGMA foreign_key_check").fetchall()
+        try:
+            with closing(self.file.connect(self._busy_timeout_s)) as connection:
+                found = [str(row[0]) for row in connection.execute("PRAGMA integrity_check") if row[0] != "ok"]
+                broken = connection.execute("PRAGMA foreign_key_check").fetchall()
+        except (sqlite3.DatabaseError, UnicodeDecodeError) as error:
+            return [f"the file is damaged: {error}"]
         return found + [f"{table}, row {row}: its {parent} is gone" for table, row, parent, _ in broken]
 
     def vacuum(self) -> None:

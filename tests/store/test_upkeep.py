@@ -10,6 +10,7 @@ from sqlalchemy import text, update
 from bench.store import Store
 from bench.store.errors import StoreFileError, StoreFullError, StoreStateError
 from bench.store.schema import EXPERIMENT
+from bench.store.tables import chain
 from bench.store.tables.samples import damaged_blocks
 from bench.store.upkeep.retention import Policy
 from bench.store.upkeep.space import SpaceNeed
@@ -25,6 +26,7 @@ def finished(store: Store, days_ago: float, outcome: str = "completed", source: 
     end = datetime.now(UTC) - timedelta(days=days_ago)
     with store._database.writing() as connection:
         connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(finished_utc=end))
+        chain.seal(connection, "experiment", [experiment_id])
     return experiment_id
 
 
@@ -45,7 +47,9 @@ def test_a_lost_block_is_found(store: Store) -> None:
     fill(store)
     with store._database.writing() as connection:
         connection.execute(text("DELETE FROM sample_block WHERE trial_id = 1 AND first_row = 40"))
-    assert store.upkeep.check() == ["trial 1 has 120 rows; its blocks hold 80, in 1920 bytes"]
+    lost, altered = store.upkeep.check()
+    assert lost == "trial 1 has 120 rows; its blocks hold 80, in 1920 bytes"
+    assert altered.startswith("trial 1 is not what was kept")
 
 
 def test_a_backup_is_a_store_of_one_moment(store: Store, tmp_path: Path) -> None:
@@ -165,5 +169,6 @@ def test_every_flipped_bit_of_a_block_is_found_and_its_trial_named(store: Store)
             assert (what, named, first) == ("samples", trial, first_row)
             connection.execute(change, {"data": data, **at})
         connection.execute(text("UPDATE sample_block SET crc32 = crc32 + 1 WHERE trial_id = 1 AND first_row = 0"))
-    [problem] = store.upkeep.check()
-    assert "trial 1: its samples of rows 0 .." in problem
+    damaged, altered = store.upkeep.check()
+    assert "trial 1: its samples of rows 0 .." in damaged
+    assert altered.startswith("trial 1 is not what was kept")

@@ -35,14 +35,23 @@ def info(context: typer.Context, as_json: Json = False) -> None:
     }
     facts = {"database": found.where, "schema": found.schema, **sizes, "experiments": found.experiments}
     facts |= {"trials": found.trials, "rows": found.rows, "studies": found.studies, "running": found.running}
+    facts |= {"chain entries": found.chain_entries, "chain head": found.chain_head}
     table("Store", ["what", "value"], [*facts.items(), ("oldest experiment", found.oldest_utc)])
 
 
 @app.command()
-def check(context: typer.Context) -> None:
-    """Read the whole store, and say what is wrong with it. Exit code 1 where anything is."""
+def check(
+    context: typer.Context,
+    head: Annotated[
+        str | None, typer.Option(help="Chain head that `store info` told before: the chain has to hold it still.")
+    ] = None,
+) -> None:
+    """Read the whole store, and say what is wrong with it: flipped bits, and records altered or removed past the store.
+
+    Exit code 1 where anything is.
+    """
     with session_of(context).open_store() as store:
-        problems = store.upkeep.check()
+        problems = store.upkeep.check(head)
     for problem in problems:
         complain(problem)
     if problems:

@@ -9,6 +9,7 @@ from sqlalchemy.exc import IntegrityError
 from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.schema import ACCESS_TOKEN
+from bench.store.tables import chain
 from bench.store.tables.experiments import insert_row, now
 
 
@@ -50,7 +51,9 @@ class AccessTokens:
         row = {"name": name, "role": role, "digest": digest, "created_utc": now(), "expires_utc": expires_utc}
         try:
             with self._database.writing() as connection:
-                return insert_row(connection, ACCESS_TOKEN, row)
+                token_id = insert_row(connection, ACCESS_TOKEN, row)
+                chain.seal(connection, "access_token", [token_id])
+                return token_id
         except IntegrityError as error:
             raise StoreValueError(
                 f"there is or was a token '{name}'; choose another name, so that the audit log stays clear"
@@ -75,3 +78,4 @@ class AccessTokens:
             raise StoreStateError(f"token '{name}' is revoked already, since {found.revoked_utc:%Y-%m-%d %H:%M} UTC")
         with self._database.writing() as connection:
             connection.execute(update(ACCESS_TOKEN).where(ACCESS_TOKEN.c.id == found.id).values(revoked_utc=now()))
+            chain.seal(connection, "access_token", [found.id])

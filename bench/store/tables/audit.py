@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import delete, func, insert, select
+from sqlalchemy import delete, func, select
 
 from bench.store.database import Database
 from bench.store.schema import AUDIT
-from bench.store.tables.experiments import now
+from bench.store.tables import chain
+from bench.store.tables.experiments import insert_row, now
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,8 @@ class Audit:
     def add(self, entries: Sequence[AuditEntry]) -> None:
         """Keep entries, in one transaction."""
         with self._database.writing() as connection:
-            connection.execute(insert(AUDIT), [asdict(entry) for entry in entries])
+            for entry in entries:
+                chain.seal(connection, "audit", [insert_row(connection, AUDIT, asdict(entry))])
 
     def find(self, token: str | None = None, limit: int | None = None, offset: int = 0) -> list[AuditEntry]:
         """Newest first; all of them without a limit."""
@@ -65,4 +67,9 @@ class Audit:
     def remove_older(self, days: float) -> int:
         """Remove entries older than that. Returns how many."""
         with self._database.writing() as connection:
-            return connection.execute(delete(AUDIT).where(AUDIT.c.at_utc < now() - timedelta(days=days))).rowcount
+            older = AUDIT.c.at_utc < now() - timedelta(days=days)
+            last = connection.execute(select(func.max(AUDIT.c.id)).where(older)).scalar()
+            if last is None:
+                return 0
+            chain.seal_removal(connection, "audit", [last])
+            return connection.execute(delete(AUDIT).where(older)).rowcount

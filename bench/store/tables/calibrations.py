@@ -9,6 +9,7 @@ from bench.store.database import Database
 from bench.store.errors import NotFoundError
 from bench.store.records import CalibrationRow
 from bench.store.schema import CALIBRATION
+from bench.store.tables import chain
 from bench.store.tables.experiments import insert_row, now
 
 
@@ -21,7 +22,9 @@ class Calibrations:
     def add(self, **values: Any) -> int:
         """Add one, of the fields of `CalibrationRow` other than id and times. Returns its id."""
         with self._database.writing() as connection:
-            return insert_row(connection, CALIBRATION, values | {"created_utc": now()})
+            calibration_id = insert_row(connection, CALIBRATION, values | {"created_utc": now()})
+            chain.seal(connection, "calibration", [calibration_id])
+            return calibration_id
 
     def get(self, calibration_id: int) -> CalibrationRow:
         """One calibration, or `NotFoundError`."""
@@ -39,12 +42,14 @@ class Calibrations:
         with self._database.writing() as connection:
             _get(connection, calibration_id)
             connection.execute(update(CALIBRATION).where(CALIBRATION.c.id == calibration_id).values(chosen_utc=now()))
+            chain.seal(connection, "calibration", [calibration_id])
 
     def unchoose(self, calibration_ids: Sequence[int]) -> None:
         """Forget that these were named."""
         with self._database.writing() as connection:
             chosen = CALIBRATION.c.id.in_(list(calibration_ids))
             connection.execute(update(CALIBRATION).where(chosen).values(chosen_utc=None))
+            chain.seal(connection, "calibration", calibration_ids)
 
 
 def _get(connection: Connection, calibration_id: int) -> CalibrationRow:

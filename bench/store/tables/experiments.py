@@ -11,7 +11,7 @@ from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment, NewExperiment
 from bench.store.schema import EXPERIMENT, TRIAL
-from bench.store.tables import tags
+from bench.store.tables import chain, tags
 
 COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment) if field.name != "tags")
 
@@ -62,14 +62,20 @@ def finish(connection: Connection, experiment_id: int, outcome: str, reason: str
         raise StoreStateError(f"experiment {experiment_id} is finished already ({found}); it cannot finish twice")
     end = {"finished_utc": now(), "outcome": outcome, "reason": reason}
     running = (TRIAL.c.experiment_id == experiment_id) & (TRIAL.c.outcome == "running")
+    ended = connection.execute(select(TRIAL.c.id).where(running)).scalars().all()
     connection.execute(update(TRIAL).where(running).values(**end))
     connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end, results=results))
+    chain.seal(connection, "trial", ended)
+    chain.seal(connection, "experiment", [experiment_id])
 
 
 def show(connection: Connection, experiment_id: int) -> None:
     """Let an import be seen that is complete."""
     end = {"finished_utc": now(), "outcome": "completed", "owner": None}
     connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end))
+    of_it = select(TRIAL.c.id).where(TRIAL.c.experiment_id == experiment_id).order_by(TRIAL.c.id)
+    chain.seal(connection, "trial", connection.execute(of_it).scalars().all())
+    chain.seal(connection, "experiment", [experiment_id])
 
 
 def unfinished(connection: Connection) -> list[tuple[int, str | None, str]]:
@@ -127,11 +133,13 @@ def annotate(connection: Connection, experiment_id: int, note: str | None, new_t
         NotFoundError: no such experiment.
         StoreValueError: a tag that cannot be kept.
     """
-    get(connection, experiment_id)
+    outcome = get(connection, experiment_id).outcome
     if note is not None:
         connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(note=note))
     if new_tags is not None:
         tags.write(connection, experiment_id, new_tags)
+    if outcome != "running":
+        chain.seal(connection, "experiment", [experiment_id])
 
 
 def check_outcome(outcome: str) -> None:

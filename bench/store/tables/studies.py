@@ -8,13 +8,14 @@ from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.records import ModelRow, StudyRow
 from bench.store.schema import MODEL, STUDY
+from bench.store.tables import chain
 from bench.store.tables.experiments import insert_row, now
 
 
 def add(connection: Connection, name: str, definition: Values) -> int:
     """Insert a study. Returns its id."""
     values = {"name": name, "definition": definition, "created_utc": now()}
-    return insert_row(connection, STUDY, values)
+    return _sealed(connection, "study", insert_row(connection, STUDY, values))
 
 
 def get(connection: Connection, study_id: int) -> StudyRow:
@@ -37,6 +38,7 @@ def change(connection: Connection, study_id: int, definition: Values) -> None:
     """
     get(connection, study_id)
     connection.execute(update(STUDY).where(STUDY.c.id == study_id).values(definition=definition))
+    chain.seal(connection, "study", [study_id])
 
 
 def find(connection: Connection, limit: int | None, offset: int) -> list[StudyRow]:
@@ -63,7 +65,7 @@ def add_model(
         "result": result,
         "created_utc": now(),
     }
-    return insert_row(connection, MODEL, values)
+    return _sealed(connection, "model", insert_row(connection, MODEL, values))
 
 
 def get_model(connection: Connection, model_id: int) -> ModelRow:
@@ -86,6 +88,7 @@ def change_model(connection: Connection, model_id: int, result: Values) -> None:
     """
     get_model(connection, model_id)
     connection.execute(update(MODEL).where(MODEL.c.id == model_id).values(result=result))
+    chain.seal(connection, "model", [model_id])
 
 
 def models(connection: Connection, study_id: int) -> list[ModelRow]:
@@ -112,3 +115,9 @@ def remove_model(connection: Connection, model_id: int) -> None:
         names = ", ".join(str(child) for child in children)
         raise StoreStateError(f"model {model_id} cannot be removed: made from it are {names}; remove those first")
     connection.execute(delete(MODEL).where(MODEL.c.id == model_id))
+    chain.seal_removal(connection, "model", [model_id])
+
+
+def _sealed(connection: Connection, subject: str, row_id: int) -> int:
+    chain.seal(connection, subject, [row_id])
+    return row_id

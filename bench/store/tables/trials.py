@@ -11,6 +11,7 @@ from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
+from bench.store.tables import chain
 from bench.store.tables import conditions as condition_rows
 from bench.store.tables.conditions import Wanted
 from bench.store.tables.experiments import check_outcome, insert_row, now
@@ -66,6 +67,7 @@ def finish(connection: Connection, trial_id: int, outcome: str, reason: str, res
     running = (TRIAL.c.id == trial_id) & (TRIAL.c.outcome == "running")
     if connection.execute(update(TRIAL).where(running).values(**end)).rowcount != 1:
         raise StoreStateError(f"trial {trial_id} is finished already; it cannot finish twice")
+    chain.seal(connection, "trial", [trial_id])
 
 
 def add_events(connection: Connection, trial_id: int, events: Sequence[Event]) -> None:

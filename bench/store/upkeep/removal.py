@@ -6,6 +6,7 @@ from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.records import HIDDEN
 from bench.store.schema import CALIBRATION, EXPERIMENT, MODEL, STUDY, TRIAL
+from bench.store.tables import chain
 from bench.store.upkeep.retention import mark, remove, uses
 
 
@@ -45,6 +46,9 @@ class Removal:
         """
         with self._database.writing() as connection:
             what = _unused_study(connection, study_id)
+            models = connection.execute(select(MODEL.c.id).where(MODEL.c.study_id == study_id).order_by(MODEL.c.id))
+            chain.seal_removal(connection, "model", models.scalars().all())
+            chain.seal_removal(connection, "study", [study_id])
             connection.execute(delete(STUDY).where(STUDY.c.id == study_id))  # models with it
         return what
 

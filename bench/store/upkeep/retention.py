@@ -9,6 +9,7 @@ from sqlalchemy import Connection, delete, select, update
 from bench.store.database import Database
 from bench.store.records import HIDDEN, REMOVING
 from bench.store.schema import CALIBRATION, EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
+from bench.store.tables import chain
 from bench.store.tables.experiments import now
 from bench.store.tables.samples import SAMPLE_BYTES
 
@@ -113,6 +114,10 @@ BLOCKS_AT_ONCE = 64
 
 def mark(connection: Connection, experiment_id: int) -> None:
     """From now on nobody sees it. Where the process ends meanwhile, the next to open the store goes on."""
+    trials = select(TRIAL.c.id).where(TRIAL.c.experiment_id == experiment_id, TRIAL.c.outcome.not_in(HIDDEN))
+    chain.seal_removal(connection, "trial", connection.execute(trials.order_by(TRIAL.c.id)).scalars().all())
+    seen = select(EXPERIMENT.c.id).where(EXPERIMENT.c.id == experiment_id, EXPERIMENT.c.outcome.not_in(HIDDEN))
+    chain.seal_removal(connection, "experiment", connection.execute(seen).scalars().all())
     ends = update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(outcome=REMOVING, owner=None)
     connection.execute(ends)
     connection.execute(update(TRIAL).where(TRIAL.c.experiment_id == experiment_id).values(outcome=REMOVING))

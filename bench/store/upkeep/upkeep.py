@@ -5,13 +5,16 @@ from datetime import datetime
 from pathlib import Path
 
 from sqlalchemy import func, select
+from sqlalchemy.exc import SQLAlchemyError
 
 from bench.store.database import Database
-from bench.store.errors import StoreFullError, StoreStateError
+from bench.store.errors import StoreFileError, StoreFullError, StoreStateError
 from bench.store.migration import HEAD
 from bench.store.schema import EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
+from bench.store.tables.chain import head
 from bench.store.tables.experiments import unfinished
 from bench.store.tables.samples import SAMPLE_BYTES, damaged_blocks
+from bench.store.upkeep.chain_check import broken_chain
 from bench.store.upkeep.copying import copy_into, sqlite_copy
 
 
@@ -25,6 +28,8 @@ class StoreInfo:
         size_bytes: of the database, with its log.
         free_bytes: on its disk; None where that is another machine's.
         oldest_utc: when the first of its experiments began.
+        chain_entries: of the hash chain over its records.
+        chain_head: its newest link. Noted elsewhere, `check` tells by it whether the end of the chain was cut off.
     """
 
     where: str
@@ -37,6 +42,8 @@ class StoreInfo:
     studies: int
     running: int
     oldest_utc: datetime | None
+    chain_entries: int
+    chain_head: str
 
 
 class Upkeep:
@@ -53,15 +60,38 @@ class Upkeep:
             experiments, oldest = connection.execute(select(func.count(), func.min(EXPERIMENT.c.started_utc))).one()
             trials, rows = connection.execute(select(func.count(), func.coalesce(func.sum(TRIAL.c.rows), 0))).one()
             studies = connection.execute(count(STUDY)).scalar_one()
+            length, newest = head(connection)
         backend = self._database.backend
         size, free = backend.size_bytes(), backend.free_bytes()
         return StoreInfo(
-            self._database.where, HEAD, size, free, experiments, trials, int(rows), studies, running, oldest
+            self._database.where,
+            HEAD,
+            size,
+            free,
+            experiments,
+            trials,
+            int(rows),
+            studies,
+            running,
+            oldest,
+            length,
+            newest,
         )
 
-    def check(self) -> list[str]:
-        """Read all of it, and say what is wrong; nothing is an empty list."""
-        return [*self._database.backend.check(), *self._incomplete_trials(), *self._damaged_blocks()]
+    def check(self, chain_head: str | None = None) -> list[str]:
+        """Read all of it, and say what is wrong; nothing is an empty list.
+
+        Args:
+            chain_head: as `info` told it at another time, kept elsewhere: the chain has to hold it still.
+        """
+        looks = (self._incomplete_trials, self._damaged_blocks, lambda: self._broken_chain(chain_head))
+        problems = self._database.backend.check()
+        for look in looks:
+            try:
+                problems += look()
+            except (StoreFileError, ValueError, TypeError, SQLAlchemyError) as error:
+                problems.append(f"the store cannot be read to its end: {error}")
+        return problems
 
     def backup(self, target: str) -> None:
         """Copy the store while it is in use: what was committed when the copy began.
@@ -115,6 +145,10 @@ class Upkeep:
                 "restore them from a backup, the other trials are not touched by it"
                 for what, trial, first, rows in damaged_blocks(connection)
             ]
+
+    def _broken_chain(self, chain_head: str | None) -> list[str]:
+        with self._database.reading() as connection:
+            return broken_chain(connection, chain_head)
 
     def _incomplete_trials(self) -> list[str]:
         """Trials whose blocks do not make up their rows."""
