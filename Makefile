@@ -60,8 +60,9 @@ report: $(STAMP) ## has a change made the bench worse? beside bench-baseline.jso
 screenshots: $(STAMP) ## the walk of docs/tutorial/walk.md in Chromium, every view, light and dark: out/walk
 	$(BIN)/python -m tests.browser.screenshots out/walk
 
-pictures: $(STAMP) ## the pictures of README.md, taken in Chromium: docs/pictures
+pictures: $(STAMP) ## the pictures of README.md and of the guides, taken in Chromium: docs/pictures
 	$(BIN)/python -m tests.browser.pictures docs/pictures
+	$(BIN)/python -m tests.browser.commission_pictures docs/pictures
 
 benchmark: $(STAMP) ## rates of plant, store, service, drivers, lab and command line, beside other libraries
 	$(PIP) --editable '.[bench]'

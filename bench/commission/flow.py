@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import isnan, nan, pi, radians
+from math import degrees, isnan, nan, pi, radians
 
 from bench.commission.bench_table import BenchTable
 from bench.commission.evidence import Evidence
@@ -23,6 +23,7 @@ BARE = (0.0, False)
 REPEATS = 2  # of each weight at each angle: a joint that stopped at the edge of friction may not be found
 LEAST_STEPS = 2.5  # of the current sensor, that breakaway has to be, where no current can be demanded
 SMALL_RAD = (0.4, 0.8)  # where a weight is held first
+DOWN_RAD = 0.35  # from where the pushes begin: friction may hold the arm off straight down
 COAST_S = 30.0  # a joint with little friction swings; one whose motor is shorted creeps down
 RATE_SHARE = 1.0 / 6.0  # of the highest current, by which a push rises in a second
 UNSURE_SHARE = 0.5  # half of the inertia's interval, over the inertia: beyond, they tell nothing
@@ -129,6 +130,7 @@ class Commission:
             "Let the arm hang straight down again, free to turn, and stand clear: the motor pushes it by "
             "26 degrees at most, and it moves on by as much again. Keep a hand at the emergency stop.",
         )
+        self._refuse_raised()
         limit_a = self._table.known.motor_current_a
         asked: dict[str, Value] = {
             "effort": "current" if self._table.closes_current else "duty",
@@ -146,6 +148,15 @@ class Commission:
         self._check_current(ran.results)
         self._table.identify(ran.results)
         self._keep(ran.results, ran.id)
+
+    def _refuse_raised(self) -> None:
+        """The arm was held level a moment ago, and an arm with much friction stays where a hand has left it."""
+        at_rad = self._motions.look(self._table.bench()).sample.position_rad
+        if abs(at_rad) > DOWN_RAD:
+            raise CommissionError(
+                f"the arm stands at {degrees(at_rad):.0f} degrees, and the pushes begin within {degrees(DOWN_RAD):.0f} "
+                "degrees of straight down; bring it there by hand, let go of it, then start again"
+            )
 
     def _check_current(self, results: Values) -> None:
         if number(results["current_sign"]) < 0.0:

@@ -10,10 +10,10 @@ from bench.errors import PromptError
 from bench.json_types import Values
 from bench.runs.bench_control import BenchControl, Request
 from bench.runs.connection import Connection
+from bench.runs.to_its_end import to_its_end
 from bench.store import Experiment, Store
 
 NOTE = "friction-bench commission"
-_POLL_S = 0.05
 
 
 class Motions:
@@ -59,12 +59,8 @@ class Motions:
         """
         self._refuse_given_up()
         with self._guarded(self._runner):
-            number = self._runner.begin(Request(kind, parameters, note=NOTE, hung=hung, bench=bench))
-            while not self._runner.wait(_POLL_S):
-                # also of a stop that came while the run was being started
-                if reason := self._given_up():
-                    self._runner.stop(reason)
-                self._attend()
+            request = Request(kind, parameters, note=NOTE, hung=hung, bench=bench)
+            number = to_its_end(self._runner, request, self._given_up, self._attend)
         found = self._store.experiment(number)
         if found.outcome != "completed":
             raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")

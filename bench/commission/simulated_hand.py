@@ -41,8 +41,9 @@ class SimulatedHand:
         if key == "down":
             self._joint.hang_load(0.0, balanced=False)
             return True
-        self._joint.release_arm()
         self._joint.hang_load(0.0, balanced=False)
+        self._joint.hold_arm(0.0)  # a balanced arm, or one with much friction, does not fall by itself
+        self._joint.release_arm()
         return self._person.done(key, sentence)
 
 

@@ -11,7 +11,7 @@ from drivers.contract import Watchdog
 KIND = "commissioning"
 BEFORE_IT = frozenset({KIND, "identification"})  # kinds that move a drive which has not passed
 WATCHDOG_RESULT, WATCHDOG_SEEN = "watchdog", "watchdog_seen"  # results of a commissioning: how sure, and by what
-_IDENTITY = ("device", "vendor", "product", "firmware", "serial")
+IDENTITY = ("device", "vendor", "product", "firmware", "serial")
 _RIG = ("gear", "sensor", "motor")
 _REMEMBERED = 200  # newest commissionings that are looked through
 
@@ -28,7 +28,7 @@ def fingerprint(provenance: Provenance) -> str:
     drive, configuration = provenance["drive"], provenance["configuration"]
     rig = configuration["rig"]
     held = {
-        "identity": {name: drive.get(name) for name in _IDENTITY},
+        "identity": {name: drive.get(name) for name in IDENTITY},
         "drive": {name: value for name, value in configuration.get("drive", {}).items() if name != "zero_rad"},
         "rig": {name: rig.get(name) for name in _RIG},
     }

@@ -3,7 +3,7 @@
 import logging
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -38,6 +38,8 @@ class Prepared:
     Attributes:
         real_time: whether the wall clock paces it.
         proves_watchdog: the drive's watchdog is tried before its first trial.
+        doubt: what a person has to look at before the first; "" where there is nothing.
+        ask: asks the person; False where the experiment was stopped before the answer.
     """
 
     kind: ExperimentKind
@@ -50,6 +52,8 @@ class Prepared:
     session: Session
     real_time: bool
     proves_watchdog: bool = False
+    doubt: str = ""
+    ask: Callable[[str], bool] = lambda _sentence: True
 
 
 @dataclass(slots=True)
@@ -158,6 +162,8 @@ class ExperimentRun:
         self.end(outcome, reason)
 
     def _run_trials(self, prepared: Prepared, store: Store, live: LiveBuffer) -> tuple[OutcomeName, str]:
+        if prepared.doubt and not prepared.ask(prepared.doubt):
+            return "stopped", self.stop_request.reason
         for index, plan in enumerate(prepared.plans):
             self.trial_index = index
             self._wait_while_paused()

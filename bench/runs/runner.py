@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from bench.calibration import with_friction
@@ -11,6 +12,7 @@ from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.config.configuration import BenchConfiguration
 from bench.control import commissioned, drive_faults
 from bench.control.clock import VirtualClock, WallClock
+from bench.control.cycle import OFF
 from bench.control.drive_factory import has_hardware, is_simulated, seed_of
 from bench.control.drive_faults import DriveState
 from bench.control.ending import StopRequest
@@ -23,6 +25,7 @@ from bench.json_types import Values
 from bench.provenance import provenance
 from bench.runs.bench_control import PACES, BenchControl, Pace, Request, RunnerStatus
 from bench.runs.connection import Connection, connect
+from bench.runs.count_check import count_doubt
 from bench.runs.experiment_run import ExperimentRun, Prepared
 from bench.runs.live import LiveBuffer, LiveRows
 from bench.runs.session import session_of
@@ -200,9 +203,8 @@ class Runner(BenchControl):
         )
         self._store.require_space(space, len(plans))
         session = session_of(configuration, self._store)
-        station = make_station(
-            configuration, kind.pair, clock, lambda sentence: self._desk.ask(sentence, run.is_stopped)
-        )
+        ask = partial(self._desk.ask, given_up=run.is_stopped)
+        station = make_station(configuration, kind.pair, clock, ask)
         if run.request.hung is not None:
             station.assume(*run.request.hung)
         self._descriptions = ()
@@ -216,6 +218,7 @@ class Runner(BenchControl):
                 refuse_modes(kind.name, kind.modes(parameters), description)
             if kind.name not in commissioned.BEFORE_IT:
                 self._require_commissioned(station)
+            doubt = self._count_doubt(station)
         except BaseException:
             station.close()
             raise
@@ -224,13 +227,22 @@ class Runner(BenchControl):
         proves = kind.name in commissioned.BEFORE_IT and not is_simulated(
             configuration
         )  # virtual time knows no silence
-        return Prepared(kind, parameters, plans, duration_s, station, loop, space, session, real_time, proves)
+        return Prepared(
+            kind, parameters, plans, duration_s, station, loop, space, session, real_time, proves, doubt, ask
+        )
 
     def _require_commissioned(self, station: Station) -> None:
         """Refuse a real drive that has not passed the commissioning move."""
         for bench, drive in zip(station.benches, station.drives, strict=True):
             if not is_simulated(bench):
                 commissioned.require_commissioned(self._store, provenance(bench, drive.describe()))
+
+    def _count_doubt(self, station: Station) -> str:
+        """Of the joint, or of the slave; "" where its count is not in doubt."""
+        bench, drive = station.benches[0], station.drives[0]
+        if is_simulated(bench):
+            return ""
+        return count_doubt(self._store, bench, self._descriptions[0], lambda: drive.exchange(OFF).position_rad)
 
     def _as_proven(self, bench: BenchConfiguration, found: Description) -> Description:
         """What the drive says of itself, with what its commissioning has seen of its watchdog."""

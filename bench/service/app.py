@@ -11,6 +11,7 @@ from fastapi import APIRouter, FastAPI
 from bench import __version__
 from bench.commission.guide import ENDED, Guide
 from bench.runs.bench_control import BenchControl
+from bench.runs.calibrator import Calibrator
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
 from bench.service import compute
@@ -26,7 +27,6 @@ from bench.service.live.live_events import LiveEvents
 from bench.service.routes import (
     audit,
     bench_state,
-    calibrations,
     challenges,
     commission,
     drive,
@@ -44,6 +44,7 @@ from bench.service.routes import (
     study_rounds,
     trials,
 )
+from bench.service.routes.calibration import calibrations, run
 from bench.store import Store
 
 PREFIX = "/api/v1"
@@ -68,6 +69,7 @@ A run, watched and read:
 
 Friction curves, calibrated and used:
 
+    POST /api/v1/calibrations/run   {"accuracy_a": 0.005}; GET says how far it is; /pause, /resume
     POST /api/v1/experiments        {"kind": "speed-sweep"}
     POST /api/v1/experiments        {"kind": "load-sweep", "parameters": {"angles_rad": [0]}}
     POST /api/v1/calibrations       {"experiment_ids": [1, 2]}
@@ -108,6 +110,7 @@ _ROOMS = (
     live,
     trials,
     recording_sets,
+    run,
     calibrations,
     study_check,
     studies,
@@ -131,7 +134,8 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     """
     trail = AuditWriter(store.access.audit.add)
     guide = Guide(runner, store)
-    lease = Lease(lambda: _under_way(guide, runner), engaged=lambda: guide.engaged)
+    calibrator = Calibrator(runner, store)
+    lease = Lease(lambda: _under_way(guide, calibrator, runner), engaged=lambda: guide.engaged or calibrator.engaged)
     conductor = Conductor(runner, store, lease.starting)
 
     @asynccontextmanager
@@ -144,8 +148,10 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         looking.cancel()
         conductor.end()
         guide.stop(ENDED)
+        calibrator.stop(ENDED)
         runner.close()
         guide.close()
+        calibrator.close(ENDED)
         app.state.lab.close()
         conductor.close()
         trail.close()
@@ -164,7 +170,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
     app.state.lease = lease
     app.state.lab = lab or LabHere(store)
-    app.state.conductor, app.state.guide = conductor, guide
+    app.state.conductor, app.state.guide, app.state.calibrator = conductor, guide, calibrator
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     app.state.live_events = LiveEvents(app.state, store, runner, lease)
     compute.install(app)
@@ -183,10 +189,12 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     return app
 
 
-def _under_way(guide: Guide, runner: BenchControl) -> int | None:
-    """The experiment that runs, 0 while it has no number yet; below 0 a commissioning; None where nothing does."""
+def _under_way(guide: Guide, calibrator: Calibrator, runner: BenchControl) -> int | None:
+    """The experiment that runs, 0 while it has no number yet; below 0 what takes several; None where nothing does."""
     if guide.is_under_way and guide.course is not None:
-        return -guide.course.number
+        return -2 * guide.course.number
+    if calibrator.is_under_way and calibrator.task is not None:
+        return 1 - 2 * calibrator.task.number
     found = runner.status()
     return (found.experiment_id or 0) if found.outcome == "running" else None
 

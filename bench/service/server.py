@@ -74,6 +74,7 @@ class BenchServer(uvicorn.Server):
         """Stop the joint, end the live streams, then the server; a second signal does not wait for connections."""
         self._app.state.conductor.end()
         self._app.state.guide.stop(ENDED)
+        self._app.state.calibrator.stop(ENDED)
         self._runner.stop(ENDED)
         self.end_streams()
         self.force_exit = self.should_exit

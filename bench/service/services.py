@@ -6,6 +6,7 @@ from fastapi import Depends, Request
 
 from bench.commission.guide import Guide
 from bench.runs.bench_control import BenchControl
+from bench.runs.calibrator import Calibrator
 from bench.runs.queue import Conductor
 from bench.store import Store
 
@@ -22,6 +23,10 @@ async def _conductor(request: Request) -> Conductor:
     return cast(Conductor, request.app.state.conductor)
 
 
+async def _calibrator(request: Request) -> Calibrator:
+    return cast(Calibrator, request.app.state.calibrator)
+
+
 async def _guide(request: Request) -> Guide:
     return cast(Guide, request.app.state.guide)
 
@@ -29,4 +34,5 @@ async def _guide(request: Request) -> Guide:
 StoreOf = Annotated[Store, Depends(_store)]
 RunnerOf = Annotated[BenchControl, Depends(_runner)]
 ConductorOf = Annotated[Conductor, Depends(_conductor)]
+CalibratorOf = Annotated[Calibrator, Depends(_calibrator)]
 GuideOf = Annotated[Guide, Depends(_guide)]

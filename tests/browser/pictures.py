@@ -29,6 +29,15 @@ def main() -> None:
         page = open_page(chromium, f"{service.url}/#bench", 1100, "light")
         _bench(page, folder / "page.png")
         _hidden_effect(page, service, folder / "hidden-effect.png")
+    refuse_large(folder)
+
+
+def refuse_large(folder: Path) -> None:
+    """Say how large the pictures of a folder are.
+
+    Raises:
+        SystemExit: one is too large for the repository.
+    """
     for picture in sorted(folder.glob("*.png")):
         size = picture.stat().st_size
         print(f"{picture}: {size / 1e3:.0f} kB")

@@ -74,8 +74,9 @@ class Owner:
         if key == "down":
             self._axis.hold_arm(self._rig.down_rad)
         elif key == "clear":
-            self._axis.release_arm()
             self._axis.hang_load(0.0, balanced=False)
+            self._axis.hold_arm(self._rig.down_rad)
+            self._axis.release_arm()
         else:
             words = sentence.split()
             load_kg = float(words[1]) / 1000.0 if words[0] == "Hang" else 0.0

@@ -44,6 +44,7 @@ class Hands:
             self._side.ask("hold", angle_rad=pi / 2.0)
             return 90.0
         elif key == "clear":
+            self._side.ask("hold", angle_rad=0.0)
             self._side.ask("release")
         elif key == "first_load_kg":
             self._side.hang_load(FIRST_KG, balanced=False)

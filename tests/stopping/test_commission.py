@@ -113,3 +113,22 @@ def test_a_service_that_is_gone_leaves_the_joint_without_power(tmp_path, by):
             [record] = store.experiments()
         assert record.outcome in ("stopped", "interrupted")
         assert device.truth()["powered"] is False
+
+
+class Forgetful(Hands):
+    """Let go of the arm where it was held level."""
+
+    def do(self, key: str, sentence: str) -> float | None:
+        if key != "clear":
+            return super().do(key, sentence)
+        self._side.ask("release")
+        return None
+
+
+@pytest.mark.timeout(180)
+def test_an_arm_that_was_left_raised_is_not_pushed(tmp_path):
+    with bench(tmp_path, "modbus", "--transport", "tcp") as (service, device):
+        service.client.post("/commission").raise_for_status()
+        ended = follow(service, Forgetful(device), is_over)
+        assert "the arm stands at 90 degrees" in ended["refusal"]
+        assert service.store.experiments() == []

@@ -50,12 +50,13 @@ def run(
     Says before what it takes. Ctrl-C pauses between two strokes' records: what was measured is kept, and the command
     to go on is printed.
     """
-    from bench.cli.operation.calibration_run import CalibrationRun, Wish
+    from bench.cli.operation.calibration_run import CalibrationRun
+    from bench.runs.sequential_calibration import Wish
 
     session, loads = session_of(context), tuple(_numbers(loads_kg))
-    wish = Wish(loads, 1e-3 * accuracy_ma, 60.0 * minutes, tuple(_numbers(duties)), pace, note, as_json)
+    wish = Wish(loads, 1e-3 * accuracy_ma, 60.0 * minutes, tuple(_numbers(duties)))
     with session.open_store() as store:
-        ids = CalibrationRun(session, store, wish, after or []).carry_out()
+        ids = CalibrationRun(session, store, wish, after or [], pace, note, as_json).carry_out()
     _fit_and_show(session, ids, True, note, as_json)
 
 
@@ -75,7 +76,7 @@ def fit(
 def list_(context: typer.Context, as_json: Json = False) -> None:
     """List the calibrations, newest first; the one in use is marked."""
     from bench.calibration import in_use
-    from bench.service.routes.calibrations import represent
+    from bench.service.routes.calibration.calibrations import represent
 
     session = session_of(context)
     with session.open_store() as store:
@@ -126,7 +127,7 @@ def _fit_and_show(session: BenchSession, experiment_ids: list[int], stribeck: bo
 
 def _show(row: "CalibrationRow", as_json: bool) -> None:
     if as_json:
-        from bench.service.routes.calibrations import represent
+        from bench.service.routes.calibration.calibrations import represent
 
         print_json(represent(row, None).model_dump(mode="json", exclude={"in_use"}))
         return

@@ -41,11 +41,14 @@ def doctor(
 
     session = session_of(context)
     found = connect(session.configuration())
+    doubt = _count_doubt(session, found)
     if not as_json:
         _show(found)
+    if doubt and not as_json and not set_zero:
+        say(doubt)
     if set_zero:
         _set_zero(session, found.sample.position_rad - radians(at_deg), as_json)
-    answer: dict[str, object] = {"connection": _represent(found)}
+    answer: dict[str, object] = {"connection": _represent(found), "count_doubt": doubt}
     passed = True
     if move:
         passed = _move(session, operator, answer, as_json)
@@ -55,6 +58,14 @@ def doctor(
         print_json(answer)
     if not passed:
         raise typer.Exit(ExitCode.NOT_COMPLETED)
+
+
+def _count_doubt(session: BenchSession, found: "Connection") -> str:
+    """See `bench.runs.count_check`."""
+    from bench.runs.count_check import count_doubt
+
+    with session.open_store() as store:
+        return count_doubt(store, session.configuration(), found.description, lambda: found.sample.position_rad)
 
 
 def _set_zero(session: BenchSession, off_rad: float, quiet: bool) -> None:

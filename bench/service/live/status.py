@@ -116,7 +116,9 @@ def _run(found: RunnerStatus) -> Run:
 
 
 def _power(found: RunnerStatus, reading: Reading) -> str:
-    """State of the power stage: of a run that has ended, the last sample was taken before the power went."""
+    """State of the power stage: where a run has ended or stands still, the last sample is of before the power went."""
+    if found.outcome == "running" and (found.pausing == "paused" or found.prompt is not None):
+        return "disabled"
     if found.outcome == "running":
         return reading.sample.status.name.lower()
     return "disabled" if _power_off(found) == "confirmed" else "unknown"

@@ -22,7 +22,7 @@ from bench.service.compute import at_bench
 from bench.service.http.problems import problems
 from bench.service.live.status import Status, status_of
 from bench.service.routes.leases import LeaseOf, lease_now, require_lease
-from bench.service.services import ConductorOf, GuideOf, RunnerOf
+from bench.service.services import CalibratorOf, ConductorOf, GuideOf, RunnerOf
 from drivers.contract import Description
 
 router = APIRouter(tags=["bench"])
@@ -151,10 +151,12 @@ def channels() -> RecordedChannels:
     responses=problems(401, 403),
     openapi_extra={"requestBody": {"content": {"application/json": {"schema": Stop.model_json_schema()}}}},
 )
-async def stop(runner: RunnerOf, conductor: ConductorOf, guide: GuideOf, request: Request) -> Stopped:
+async def stop(
+    runner: RunnerOf, conductor: ConductorOf, guide: GuideOf, calibrator: CalibratorOf, request: Request
+) -> Stopped:
     """With any token, always, whoever has the bench. The control loop honours it within one cycle; it is on record.
 
-    The queue is held, too: nothing more is started until somebody resumes. A commissioning ends.
+    The queue is held, too: nothing more is started until somebody resumes. A commissioning or a calibration ends.
 
     The body may be left out. One that cannot be read stops the joint all the same.
     """
@@ -163,6 +165,7 @@ async def stop(runner: RunnerOf, conductor: ConductorOf, guide: GuideOf, request
     reason = await _reason(request)
     conductor.stop(reason)
     guide.stop(reason)
+    calibrator.stop(reason)
     runner.stop(reason)
     note(request, f"stopped experiment {found.experiment_id}: {reason}" if was_running else "nothing was running")
     detail = (

@@ -6,8 +6,9 @@ import { h, panel, replace, table } from "../ui/dom.js";
 import { number, when } from "../ui/format.js";
 import { colour, SERIES } from "../ui/colours.js";
 import { draw } from "../plots/plotly.js";
+import { calibrationRun } from "./calibrationrun.js";
 
-// resolves when the list is there
+// returns {first, leave}; first: when the list is there
 export function calibrations(place) {
   const [list, picture] = [h("div"), h("div")];
   const from = h("input", { id: "calibrate-from", placeholder: "such as 1, 2" });
@@ -27,13 +28,18 @@ export function calibrations(place) {
     await refresh();
     await show(made);
   };
-  replace(place, panel("Friction curves", list, h("form", { class: "row", onsubmit: submit },
+  const run = h("div");
+  const running = calibrationRun(run, async (id) => {
+    await refresh();
+    await show({ calibration_id: id });
+  });
+  replace(place, panel("Friction curves", run, h("div", { class: "gap" }), list, h("form", { class: "row", onsubmit: submit },
     h("label", { for: "calibrate-from" }, "From experiments (speed sweeps, load sweeps)", from), button), answer, picture));
-  return refresh();
+  return { first: Promise.all([running.first, refresh()]), leave: running.leave };
 }
 
 function calibrationTable(items, show, use) {
-  if (!items.length) return h("p", { class: "soft" }, "None yet. Run a speed sweep on the balanced arm, and a load sweep for F_load.");
+  if (!items.length) return h("p", { class: "soft" }, "None yet.");
   return table("Friction curves", [
     { title: "Calibration", number: true, cell: (one) => one.calibration_id },
     { title: "From experiments", cell: (one) => one.experiment_ids.join(", ") },

@@ -64,10 +64,12 @@ export function trialsView(place, { rest, query }) {
     await choose(made.experiment_id);
   }, rest[0] === "import");
   replace(place, panel("Experiments", imported, experiments), panel("Trials", bar, h("div", { class: "gap" }), list), detail, figure, curves);
-  together(place, [listAgain(), show(), calibrations(curves)]);
+  const friction = calibrations(curves);
+  together(place, [listAgain(), show(), friction.first]);
   if (ids.length) trialPlot(detail, ids).then((made) => { plotted = made; });
   return () => {
     clearTimeout(timer);
+    friction.leave();
     plotted?.close();
   };
 }
