@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 .PHONY: help demo paper serve test check format docs report screenshots pictures benchmark kills schema test-vm dist \
-        dist-test clean
+        dist-test audit sbom hashes clean
 
 help:            ## this list
 	@awk -F ':.*## *' '/^[a-z-]+:.*##/ { printf "%-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -33,11 +33,11 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 
 # To work on it
 
-test: $(STAMP)   ## the tests: first on all cores, then those that the wall clock times
+test: $(STAMP)   ## the tests: first on all cores, then those that the wall clock times, which mostly wait
 	@failed=0; \
-	$(BIN)/pytest --numprocesses auto --dist loadfile -m 'not wall_clock' || failed=1; \
-	$(BIN)/pytest --numprocesses 2 --dist loadfile -m wall_clock --ignore=tests/drivers || failed=1; \
-	$(BIN)/pytest tests/drivers -m wall_clock || failed=1; \
+	$(BIN)/pytest --numprocesses auto -m 'not wall_clock' || failed=1; \
+	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers || failed=1; \
+	$(BIN)/pytest --numprocesses 3 --no-loadscope-reorder tests/drivers -m wall_clock || failed=1; \
 	exit $$failed
 
 check: $(STAMP)  ## style, types and walls; .pre-commit-config.yaml runs the same
@@ -87,6 +87,23 @@ test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tes
 dist: $(STAMP)   ## wheel and sdist in dist/
 	rm -rf dist
 	$(BIN)/python -m build --no-isolation
+
+# What it is made of
+
+audit: $(STAMP)  ## known vulnerabilities of the pinned versions; one that nobody could look up is an error, too
+	$(PIP) --editable '.[supply]'
+	$(BIN)/pip-audit --strict --disable-pip --require-hashes --requirement hashes.txt
+
+sbom: $(STAMP)   ## what is installed, with licences, as CycloneDX: out/sbom.json
+	$(PIP) --editable '.[supply]'
+	mkdir -p out
+	$(BIN)/cyclonedx-py environment --pyproject pyproject.toml --output-reproducible --output-format JSON \
+	    --output-file out/sbom.json $(BIN)/python
+
+hashes: $(STAMP) ## after a change of constraints.txt: hashes.txt, the hashes of all pinned versions
+	$(PIP) --editable '.[supply]'
+	$(BIN)/uv pip compile --quiet --no-deps --generate-hashes --no-annotate --no-header --no-emit-index-url \
+	    --python $(BIN)/python --output-file hashes.txt constraints.txt
 
 dist-test: dist  ## demo and service from the wheel alone, in a new environment outside the checkout
 	$(BIN)/python -m tests.release.from_wheel dist

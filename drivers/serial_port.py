@@ -62,6 +62,18 @@ class SerialPort:
             raise self.gone(error) from error
         return reply
 
+    def arrived(self) -> bytes:
+        """What has come, without waiting.
+
+        Raises:
+            DriveConnectionError: the port is gone.
+        """
+        try:
+            found: bytes = self._port.read(self._port.in_waiting)
+        except (OSError, TypeError) as error:
+            raise self.gone(error) from error
+        return found
+
     def read_until(self, end: bytes, most_bytes: int) -> bytes:
         """Bytes up to an end, so many at most, or what there is when the time is up.
 

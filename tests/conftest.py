@@ -16,24 +16,29 @@ if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_I
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HERE = Path(__file__).parent
-# devices, services and browsers in processes of their own: they mostly wait, and run after the others, two at a time;
-# those of the drivers one by one: hosts and devices with real-time priorities of two tests keep one another waiting
+# devices, services and browsers in processes of their own: they mostly wait, and run after the others
 WALL_CLOCK = (
     "browser",
     "devices",
     "drivers",
     "service",
     "stopping",
-    "bench/test_bench_process.py",
-    "bench/test_clock.py",
     "cli/test_serve.py",
+    "control/test_clock.py",
+    "runs/test_bench_process.py",
 )
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what the wall clock times. A machine that stops a process for a second fails such a test, though nothing is
-    wrong: it is run once more, and the summary says so."""
+    """Mark what the wall clock times."""
     for item in items:
         if item.path.relative_to(HERE).as_posix().startswith(WALL_CLOCK):
             item.add_marker(pytest.mark.wall_clock)
-            item.add_marker(pytest.mark.flaky(reruns=1))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+    """Which tests stay in one process, where they are spread over several."""
+    from tests.spread import FileAndBench
+
+    return FileAndBench(config, log)

@@ -114,12 +114,15 @@ class ServoBus:
         """
         heard = self._port.ask(request, 0)
         end_s = time.perf_counter() + wait_s
-        while time.perf_counter() < end_s:
-            more = self._port.read(1)
-            heard += more + self._port.read(0)
+        while True:
+            # once more after the time is over: a busy machine may have let it pass between the answer and the look
+            is_over = time.perf_counter() >= end_s
+            more = (b"" if is_over else self._port.read(1)) + self._port.arrived()
+            heard += more
             if more:
                 end_s = time.perf_counter() + wait_s
-        return self._packets(heard)
+            elif is_over:
+                return self._packets(heard)
 
     def _ask(self, request: bytes, servo_ids: tuple[int, ...], size: int, what: str) -> list[StatusPacket]:
         """Ask, asked again once where not everybody answered intact."""
@@ -205,7 +208,12 @@ def answering(port: str, baud_rate: int, frames: Frames, servo_ids: range | None
         if servo_ids is None:
             yield from bus.listen(frames.ping(frames.broadcast), _ALL_S)
             return
+        found: set[int] = set()
         for servo_id in servo_ids:
-            yield from (one for one in bus.listen(frames.ping(servo_id), _ALONE_S) if one.servo_id == servo_id)
+            # an answer that came late, through a slow adapter or on a busy host, is one all the same
+            for one in bus.listen(frames.ping(servo_id), _ALONE_S):
+                if one.servo_id in servo_ids and one.servo_id not in found:
+                    found.add(one.servo_id)
+                    yield one
     finally:
         bus.close()

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim_backend.devices.side_channel_client import SideChannelClient
-from tests.devices.turns import ask_for_turns
+from tests.devices.turns import DEVICE, ask_for_turns, no_turns
 
 START_S = 90.0  # the first start on a machine compiles the plant
 
@@ -64,8 +64,8 @@ class DeviceProcess:
 def device_process(kind: str, *options: str) -> Iterator[DeviceProcess]:
     """Run `friction-bench simulate-device <kind> <options>`, and end it."""
     words = [sys.executable, "-m", "bench.cli", "simulate-device", kind, *options, "--json"]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    ask_for_turns(process.pid)
+    with no_turns():
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     killer = threading.Timer(START_S, process.kill)
     killer.start()
     try:
@@ -74,6 +74,7 @@ def device_process(kind: str, *options: str) -> Iterator[DeviceProcess]:
         killer.cancel()
         assert line, f"the device did not start: {process.communicate()[1]}"
         found = json.loads(line)
+        ask_for_turns(process.pid, DEVICE)
         side = SideChannelClient(found["side_channel"])
         try:
             yield DeviceProcess(found["port"], found["drive"], side, process)

@@ -3,26 +3,44 @@
 On a machine that is busy with other work a thread may wait 50 ms for its turn, where a drive's own processor never
 does. A real-time priority, where the system grants one (root, or `rtprio` in limits.conf), takes that away; where it
 does not, everything runs as it is.
+
+Several tests run beside each other. So a device goes before every host, as nothing keeps a real drive waiting; and
+nothing that only starts (imports, mostly) has a priority, else it would keep the devices of other tests waiting.
 """
 
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-_PRIORITY = 1  # the lowest of the real-time ones
+HOST, DEVICE = 1, 2  # the lowest of the real-time priorities
 
 
-def ask_for_turns(pid: int) -> None:
-    """Ask for a process that has just started; the threads that it starts later have the same."""
+def ask_for_turns(pid: int, priority: int) -> None:
+    """Ask for all threads of a process; those that they start later have the same."""
     with suppress(OSError):
-        os.sched_setscheduler(pid, os.SCHED_RR, os.sched_param(_PRIORITY))
+        for thread in os.listdir(f"/proc/{pid}/task"):
+            os.sched_setscheduler(int(thread), os.SCHED_RR, os.sched_param(priority))
 
 
 @contextmanager
 def turns() -> Iterator[None]:
     """Ask for this thread, and whatever it starts, for a while."""
+    with _scheduled(os.SCHED_RR, HOST):
+        yield
+
+
+@contextmanager
+def no_turns() -> Iterator[None]:
+    """What is started meanwhile takes its turns as every other program does."""
+    with _scheduled(os.SCHED_OTHER, 0):
+        yield
+
+
+@contextmanager
+def _scheduled(policy: int, priority: int) -> Iterator[None]:
     before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    ask_for_turns(0)
+    with suppress(OSError):
+        os.sched_setscheduler(0, policy, os.sched_param(priority))
     try:
         yield
     finally:

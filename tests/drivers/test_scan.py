@@ -8,6 +8,7 @@ import pytest
 
 from bench.control.drive_factory import make_equipment
 from tests.devices.device_process import device_process
+from tests.devices.turns import no_turns
 from tests.drivers.conformance.benches import configured
 
 ACCEPTED = {"feetech": {"accept_no_watchdog": True}, "odrive": {"watchdog_is_set_in_drive": True}}
@@ -15,7 +16,8 @@ ACCEPTED = {"feetech": {"accept_no_watchdog": True}, "odrive": {"watchdog_is_set
 
 def scan(*options):
     words = [sys.executable, "-m", "bench.cli", "drives", "scan", *options]
-    return subprocess.run(words, capture_output=True, text=True, timeout=60)
+    with no_turns():
+        return subprocess.run(words, capture_output=True, text=True, timeout=60)
 
 
 @pytest.mark.parametrize(
@@ -33,7 +35,9 @@ def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):
         is_serial = "port" in running.drive
         bauds = ("--baud", "115200") if kind == "roboclaw" else ("--baud", "1000000")
         place = ("--port", running.port, *bauds) if is_serial else ("--bus", f"slcan:{running.port}")
-        found = json.loads(scan(*place, "--json").stdout)
+        done = scan(*place, "--json")
+        assert done.returncode == 0, done.stderr
+        found = json.loads(done.stdout)
         assert [one["drive"][key] for one in found if one["drive"]["kind"] == kind] == ids
         assert not running.truth()["powered"]
         section = found[[one["drive"]["kind"] for one in found].index(kind)]["drive"] | ACCEPTED.get(kind, {})

@@ -12,7 +12,7 @@ from bench.drives.roboclaw.settings import BaudRate, RoboclawDriveSettings
 from drivers.contract import Drive
 
 BAUD_RATE, ADDRESSES = 115200, range(0x80, 0x88)
-SCAN_S = 0.05  # that is waited for an answer
+SCAN_S = 0.15  # that is waited for an answer, asked twice: a busy host may be away for 50 ms
 
 
 def make(settings: RoboclawDriveSettings, rig: Rig) -> Drive:

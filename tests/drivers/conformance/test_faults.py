@@ -22,6 +22,7 @@ from bench.runs.runner import Runner
 from bench.store import Store
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError, DriveError
+from tests.devices.turns import no_turns
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured, run
 
 PUSH_A = 0.25
@@ -236,9 +237,10 @@ def test_a_host_that_is_killed_in_mid_motion(watched, tmp_path):
         assert runner.status().outcome == "completed", runner.status().reason
         runner.close()
     words = ["--config", str(configuration), "--store", url, "run", "steps", "--load-kg", "0", "--repeats", "3"]
-    host = subprocess.Popen(
-        [sys.executable, "-m", "bench.cli", *words], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
-    )
+    with no_turns():  # it asks for those of its loop by itself
+        host = subprocess.Popen(
+            [sys.executable, "-m", "bench.cli", *words], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
+        )
     try:
         host.stdin.write(b"\n")
         host.stdin.flush()

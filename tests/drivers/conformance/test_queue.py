@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.drivers.conformance.benches import BENCHES, PATIENT
+from tests.drivers.conformance.benches import BENCHES
 from tests.drivers.conformance.campaign import Person
 from tests.queue.waiting import wait_for
 from tests.service.running_service import RunningService, running_service
@@ -41,7 +41,8 @@ pytestmark = pytest.mark.timeout(400)
 @pytest.fixture
 def service(name, tmp_path) -> Iterator[RunningService]:
     with (
-        BENCHES[name](*PATIENT) as bench,
+        # the joint does not wait for the host: here the host's time goes on, too, and a servo would kick after
+        BENCHES[name]() as bench,
         running_service(tmp_path, configuration=bench.configuration, in_process_of_its_own=True) as running,
     ):
         person = Person(bench, running.runner)

@@ -5,7 +5,7 @@ import time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scservo_sdk import COMM_SUCCESS, GroupSyncRead, PortHandler, protocol_packet_handler, sms_sts
+from scservo_sdk import COMM_RX_TIMEOUT, COMM_SUCCESS, GroupSyncRead, PortHandler, protocol_packet_handler, sms_sts
 
 from drivers.feetech import frames
 from drivers.servos.frames import StatusPacket
@@ -27,6 +27,16 @@ class Wire:
     def writePort(self, packet):  # noqa: N802
         self.sent = bytes(packet)
         return len(packet)
+
+
+def asked(question, servo):
+    """The answer. Asked again, as the library waits for 17 ms only: on a busy machine it may take longer."""
+    end_s = time.monotonic() + 2.0
+    while True:
+        value, result, _ = question(servo)
+        if result != COMM_RX_TIMEOUT or time.monotonic() > end_s:
+            assert result == COMM_SUCCESS
+            return value
 
 
 @given(st.integers(0, 253), st.integers(0, 100), st.binary(min_size=1, max_size=20))
@@ -89,10 +99,10 @@ def test_it_finds_them(host):
 def test_it_turns_one_in_open_loop_and_reads_both_with_one_packet(host, device):
     assert host.write1ByteTxRx(1, MODE, 2) == (COMM_SUCCESS, 0)
     assert host.write2ByteTxRx(1, GOAL_TIME, BACKWARD | 200) == (COMM_SUCCESS, 0)
-    before = host.ReadPos(1)[0], host.ReadPos(2)[0]
+    before = asked(host.ReadPos, 1), asked(host.ReadPos, 2)
     assert host.write1ByteTxRx(1, TORQUE, 1) == (COMM_SUCCESS, 0)
     time.sleep(0.2)
-    assert host.ReadSpeed(1)[0] < 0
+    assert asked(host.ReadSpeed, 1) < 0
     reading = GroupSyncRead(host, PIECE, 6)
     for servo in (1, 2):
         reading.addParam(servo)
@@ -105,8 +115,8 @@ def test_it_turns_one_in_open_loop_and_reads_both_with_one_packet(host, device):
 
 def test_it_goes_to_a_position(host):
     assert host.write1ByteTxRx(2, MODE, 0) == (COMM_SUCCESS, 0)
-    here = host.ReadPos(2)[0]
+    here = asked(host.ReadPos, 2)
     assert host.write1ByteTxRx(2, TORQUE, 1) == (COMM_SUCCESS, 0)
     host.WritePosEx(2, here + 500, 0, 0)
     time.sleep(0.5)
-    assert host.ReadPos(2)[0] == pytest.approx(here + 500, abs=120)  # friction holds it before it is there
+    assert asked(host.ReadPos, 2) == pytest.approx(here + 500, abs=120)  # friction holds it before it is there
