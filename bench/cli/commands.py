@@ -120,7 +120,7 @@ COMMANDS = (
     CommandEntry(
         "store",
         "bench.cli.records.store:app",
-        "Look after the store: information, check, backup, vacuum, prune, remove.",
+        "Look after the store: information, check, repair, backup, vacuum, prune, remove.",
     ),
     CommandEntry(
         "token",

@@ -79,8 +79,10 @@ class Database:
         ) as error:  # a number or text that the database cannot hold
             raise StoreValueError(f"store '{self.where}': {error}") from error
         except UnicodeDecodeError as error:  # what the database keeps, or says of itself, is no text any more
-            damaged = f"store '{self.where}' is damaged ({error}); restore a copy, or save what can be read of it"
-            raise StoreFileError(damaged) from error
+            damaged = f"store '{self.where}' is damaged ({error})"
+            raise StoreFileError(
+                f"{damaged}; restore a copy, or save what can be read: friction-bench store repair"
+            ) from error
         except StatementError as error:
             if isinstance(error.orig, (TypeError, ValueError)):
                 raise StoreValueError(f"store '{self.where}': {error.orig}") from error

@@ -204,7 +204,9 @@ def explain(error: BaseException | None, path: Path, busy_timeout_s: float) -> S
     if name.startswith("SQLITE_NOTADB"):
         return StoreFileError(f"{where} is not an SQLite database; name another file")
     if name.startswith("SQLITE_CORRUPT"):
-        return StoreFileError(f"{where} is damaged ({error}); restore a copy, or move it away and start a new one")
+        return StoreFileError(
+            f"{where} is damaged ({error}); restore a copy, or save what can be read: friction-bench store repair"
+        )
     if name.startswith("SQLITE_IOERR"):
         return StoreFileError(
             f"{where}: the disk reports an error ({name}: {error}); check the disk and its free space"

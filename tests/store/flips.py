@@ -13,11 +13,13 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
+from sqlalchemy import select
 from typer.testing import CliRunner
 
 from bench.cli.app import app
 from bench.store import Store
-from bench.store.schema import CHAIN, SAMPLE_OVERVIEW
+from bench.store.database import Database
+from bench.store.schema import CHAIN, METADATA, SAMPLE_OVERVIEW
 from bench.store.tables.audit import AuditEntry
 from bench.store.tables.chain import SUBJECTS
 from bench.store.tables.experiments import now
@@ -55,6 +57,15 @@ def records(path: Path) -> list[object]:
     return found
 
 
+def values(path: Path) -> list[object]:
+    """Every record as the store reads it."""
+    database = Database(f"sqlite:///{path}", 1.0)
+    with database.reading() as connection:
+        found: list[object] = [connection.execute(select(METADATA.tables[name])).all() for name in RECORDS]
+    database.close()
+    return found
+
+
 def is_found(path: Path) -> bool:
     """Whether the command says that something is wrong, in words and not by a traceback."""
     done = CliRunner().invoke(app, ["--store", str(path), "store", "check"])
@@ -80,6 +91,8 @@ def count(flips: int, seed: int, folder: Path) -> tuple[int, int, list[int]]:
     filled(path)
     assert not is_found(path)
     sound, before = path.read_bytes(), records(path)
+    sound_path = folder / "sound.sqlite"
+    sound_path.write_bytes(sound)
     found, harmless, missed = 0, 0, []
     for bit, spoilt in flipped(sound, seed):
         for ending in ("-wal", "-shm"):
@@ -89,6 +102,8 @@ def count(flips: int, seed: int, folder: Path) -> tuple[int, int, list[int]]:
             harmless += 1
         elif is_found(path):
             found += 1
+        elif values(path) == values(sound_path):
+            harmless += 1  # another sign between the numbers of a date: it is read as before
         else:
             missed.append(bit)
         if found + len(missed) == flips:
@@ -102,7 +117,7 @@ def main() -> None:
     flips, seed = [*words, *[1000, 1][len(words) :]]
     with tempfile.TemporaryDirectory() as folder:
         found, harmless, missed = count(flips, seed, Path(folder))
-    print(f"flipped bits found: {found} of {flips}; {harmless} more changed no record (unused space, the queue)")
+    print(f"flipped bits found: {found} of {flips}; {harmless} more changed nothing that is read of a record")
     if missed:
         sys.exit(f"missed: bits {missed}")
 

@@ -2,6 +2,7 @@
 
 from dataclasses import asdict
 from enum import StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -18,7 +19,7 @@ app = typer.Typer(no_args_is_help=True)
 
 @app.callback()
 def _store() -> None:
-    """Look after the store: information, check, backup, vacuum, prune, remove."""
+    """Look after the store: information, check, repair, backup, vacuum, prune, remove."""
 
 
 @app.command()
@@ -68,6 +69,23 @@ def backup(
     with session_of(context).open_store() as store:
         store.upkeep.backup(target)
     say(f"the store is in {target}" if "://" not in target else "the store is copied")
+
+
+@app.command()
+def repair(context: typer.Context, target: Annotated[Path, typer.Argument(help="A file to make.")]) -> None:
+    """Save what can be read of a damaged SQLite store into a new one, and say what is lost.
+
+    Exit code 1 where anything is. The damaged file stays as it is. Lost rows of a trial are empty, and the trial is
+    marked as interrupted.
+    """
+    from bench.store.upkeep.repair import repair as saved
+
+    lost = saved(session_of(context).store_url(), target)
+    for loss in lost:
+        complain(loss)
+    say(f"{target} holds what could be read; use it with --store")
+    if lost:
+        raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
 @app.command()

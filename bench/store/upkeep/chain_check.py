@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, Select, select
 
 from bench.store.records import HIDDEN
 from bench.store.schema import EXPERIMENT, TRIAL
@@ -69,16 +70,19 @@ def _learn(known: dict[str, _Known], entry: Entry) -> None:
 
 
 def _broken_records(connection: Connection, subject: str, of: _Known) -> Iterator[str]:
-    table = SUBJECTS[subject].table
-    query = select(table.c.id).order_by(table.c.id)
-    if subject in ENDED:
-        query = query.where(table.c.outcome.not_in(("running", *HIDDEN)))
-    there = set(connection.execute(query).scalars())
+    there = set(connection.execute(ended(subject)).scalars())
     for row_id in sorted(there | of.newest.keys()):
         entry = of.newest.get(row_id)
         problem = _problem(connection, subject, row_id, entry, row_id in there, of)
         if problem:
             yield f"{subject.replace('_', ' ')} {row_id} {problem}"
+
+
+def ended(subject: str) -> Select[Any]:
+    """The numbers of the records of a kind that have an entry in the chain."""
+    table = SUBJECTS[subject].table
+    query = select(table.c.id).order_by(table.c.id)
+    return query.where(table.c.outcome.not_in(("running", *HIDDEN))) if subject in ENDED else query
 
 
 def _problem(

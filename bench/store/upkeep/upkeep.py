@@ -142,7 +142,7 @@ class Upkeep:
         with self._database.reading() as connection:
             return [
                 f"trial {trial}: its {what} of rows {first} .. {first + rows - 1} are not what was written (checksum); "
-                "restore them from a backup, the other trials are not touched by it"
+                "restore them from a backup, or save the rest: friction-bench store repair"
                 for what, trial, first, rows in damaged_blocks(connection)
             ]
 
