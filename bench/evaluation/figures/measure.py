@@ -11,6 +11,7 @@ from bench.evaluation.figures.trials import SeedResults, calibrated, run_rig, ru
 
 CALIBRATION_SEED = 90_000  # never that of a trial
 RIG_SEED = 70_000
+APART = 100  # seeds of one drawn rig from those of the next: with the same noise they would err together
 SHARED = 2  # seeds that one calibration of the rig of the paper serves: its error is theirs, too
 
 
@@ -37,7 +38,10 @@ def measure_figures(
     drawn = [drawn_rig(configuration, RIG_SEED + first_seed + rig) for rig in range(rigs)]
     # spawned: a forked child would inherit threads of whoever calls
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        rigs_under_way = [pool.submit(run_rig, one, CALIBRATION_SEED + first_seed, first_seed) for one in drawn]
+        rigs_under_way = [
+            pool.submit(run_rig, one, CALIBRATION_SEED + first_seed + APART * rig, first_seed + APART * rig)
+            for rig, one in enumerate(drawn)
+        ]
         known = list(pool.map(calibrated, [with_seed(configuration, CALIBRATION_SEED + start) for start in starts]))
         show(f"{len(known)} calibrations of rig '{configuration.rig.name}'")
         own = [with_seed(known[place // SHARED], first_seed + place) for place in range(seeds)]

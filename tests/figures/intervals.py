@@ -1,0 +1,113 @@
+"""`python -m tests.figures.intervals RIGS CALIBRATIONS [FIRST_SEED]`: do the 95 % intervals at rest hold the truth?
+
+First the binomial law: how likely is a rig whose intervals are exactly right to come out within 92 .. 98 %, and how
+many trials does it take until 18 of 20 such rigs do? Then rigs drawn at random, each calibrated several times: what
+each holds, and what it missed after each calibration, whose error all trials after it have in common. By how much the
+misses scatter more than chance (the design effect: Kish, "Survey Sampling", 1965, chapter 5.4) says by how many more
+trials the law is fulfilled.
+"""
+
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from math import ceil, floor
+from multiprocessing import get_context
+from pathlib import Path
+from statistics import fmean, variance
+from tempfile import TemporaryDirectory
+
+from scipy.stats import binom
+
+from bench.config.configuration import BenchConfiguration, default_configuration
+from bench.evaluation.figures.coverage import Share, held
+from bench.evaluation.figures.measure import APART, CALIBRATION_SEED, RIG_SEED
+from bench.evaluation.figures.rigs import drawn_rig, with_seed
+from bench.evaluation.figures.trials import calibrated, drawn_loads
+from bench.evaluation.paper.measurements import measure, quietly
+from bench.store import Store
+
+LOW, HIGH, ASKED = 0.92, 0.98, 0.95
+ROUNDED = 1e-9
+
+
+def is_within(share: Share) -> bool:
+    """Whether it is within what is asked for."""
+    return LOW * share.trials - ROUNDED <= share.held <= HIGH * share.trials + ROUNDED
+
+
+def chance_within(trials: int, covered: float = ASKED) -> float:
+    """That a rig whose intervals hold the truth with probability `covered` comes out within what is asked for."""
+    least, most = ceil(LOW * trials - ROUNDED), floor(HIGH * trials + ROUNDED)
+    return float(binom.cdf(most, trials, covered) - binom.cdf(least - 1, trials, covered))
+
+
+def design_effect(clusters: Sequence[Sequence[Share]]) -> float:
+    """Variance of the misses after a calibration over that of independent trials, mean over the rigs.
+
+    Args:
+        clusters: of each rig, its trials after each calibration.
+    """
+    ratios = []
+    for shares in clusters:
+        missed = [one.trials - one.held for one in shares]
+        trials = fmean(one.trials for one in shares)
+        chance = fmean(missed) / trials
+        if 0.0 < chance < 1.0:
+            ratios.append(variance(missed) / (trials * chance * (1.0 - chance)))
+    return fmean(ratios)
+
+
+def law() -> Iterator[str]:
+    """The lines of the binomial law."""
+    yield f"{'trials':>6} {'one rig within':>14} {'18 of 20 within':>15}   of intervals that are exactly right"
+    for trials in (25, 50, 100, 150, 200, 300, 400):
+        one = chance_within(trials)
+        yield f"{trials:6} {100.0 * one:12.1f} % {100.0 * float(binom.sf(17, 20, one)):13.1f} %"
+
+
+def share_of(task: tuple[BenchConfiguration, int, int]) -> Share:
+    """Trials at random loads and angles after one calibration of a rig."""
+    bench, calibration_seed, seed = task
+    known = with_seed(calibrated(with_seed(bench, calibration_seed)), seed)
+    with TemporaryDirectory() as folder, Store.open(f"sqlite:///{Path(folder) / 'trials.sqlite'}") as store:
+        found = measure(known, store, drawn_loads(seed), quietly).results
+    return held(found["rows"], known.rig)
+
+
+def main(rigs: int, calibrations: int, first_seed: int = 1) -> None:
+    """Print both."""
+    print("\n".join(law()), flush=True)
+    plain = default_configuration()
+    benches = [drawn_rig(plain, RIG_SEED + first_seed + rig) for rig in range(rigs)]
+    tasks = [
+        (bench, CALIBRATION_SEED + first_seed + APART * rig + again, first_seed + APART * rig + again)
+        for rig, bench in enumerate(benches)
+        for again in range(calibrations)
+    ]
+    within, total, clusters = 0, Share(0, 0), []
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        results = pool.map(share_of, tasks)
+        for rig in range(rigs):
+            shares = [next(results) for _ in range(calibrations)]
+            whole = Share(sum(one.held for one in shares), sum(one.trials for one in shares))
+            total = Share(total.held + whole.held, total.trials + whole.trials)
+            within += is_within(whole)
+            clusters.append(shares)
+            low, high = whole.interval()
+            each = " ".join(str(one.trials - one.held) for one in shares)
+            print(
+                f"rig {rig + 1:2}: {100.0 * whole.held / whole.trials:5.1f} % of {whole.trials} "
+                f"({100.0 * low:.1f} .. {100.0 * high:.1f}); missed after each calibration: {each}",
+                flush=True,
+            )
+    share = 100.0 * total.held / total.trials
+    print(f"{within} of {rigs} rigs within 92 .. 98 %; together {share:.1f} % of {total.trials}")
+    effect = design_effect(clusters)
+    print(
+        f"design effect {effect:.2f}: {total.trials // rigs} trials of a rig tell as much as "
+        f"{total.trials / rigs / effect:.0f} that have nothing in common"
+    )
+
+
+if __name__ == "__main__":
+    main(*(int(word) for word in sys.argv[1:]))
