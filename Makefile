@@ -37,7 +37,8 @@ test: $(STAMP)   ## the tests: first on all cores, then those that the wall cloc
 	@failed=0; \
 	$(BIN)/pytest --numprocesses auto -m 'not wall_clock' || failed=1; \
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers || failed=1; \
-	$(BIN)/pytest --numprocesses 3 --no-loadscope-reorder tests/drivers -m wall_clock || failed=1; \
+	$(BIN)/pytest --numprocesses 3 --no-loadscope-reorder tests/drivers -m 'wall_clock and not alone' || failed=1; \
+	$(BIN)/pytest tests/drivers -m alone || failed=1; \
 	exit $$failed
 
 check: $(STAMP)  ## style, types and walls; .pre-commit-config.yaml runs the same

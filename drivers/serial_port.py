@@ -9,6 +9,8 @@ from serial.tools import list_ports
 
 from drivers.errors import DriveConnectionError
 
+LEAST_WRITE_S = 0.1  # that a write is waited for: a busy host, which was away for a moment, is no line that is stuck
+
 
 class SerialPort:
     """An open port that nobody else has open.
@@ -26,7 +28,8 @@ class SerialPort:
     def __init__(self, device: str, port: str, baud_rate: int, timeout_s: float) -> None:
         self._device = device
         try:
-            self._port: Any = serial.Serial(port, baud_rate, timeout=timeout_s, write_timeout=timeout_s, exclusive=True)
+            write_s = max(timeout_s, LEAST_WRITE_S)
+            self._port: Any = serial.Serial(port, baud_rate, timeout=timeout_s, write_timeout=write_s, exclusive=True)
             self._port.reset_input_buffer()
         except (OSError, ValueError) as error:  # SerialException is an OSError
             raise DriveConnectionError(device, f"{error}; {_ports()}") from error

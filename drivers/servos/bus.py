@@ -209,9 +209,10 @@ def answering(port: str, baud_rate: int, frames: Frames, servo_ids: range | None
             yield from bus.listen(frames.ping(frames.broadcast), _ALL_S)
             return
         found: set[int] = set()
-        for servo_id in servo_ids:
-            # an answer that came late, through a slow adapter or on a busy host, is one all the same
-            for one in bus.listen(frames.ping(servo_id), _ALONE_S):
+        # an answer that came late, through a slow adapter or on a busy host, is one all the same
+        questions = [(frames.ping(servo_id), _ALONE_S) for servo_id in servo_ids]
+        for question, wait_s in [*questions, (b"", _ALL_S)]:
+            for one in bus.listen(question, wait_s):
                 if one.servo_id in servo_ids and one.servo_id not in found:
                     found.add(one.servo_id)
                     yield one

@@ -50,7 +50,7 @@ def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page):
     page.locator(".badge.idle").wait_for()
     service.runner.wait(10.0)  # its record is closed a moment before its thread has ended
     start(page)
-    said.wait_for(state="detached", timeout=1000)
+    said.wait_for(state="detached", timeout=4000)  # by itself it would go after ten seconds
     page.keyboard.press("Escape")
     page.locator(".badge.idle").wait_for()
 

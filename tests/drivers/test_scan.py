@@ -16,7 +16,7 @@ ACCEPTED = {"feetech": {"accept_no_watchdog": True}, "odrive": {"watchdog_is_set
 
 def scan(*options):
     words = [sys.executable, "-m", "bench.cli", "drives", "scan", *options]
-    with no_turns():
+    with no_turns():  # as who looks for drives starts it
         return subprocess.run(words, capture_output=True, text=True, timeout=60)
 
 

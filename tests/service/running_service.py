@@ -4,7 +4,7 @@ import ssl
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,6 @@ from bench.service.auth.token_register import TokenRegister
 from bench.service.auth.tokens import ENVIRONMENT, digest_of, make_token
 from bench.service.server import Address, BenchServer, listen
 from bench.store import Store
-from tests.devices.turns import no_turns
 
 TOKEN = "test-token-0123456789"
 
@@ -70,10 +69,7 @@ def running_service(
     url = f"sqlite:///{folder / 'bench.sqlite'}"
     configuration = configuration or default_configuration()
     configuration = configuration.model_copy(update={"store": configuration.store.model_copy(update={"url": url})})
-    # the bench process asks for its turns by itself, as where a user starts it; with those of a test it would start and
-    # compute before all others
-    turns = no_turns() if in_process_of_its_own else nullcontext()
-    with turns, Store.open(url) as store, listen(Address("127.0.0.1", port)) as listener:
+    with Store.open(url) as store, listen(Address("127.0.0.1", port)) as listener:
         runner = (RemoteRunner if in_process_of_its_own else Runner)(configuration, store)
         register = TokenRegister({ENVIRONMENT: TOKEN}, store.access.tokens.find)
         access = Access(register, reads_open, LOOPBACK_NAMES)

@@ -48,6 +48,13 @@ CHANGES = [
     ("POST", "/challenges"),
     ("POST", "/challenges/1/reveal"),
     ("DELETE", "/studies/1/models/1"),
+    ("DELETE", "/experiments/1"),
+    ("DELETE", "/studies/1"),
+    ("POST", "/calibrations/run"),
+    ("POST", "/calibrations/run/pause"),
+    ("POST", "/calibrations/run/resume"),
+    ("POST", "/commission"),
+    ("POST", "/commission/answer"),
     ("POST", "/challenges"),
     ("POST", "/challenges/1/reveal"),
 ]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.drivers.conformance.benches import BENCHES
+from tests.drivers.conformance.benches import BENCHES, PATIENT
 from tests.drivers.conformance.campaign import Person
 from tests.queue.waiting import wait_for
 from tests.service.running_service import RunningService, running_service
@@ -35,14 +35,13 @@ CAMPAIGN = {
     "parameters": {"amplitudes_rad": [0.2], "strokes": 2},
     "grid": {"load_kg": [0.0, 0.05]},
 }
-pytestmark = pytest.mark.timeout(400)
+pytestmark = [pytest.mark.timeout(400), pytest.mark.alone]
 
 
 @pytest.fixture
 def service(name, tmp_path) -> Iterator[RunningService]:
     with (
-        # the joint does not wait for the host: here the host's time goes on, too, and a servo would kick after
-        BENCHES[name]() as bench,
+        BENCHES[name](*PATIENT) as bench,
         running_service(tmp_path, configuration=bench.configuration, in_process_of_its_own=True) as running,
     ):
         person = Person(bench, running.runner)
