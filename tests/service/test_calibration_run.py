@@ -57,11 +57,15 @@ def test_it_says_how_far_it_is_and_ends_in_a_calibration(bench):
 @pytest.mark.timeout(240)
 def test_it_pauses_after_the_trial_and_goes_on(bench):
     begun(bench)
+    while now(bench)["spent_s"] == 0.0:  # until an experiment runs: it is paused after its trial, not after its end
+        time.sleep(0.01)
     assert bench.client.post("/calibrations/run/pause").json()["state"] in ("pausing", "paused")
     paused = waited(bench, "paused")
     time.sleep(0.3)
     assert now(bench) == paused  # nothing moves
-    assert bench.client.get("/bench").json()["reading"]["power"] == "disabled"
+    found = bench.client.get("/bench").json()
+    assert found["reading"]["power"] == "disabled"
+    assert found["run"]["pausing"] == "paused"
     assert bench.client.post("/experiments", json={"kind": "steps"}).status_code == 409
     bench.client.post("/calibrations/run/resume")
     assert waited(bench, "calibrated", "ended")["reason"] == ""
