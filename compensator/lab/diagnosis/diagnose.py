@@ -14,13 +14,12 @@ from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import Answer
 from compensator.lab.diagnosis.four_families import judged
 from compensator.lab.diagnosis.note import Note
-from compensator.lab.diagnosis.notes import at_rest, differs_by_run, part_of_it
+from compensator.lab.diagnosis.notes import at_rest, differs_by_run
 from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.diagnosis.run_to_run import differences_by_run
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
-from compensator.lab.left_over.left_over import growing_beside
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
@@ -50,7 +49,6 @@ def diagnose(fit: Fit) -> Diagnosis:
         return _data_problem(fit, problems[0])
     others = [answer for answer in families.in_order if answer is not first]
     left = _left_in_sliding(fit, families.gathered, first) if first is families.memory else []
-    first = families.beside_the_other(first, fit)
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
@@ -67,7 +65,6 @@ def diagnose(fit: Fit) -> Diagnosis:
         left_out=families.left_out,
         too_short=nothing and least_p_value(families.stretches) > SIGNIFICANT,
         remains=first.remains or bool(left) or (nothing and families.steady.remains),
-        shapes=families.gathered.fit.shapes if families.drawn else None,
     )
 
 
@@ -117,10 +114,7 @@ def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[Not
         return []
     name = memory.candidates[0].effect.name
     explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
-    if notes := what_remains(explained, gathered, name):
-        return notes
-    growing = growing_beside(explained, memory.named)
-    return [] if growing is None else [part_of_it(name, growing, fit.dataset.facts)]
+    return what_remains(explained, gathered, name)
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

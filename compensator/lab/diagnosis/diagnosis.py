@@ -29,15 +29,6 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class BesideOpen:
-    """Relative held-out errors without and with an effect, both beside what the model's formulas leave open."""
-
-    before: float
-    after: float
-    gain: Gain
-
-
-@dataclass(frozen=True)
 class Candidate:
     """One effect that may be missing.
 
@@ -52,10 +43,8 @@ class Candidate:
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
-        beside_open: errors and gain beside what the model's formulas leave open, where these decide (`second_look`).
         beside_chain: gain beside the chain's columns that it stands in for near reversals (`beside_chain`); None: it
             stands in for none there, or was not confirmed without.
-        anew: errors and gain are those of a model with all shapes found anew, which is a second look, too.
     """
 
     effect: Effect
@@ -70,14 +59,7 @@ class Candidate:
     physical: bool
     picture: Picture | None
     rows: EffectRows = "sliding"
-    beside_open: BesideOpen | None = None
-    anew: bool = False
     beside_chain: Gain | None = None
-
-    @property
-    def looks(self) -> int:
-        """How often its gain was looked at."""
-        return 1 if self.beside_open is None and not self.anew else 2
 
 
 @dataclass(frozen=True)
@@ -96,7 +78,6 @@ class Diagnosis:
         left_out: effect -> why it could not be judged.
         too_short: there are too few independent stretches for anything to be sure, so that ranks mean nothing.
         remains: something is left that nothing named explains: a curve that no effect follows, or more than noise.
-        shapes: of the model that was judged, where those fitted imitate what is named (`drawn_shape`); else None.
     """
 
     verdict: Verdict
@@ -110,4 +91,3 @@ class Diagnosis:
     left_out: dict[str, str] = field(default_factory=dict)
     too_short: bool = False
     remains: bool = False
-    shapes: dict[str, Shape] | None = None

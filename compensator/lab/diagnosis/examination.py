@@ -5,13 +5,13 @@ from functools import partial
 
 import numpy as np
 
+from compensator.lab.diagnosis.beside_chain import gain_beside_chain
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
-from compensator.lab.diagnosis.second_look import beside_open, gain_beside_chain
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import EffectRows, MotionRows, Shape
-from compensator.lab.model.fit import fit_effects, fit_model
+from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
@@ -73,7 +73,6 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
         found = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
         candidates.append(_beside_chain(found, fit, fits[index], gathered.show_in))
-    candidates = _looked_at_again(gathered, candidates, evidence)
     return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
 
 
@@ -98,70 +97,9 @@ def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
     return held_out(fit, rows, fit.determination if show_in == "sliding" else None)
 
 
-def _held_out_sliding(fit: Fit) -> HeldOut:
-    return _held_out(fit, "sliding")
-
-
-def _looked_at_again(gathered: Candidates, candidates: list[Candidate], evidence: list[Evidence]) -> list[Candidate]:
-    """The candidates; very strong ones whose gain does not show, with what else it may be.
-
-    In steady sliding other formulas may hide it: there, beside what these leave open. Near reversals the shape that has
-    most evidence may be far from the one that predicts best, where blows of teeth outweigh all else: there, in the
-    model that would be had, with all shapes found anew. Where one is confirmed as it is, and no mere shadow of another,
-    no other is looked at again.
-    """
-    if _names_one(candidates, evidence, gathered.show_in):
-        return candidates
-    if gathered.show_in == "sliding":
-        hidden = [one.effect.name for one in candidates if one.physical and _may_be_hidden(one)]
-        found = beside_open(gathered.fit, hidden, _held_out_sliding)
-        return [replace(one, beside_open=found.get(one.effect.name)) for one in candidates]
-    pairs = zip(candidates, evidence, strict=True)
-    return [_anew(gathered, one) if _may_be_anew(gathered, one, item) else one for one, item in pairs]
-
-
-def _may_be_anew(gathered: Candidates, candidate: Candidate, item: Evidence) -> bool:
-    """Whether a candidate may be confirmed near reversals by the model that would be had.
-
-    Where an effect says itself which shapes hold in a model, these decide, and not where its scan ends.
-    """
-    if candidate.physical:
-        return _may_be_hidden(candidate)
-    beyond = candidate.effect.holds is not None and is_possible(gathered, item)
-    return beyond and _is_very_strong(candidate)
-
-
-def _anew(gathered: Candidates, candidate: Candidate) -> Candidate:
-    """The candidate by the model that would be had; as it is where that does not confirm it."""
-    fit, name = gathered.fit, candidate.effect.name
-    explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
-    term = next(term for term in explained.terms if term.effect.name == name)
-    holds = candidate.effect.holds
-    physical = candidate.physical or (holds is not None and holds(term.shape) and not term.at_bound.any())
-    found = replace(as_in_the_ladder(candidate, fit, explained, gathered.show_in), physical=physical, anew=True)
-    return found if is_confirmed(found) else candidate
-
-
 def share_of(show_in: MotionRows) -> float:
     """Of the evidence of the likeliest effect: what explains less is the shadow of something else."""
     return FORMULA_SHARE if show_in == "sliding" else SHARE_NEAR_REVERSALS
-
-
-def _names_one(candidates: list[Candidate], evidence: list[Evidence], show_in: MotionRows) -> bool:
-    """Whether a candidate is confirmed that is no shadow of another one."""
-    enough = share_of(show_in) * max((item.noncentrality for item in evidence), default=0.0)
-    pairs = zip(candidates, evidence, strict=True)
-    return any(is_confirmed(one) and item.noncentrality >= enough for one, item in pairs)
-
-
-def _may_be_hidden(candidate: Candidate) -> bool:
-    """Whether all but the held-out gain speaks very strongly for a candidate that can be it."""
-    return _is_very_strong(candidate) and not is_sure(candidate)
-
-
-def _is_very_strong(candidate: Candidate) -> bool:
-    """Whether its evidence is very strong, and no luck."""
-    return candidate.score >= VERY_STRONG and candidate.p_value <= SIGNIFICANT
 
 
 def is_confirmed(candidate: Candidate) -> bool:
@@ -183,8 +121,6 @@ def is_sure(candidate: Candidate) -> bool:
     strong = candidate.score >= VERY_STRONG
     no_luck = candidate.p_value <= SIGNIFICANT or strong
     before, gain = candidate.before, candidate.gain
-    if candidate.beside_open is not None:
-        before, gain = candidate.beside_open.before, candidate.beside_open.gain
     falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     return candidate.score > 0.0 and no_luck and falls and _helps(candidate, gain, least)

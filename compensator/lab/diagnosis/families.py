@@ -139,7 +139,7 @@ class _Family:
             return None
         own_p = self.own_chance
         sentence = answer_in_words("missing", own_p, examined, None)
-        notes = beside_a_name(explained, self.gathered, best, best.block.name)
+        notes = beside_a_name(explained, self.gathered, best)
         strength, remains = best.noncentrality, bool(notes)
         return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained, best)
 
@@ -193,19 +193,6 @@ def _holds(explained: Fit, candidate: Candidate) -> bool:
     return term.effect.holds is None or term.effect.holds(term.shape)
 
 
-def beside(first: Answer, other: Answer, fit: Fit, gathered: Candidates) -> Answer:
-    """The answer with what it leaves once the effect of another family is in the model, too.
-
-    What the one leaves may be the other's: a delay leaves what seems to wander.
-    """
-    if first.named is None or other.named is None or not first.remains:
-        return first
-    names = (first.named.block.name, other.named.block.name)
-    explained = fit_effects(fit.dataset, [*fit.names, *names], fit.training)
-    notes = beside_a_name(explained, gathered, first.named, " and ".join(names))
-    return replace(first, notes=notes, remains=bool(notes))
-
-
 def _own_chance(named: Screening, best: Candidate, show_in: MotionRows) -> float:
     """The chance of the effect that is to be named, if any of its family is no luck.
 
@@ -213,14 +200,6 @@ def _own_chance(named: Screening, best: Candidate, show_in: MotionRows) -> float
     signs. What takes much of the held-out error in whole trials drawn again, for sure, is no luck of a few stretches.
     """
     p_value = among_all(named.p_value)
-    own = _chance_of(named, best) if p_value <= SIGNIFICANT else p_value
+    own = among_all(named.chance_of(best.effect.name)) if p_value <= SIGNIFICANT else p_value
     large = show_in == "moving" and best.gain.low >= LARGE_GAIN
-    return min(own, best.looks * among_all(best.gain.chance)) if large else own
-
-
-def _chance_of(named: Screening, best: Candidate) -> float:
-    """The chance that luck alone brings any effect to what this one reaches; twice that where it was looked at twice.
-
-    Bonferroni: of two looks at its gain, either would have done.
-    """
-    return min(1.0, best.looks * among_all(named.chance_of(best.effect.name)))
+    return min(own, among_all(best.gain.chance)) if large else own

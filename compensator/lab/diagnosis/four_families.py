@@ -7,9 +7,8 @@ import numpy as np
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.drawn_shape import answer_beside
-from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, FORMULA_SHARE
-from compensator.lab.diagnosis.families import Answer, answer_of, beside
+from compensator.lab.diagnosis.examination import FORMULA_SHARE
+from compensator.lab.diagnosis.families import Answer, answer_of
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import widened
@@ -35,7 +34,6 @@ class FourFamilies:
         gathered: what the model may be missing in steady sliding.
         wide: the same near reversals; None where there are none.
         left_out: effect name -> why it cannot be judged on these trials.
-        drawn: steady sliding was judged at the shapes that the model would have beside an effect.
     """
 
     steady: Answer
@@ -45,7 +43,6 @@ class FourFamilies:
     gathered: Candidates
     wide: Candidates | None
     left_out: dict[str, str]
-    drawn: bool
 
     @property
     def in_order(self) -> list[Answer]:
@@ -58,35 +55,12 @@ class FourFamilies:
         return len(np.unique(self.gathered.fit.dataset.block_index[self.gathered.rows]))
 
     def first(self) -> Answer:
-        """The answer: that of the first family with one, unless it is the shadow of a larger effect with memory.
-
-        Nor is it an effect with memory that is the shadow of one of the measuring chain.
-        """
+        """The answer: that of the first family with one, unless it is the shadow of a larger effect with memory."""
         first = _first_of(self.in_order)
         if self.memory is None or self.wide is None:
             return first
-        if first is self.steady:
-            return self.memory if _casts(self.wide, self.memory, self.steady) else first
-        return self.chain if first is self.memory and self._memory_is_of_the_chain() else first
-
-    def _memory_is_of_the_chain(self) -> bool:
-        """Whether what the chain names takes most of the evidence for the memory effect, and not the other way round.
-
-        An angle that is misread is misread near reversals, too, where every effect has a little of what it makes.
-        """
-        memory, chain = self.memory, self.chain
-        if memory is None or self.wide is None or memory.named is None or chain.named is None:
-            return False
-        left = _evidence_beside(self.wide, memory.named.block.name, chain.candidates[0])
-        left_of_chain = _evidence_beside(self.gathered, chain.named.block.name, memory.candidates[0])
-        taken = left < EXPLAINED_BY_RIVAL * memory.strength
-        return taken and left_of_chain >= EXPLAINED_BY_RIVAL * chain.strength
-
-    def beside_the_other(self, first: Answer, fit: Fit) -> Answer:
-        """Of joint and chain, one with what it leaves beside the other, too; any other answer as it is."""
-        if first is not self.steady and first is not self.chain:
-            return first
-        return beside(first, self.chain if first is self.steady else self.steady, fit, self.gathered)
+        shadow = first is self.steady and _casts(self.wide, self.memory, self.steady)
+        return self.memory if shadow else first
 
 
 def judged(fit: Fit) -> FourFamilies:
@@ -108,13 +82,10 @@ def judged(fit: Fit) -> FourFamilies:
     sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
     steady = answer_of(fit, gathered, sliding, generic)
     chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
-    beside_drawn = None if steady.verdict == "missing" else answer_beside(fit, gathered)
-    if beside_drawn is not None:
-        steady, gathered = beside_drawn
     memory, wide, not_judged = _memory_of(fit)
     rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
     left_out = {**gathered.left_out, **not_judged, **not_at_rest}
-    return FourFamilies(steady, memory, rest, chain, gathered, wide, left_out, beside_drawn is not None)
+    return FourFamilies(steady, memory, rest, chain, gathered, wide, left_out)
 
 
 def _memory_of(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:

@@ -8,10 +8,7 @@ NoteCode = Literal[
     "also-missing",
     "at-rest",
     "bends-along",
-    "changed-in-session",
     "differs-by-run",
-    "other-form",
-    "part-of-it",
     "structure-remains",
     "swings",
     "too-few-starts",
@@ -23,10 +20,7 @@ NoteCode = Literal[
 also-missing: another family of effects has something missing, too.
 at-rest: the joint at rest contradicts the model.
 bends-along: what is left varies with where the joint has turned back.
-changed-in-session: the effect named is another one from some trial on.
 differs-by-run: a constant differs from run to run.
-other-form: what is left goes round with the position in another way than the effect named.
-part-of-it: the effect named explains some of what another cause explains all of.
 structure-remains: with the effect named, structure over a variable remains.
 swings: with it, what is left swings at one frequency.
 too-few-starts: starts from rest are too few to name anything.

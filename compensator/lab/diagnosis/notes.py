@@ -3,21 +3,14 @@
 from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.run_to_run import ByRun, by_run_in_words
-from compensator.lab.diagnosis.session_constancy import InSession
 from compensator.lab.diagnosis.wording import (
     LOOK_AT_HOSES,
     changing_in_words,
-    recurring_in_words,
     swinging_in_words,
-    varying_in_words,
 )
 from compensator.lab.left_over.constancy import Change
-from compensator.lab.left_over.following import Following
-from compensator.lab.left_over.orders import Line
 from compensator.lab.left_over.swinging import Swing
-from compensator.lab.left_over.varying import Varying
 from compensator.lab.left_over.wandering import Wandering
-from compensator.lab.recordings.facts import Facts
 
 
 def structure_remains(name: str, driver: str, against_motion: bool) -> Note:
@@ -70,40 +63,6 @@ def bends_along(name: str) -> Note:
     return Note("bends-along", text, {"effect": name})
 
 
-def part_of_it(name: str, left: Line | Following | Varying, facts: Facts) -> Note:
-    """What an effect that is named explains some of, and another cause all of."""
-    if isinstance(left, Line):
-        how = recurring_in_words(left, facts)
-    else:
-        how = varying_in_words(left) if isinstance(left, Varying) else f"varies with {left.driver}"
-    text = (
-        f"{name} describes it in part: beside it, what is left {how}; another cause, which the catalogue does not "
-        "have, may explain both."
-    )
-    return Note("part-of-it", text, {"effect": name, **_of(left)})
-
-
-def other_form(name: str, line: Line, facts: Facts) -> Note:
-    """What an effect that is named explains some of, and that goes round with the position in another way."""
-    how = "turns with the motion, as friction does" if line.against_motion else "stays the same in either direction"
-    how = "grows with the speed, as what is misread does" if line.growing else how
-    text = (
-        f"{name} describes it in part: what is left without it {recurring_in_words(line, facts)}. That {how}, as "
-        f"{name} does not; another cause, which the catalogue does not have, may explain more."
-    )
-    return Note("other-form", text, {"effect": name, **_of(line)})
-
-
-def changed_in_session(name: str, change: InSession) -> Note:
-    """What an effect that is named imitates, where it is another one from some trial on."""
-    text = (
-        f"{name} describes it in part: before {change.trial} it is {change.before:.1f} times as large as in all trials "
-        f"together, and {change.since:.1f} times since. Something slips, shifts or loosens: repeat the first trial."
-    )
-    values: dict[str, Value] = {"effect": name, "trial": change.trial, "before": change.before, "since": change.since}
-    return Note("changed-in-session", text, values)
-
-
 def at_rest(found: RestComparison, unit: str) -> Note:
     """What rests say against the model."""
     values: dict[str, Value] = {
@@ -126,12 +85,3 @@ def differs_by_run(found: ByRun, unit: str) -> Note:
         "floor": found.floor,
     }
     return Note("differs-by-run", by_run_in_words(found, unit), values)
-
-
-def _of(left: Line | Following | Varying) -> dict[str, Value]:
-    """The numbers of what is left."""
-    if isinstance(left, Line):
-        return {"order": left.order, "against_motion": left.against_motion, "growing": left.growing}
-    if isinstance(left, Varying):
-        return {"of": left.effect, "condition": left.condition}
-    return {"driver": left.driver}

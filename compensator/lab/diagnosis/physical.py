@@ -29,8 +29,7 @@ def is_possible(gathered: Candidates, item: Evidence) -> bool:
 
     What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
     """
-    sized = not is_too_small(gathered, item) and not is_too_large(gathered, item)
-    fits = is_within_bounds(gathered, item) and sized
+    fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
     if effect_named(item.block.name).told(gathered.fit.dataset.facts, shape_of(item)):
         return False
     return fits and not is_made_by_chain(gathered, item)
@@ -59,15 +58,6 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
     """Whether an effect that stands in the place of dry friction is but a part of it."""
     least = effect_named(item.block.name).least_of_friction * gathered.fit.dry_friction
     return least > 0.0 and bool(np.all(_coefficients(gathered, item) < least))
-
-
-def is_too_large(gathered: Candidates, item: Evidence) -> bool:
-    """Whether an effect that changes dry friction would change it by more than it can, as far as the rows can tell."""
-    most = effect_named(item.block.name).most_of_friction
-    if np.isinf(most):
-        return False
-    found = _coefficients(gathered, item)
-    return bool(np.any(np.abs(found) > most * gathered.fit.usual_friction + UNSURE * _standard_error(item, found)))
 
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:

@@ -6,11 +6,10 @@ from compensator.lab.diagnosis import notes
 from compensator.lab.diagnosis.bending import still_bending
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.note import Note
-from compensator.lab.diagnosis.session_constancy import change_in_session
 from compensator.lab.diagnosis.wording import bursts_in_words, unexplained_in_words, wandering_in_words
 from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
 from compensator.lab.left_over.clear_rows import left_for_sure
-from compensator.lab.left_over.left_over import LeftOver, in_its_place, left_beside, left_over
+from compensator.lab.left_over.left_over import LeftOver, left_over
 from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
@@ -38,9 +37,11 @@ def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: 
     return unexplained_in_words(left, _nearest_driver(generic), p_value, stretches, fit.dataset.facts, wanders)
 
 
-def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence, called: str) -> list[Note]:
-    """What is left of an effect that is named: beside its formula, or of another that it only imitates."""
-    return what_remains(explained, gathered, called) or _imitated(explained, gathered, best)
+def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence) -> list[Note]:
+    """What is left of an effect that is named: beside its formula, or of what bends along, which it only imitates."""
+    if found := what_remains(explained, gathered, best.block.name):
+        return found
+    return [notes.bends_along(best.block.name)] if still_bending(explained, gathered, best) else []
 
 
 def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
@@ -61,21 +62,6 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
     if left.wandering is not None:
         return [notes.wanders(name, left.wandering, _wanders(fit, left))]
     return [notes.unexplained_remains(name, left.remainder.share)]
-
-
-def _imitated(explained: Fit, gathered: Candidates, best: Evidence) -> list[Note]:
-    """What an effect that is named only imitates, as far as it is more than what its formula leaves open."""
-    name = best.block.name
-    if still_bending(explained, gathered, best):
-        return [notes.bends_along(name)]
-    change = change_in_session(explained, gathered, best.block)
-    if change is not None:
-        return [notes.changed_in_session(name, change)]
-    facts = explained.dataset.facts
-    if (instead := in_its_place(gathered, best)) is not None:
-        return [notes.other_form(name, instead, facts)]
-    left = left_beside(explained, gathered, best)
-    return [] if left is None else [notes.part_of_it(name, left, facts)]
 
 
 def _bursts(gathered: Candidates) -> Bursts | None:

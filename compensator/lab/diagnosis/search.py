@@ -4,9 +4,6 @@ The first name is given while the others are still missing, and may be a mixture
 added, each earlier one is taken out again and its place is judged anew, given all the others; and what no longer helps
 on held-out rows is dropped (Efroymson 1960, with held-out error in place of F).
 
-Of two names that come close, the one with more evidence may leave what the other would not, once what its formula
-leaves open stands beside it: where the last model leaves more than noise, it gives way to one that leaves nothing.
-
 Two effects that are missing at once may look like something that no formula follows: a free curve imitates both, and
 each formula but one. So what is of no name is searched further from the likeliest formulas, and has names after all
 where two or more of them leave nothing.
@@ -26,7 +23,7 @@ from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
-MOST_TRIED = 3  # in the place of a name that leaves something, or of none
+MOST_TRIED = 3  # in the place of a curve that has no name
 
 Change = Literal["add", "swap", "drop"]
 
@@ -104,12 +101,8 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
         steps += _drops(start, steps[-1].fit, last_too=bool(swapped))
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
             break  # the same model again: the trials do not decide
-        fit, before = steps[-1].fit, diagnosis
+        fit = steps[-1].fit
         diagnosis = diagnose(fit)
-        stuck = diagnosis.remains and diagnosis.verdict != "missing"
-        if stuck and steps[-1].change == "add" and (cleared := _cleared(steps[-1], before)) is not None:
-            steps.append(cleared[0])
-            diagnosis = cleared[1]
     return Search(start, tuple(steps), diagnosis)
 
 
@@ -145,23 +138,6 @@ def _leaves_nothing(diagnosis: Diagnosis) -> bool:
 
 def _step(change: Change, effect: str, instead_of: str | None, fit: Fit) -> Step:
     return Step(change, effect, instead_of, fit, held_out(fit))
-
-
-def _cleared(last: Step, before: Diagnosis) -> tuple[Step, Diagnosis] | None:
-    """In the place of an effect that was added, the likeliest rival whose model leaves nothing; None without one.
-
-    Args:
-        last: the step that added it, to a model that leaves more than noise.
-        before: the diagnosis that named it.
-    """
-    names = [one.effect.name for one in _likely(before) if one.effect.name != last.effect]
-    for name in names[:MOST_TRIED]:
-        effects = [name if other == last.effect else other for other in last.fit.names]
-        fit = fit_effects(last.fit.dataset, effects, last.fit.training)
-        found = diagnose(fit)
-        if _leaves_nothing(found):
-            return _step("swap", name, last.effect, fit), found
-    return None
 
 
 def _swaps(start: Fit, fit: Fit) -> list[Step]:

@@ -25,7 +25,7 @@ from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.discrepancy import open_columns
-from compensator.lab.screening.evidence import Evidence, Screening, among_all, score_of, screen_against_noise
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, score_of
 
 
 def unfollowed(
@@ -69,26 +69,15 @@ def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, 
 
 
 def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | None:
-    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error.
-
-    Its flips are of few stretches, and their own scatter is known no better: the noise of all rows must say the same.
-    """
+    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
     if among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
         return None
     best = generic.evidence[0]
-    if best.score <= 0.0 or best.p_value > SIGNIFICANT or _noise_draws_curves(gathered):
+    if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     known = fit.determination
     return best if held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known)).low > 0.0 else None
-
-
-def _noise_draws_curves(gathered: Candidates) -> bool:
-    """Whether noise alone, where it is known, would bring free curves as sure as these."""
-    if gathered.noise is None:
-        return False
-    against = screen_against_noise(gathered.bases, gathered.curves.blocks, gathered.noise)
-    return among_all(against.p_value) > SIGNIFICANT
 
 
 @dataclass(frozen=True)

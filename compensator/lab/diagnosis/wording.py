@@ -53,17 +53,8 @@ def answer_in_words(
     gain = best.gain.in_words(best.before, best.after, 0)
     return (
         f"{title} is missing{also}: adding it changes the held-out error from {best.before:.2%} to "
-        f"{best.after:.2%} ({gain}{_beside(best)}; {chance_in_words(p_value)})."
+        f"{best.after:.2%} ({gain}; {chance_in_words(p_value)})."
     )
-
-
-def _beside(best: Candidate) -> str:
-    """What the effect gains where other formulas hide it; empty where they do not."""
-    if best.beside_open is None:
-        return ""
-    found = best.beside_open
-    gain = found.gain.in_words(found.before, found.after, 0)
-    return f"; beside what the model's formulas leave open, from {found.before:.2%} to {found.after:.2%}, {gain}"
 
 
 def problem_in_words(problem: str) -> str:

@@ -258,7 +258,6 @@ class Effect:
         dry_friction: it is friction that varies with something else than speed; see `discrepancy`.
         discrepancy: (motion, shape) -> array (k, n): what the truth may differ from the equation by; None for nothing.
         least_of_friction: lowest coefficient over the model's dry friction: what stands in its place is as large as it.
-        most_of_friction: highest coefficient over all dry friction of the model, either sign: what is larger is not it.
         shape_over: (motions of all trials) -> the one shape that they give, in place of a scan; None: `shapes`.
         provisional: no mechanism, but a curve that stands for one that nobody knows yet.
         misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
@@ -301,7 +300,6 @@ class Effect:
     dry_friction: bool = False
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
-    most_of_friction: float = np.inf
     holds: Callable[[Shape], bool] | None = None
     ends_within_scan: bool = False
     shape_over: Callable[[Sequence[Motion]], Shape] | None = None

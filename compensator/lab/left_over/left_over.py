@@ -2,27 +2,22 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constancy import Change, change_of
 from compensator.lab.left_over.constants import Constants, gather_in_motion
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
-from compensator.lab.left_over.orders import Line, contrary_of, growing_line_of, growing_of, line_of
+from compensator.lab.left_over.orders import Line, growing_line_of, line_of
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.left_over.ripple import ripple_of
 from compensator.lab.left_over.swinging import Swing, swing_of
 from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.left_over.wandering import Wandering, wandering_of
-from compensator.lab.left_over.white_rows import LOOK_AGAIN, WhiteRows
+from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.regimes import Regime
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
-from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Evidence
-
-PERIODIC = ("order",)  # shape of what goes round with the position
-PART_OF_NAMED = 0.1  # of the evidence for an effect that is named
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,70 +85,3 @@ def _is_plain(fit: Fit) -> bool:
     """Whether a model is what every joint has: a further formula that is nearly right leaves lines and curves, too."""
     plain = default_effects(fit.dataset.facts)
     return all(effect.name in plain or effect.pipeline for effect in fit.effects)
-
-
-def left_beside(explained: Fit, gathered: Candidates, named: Evidence) -> Line | Following | Varying | None:
-    """The line, curve or coefficient that an effect which is named leaves, if it is much beside what that explains.
-
-    A formula of the right name, though it is not exact, leaves little of what it explains; one that imitates another
-    cause leaves much.
-
-    Args:
-        explained: the model with the effect.
-        gathered: what the model without it may be missing.
-        named: the evidence for the effect.
-    """
-    if gathered.noise is None or gathered.show_in != "sliding":
-        return None
-    grown = with_noise(gather_curves(explained))
-    white = WhiteRows.of(grown)
-    if white is None:
-        return None
-    follows = following_of(grown, white, NAMED.following, NAMED.following_far, 0.0)
-    found = (
-        line_of(grown, white, NAMED.line, 0.0),
-        follows,
-        _growing(grown, white, named.block.name),
-        growing_line_of(grown, white, NAMED.growing),
-        varying_of(grown, white, NAMED.varying, LOOK_AGAIN),
-    )
-    there = [one for one in found if one is not None and one.foretold >= PART_OF_NAMED * named.noncentrality]
-    return there[0] if there else None
-
-
-def in_its_place(gathered: Candidates, named: Evidence) -> Line | None:
-    """The line that is likelier than an effect that is named and goes round with the position, and no such effect.
-
-    Friction that goes round turns with the motion, and a force does not: which of the two it is, every line tells. Of a
-    model that is plain alone: what an earlier name leaves of its own line may be the larger one.
-
-    Args:
-        gathered: what the model without the effect may be missing.
-        named: the evidence for the effect.
-    """
-    effect = effect_named(named.block.name)
-    if effect.shape_names != PERIODIC or gathered.show_in != "sliding" or not _is_plain(gathered.fit):
-        return None
-    white = WhiteRows.of(gathered)
-    return None if white is None else contrary_of(gathered, white, effect.dry_friction, NAMED.line)
-
-
-def growing_beside(explained: Fit, named: Evidence) -> Line | None:
-    """The line in steady sliding that an effect leaves which shows near reversals, and that grows with the speed.
-
-    Where an angle is misread, reversals are, too: what shows there then imitates an effect with memory.
-
-    Args:
-        explained: the model with the effect.
-        named: the evidence for it.
-    """
-    grown = with_noise(gather_curves(explained, "sliding"))
-    white = WhiteRows.of(grown)
-    line = None if white is None else growing_line_of(grown, white, NAMED.line)
-    return line if line is not None and line.foretold >= PART_OF_NAMED * named.noncentrality else None
-
-
-def _growing(grown: Candidates, white: WhiteRows, name: str) -> Line | None:
-    """What grows with the speed at the very order of an effect that goes round with the position, and is named."""
-    term = next(term for term in grown.fit.terms if term.effect.name == name)
-    return growing_of(grown, white, term.shape[0], NAMED.line) if term.effect.shape_names == PERIODIC else None

@@ -33,7 +33,6 @@ MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
 SLOW = 0.02  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
-MOST_TURNED = np.pi / 4.0  # rad of phase: there force and friction share a ripple's power
 TINY = float(np.finfo(float).tiny)
 LEAST_OF_EFFORT = 0.0005  # root mean square: no sensor is more linear
 
@@ -131,39 +130,6 @@ def line_of(
     return line if line.is_there(most) else None
 
 
-def contrary_of(gathered: Candidates, white: WhiteRows, against_motion: bool, most: float) -> Line | None:
-    """The line that turns with the motion where a name says that it does not, or the other way round, or grows.
-
-    A force that goes round with the position explains some of friction that does, at an order near by, and of an angle
-    that is misread; their own line is the likelier one, by evidence that is very strong.
-
-    What is recorded a cycle late comes later in phase the faster it goes by, and so a force at a high order turns with
-    the motion, too: there nothing is told.
-
-    Args:
-        gathered: the model without the effect that is named.
-        white: its rows.
-        against_motion: whether that effect changes its sign with the direction of motion.
-        most: chance in noise alone up to which a line is none.
-    """
-    growing = growing_line_of(gathered, white, most)
-    if growing is not None:
-        return growing if _keeps_phase(gathered, growing) else None
-    line = line_of(gathered, white, most, 0.0)
-    if line is None or line.against_motion == against_motion or not _keeps_phase(gathered, line):
-        return None
-    likeliest = _scanned(_Path.of(gathered), white)[1].max(axis=1)
-    return line if abs(float(likeliest[1] - likeliest[0])) >= VERY_STRONG else None
-
-
-def _keeps_phase(gathered: Candidates, line: Line) -> bool:
-    """Whether a cycle's delay turns a line, at the usual speed, by less than brings half of a force against motion."""
-    dataset = gathered.fit.dataset
-    speed = float(np.median(_Path.of(gathered).speed))
-    period_s = max(1.0 / trial.signals.rate_hz for trial in dataset.trials)
-    return line.order * _cycle(dataset) * speed * period_s < MOST_TURNED
-
-
 def growing_line_of(gathered: Candidates, white: WhiteRows, most: float) -> Line | None:
     """The line of any order that grows with the square of the speed, and is likelier so; None where none is there.
 
@@ -186,18 +152,6 @@ def growing_line_of(gathered: Candidates, white: WhiteRows, most: float) -> Line
     columns = path.columns(orders[best : best + 1]) * path.speed[:, None] ** 2
     line = replace(_line(gathered, white, columns, float(orders[best]), chance), growing=True)
     return line if line.is_there(most) else None
-
-
-def growing_of(gathered: Candidates, white: WhiteRows, order: float, most: float) -> Line | None:
-    """The line of one order [rad per unit of position] that grows with the square of the speed; None where none does.
-
-    A force that goes round with the joint is as large at any speed. What grows so is an acceleration: one that the
-    joint has of a wheel off its centre, or one that never was, of an angle that is misread. Arguments as `line_of`.
-    """
-    path = _Path.of(gathered)
-    columns = path.columns(np.array([order])) * path.speed[:, None] ** 2
-    line = _line(gathered, white, columns, order, _chance(white, columns))
-    return replace(line, growing=True) if line.is_there(most) else None
 
 
 def _chance(white: WhiteRows, columns: FloatArray) -> float:

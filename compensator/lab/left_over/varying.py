@@ -54,14 +54,13 @@ class Varying:
         return self.chance <= most and self.foretold >= FORETOLD
 
 
-def varying_of(gathered: Candidates, white: WhiteRows, most: float, look_again: float = 0.0) -> Varying | None:
+def varying_of(gathered: Candidates, white: WhiteRows, most: float) -> Varying | None:
     """The coefficient of friction that varies most surely; None where none does for sure, or by next to nothing.
 
     Args:
         gathered: the model.
         white: its rows.
         most: chance in noise alone up to which it is none.
-        look_again: the same in noise that is learnt with it, up to which noise without it is asked.
     """
     asked = {
         (effect, condition): (share * values)[gathered.rows, None] * white.weights[:, None]
@@ -72,8 +71,6 @@ def varying_of(gathered: Candidates, white: WhiteRows, most: float, look_again: 
     if not found:
         return None
     best, columns = min(found, key=lambda one: one[0].chance)
-    if most < best.chance <= look_again:
-        best = _varying((best.effect, best.condition), white.cleared(gathered, columns), columns, len(asked))
     return best if best.is_there(most) and is_large(gathered, white, columns) else None
 
 

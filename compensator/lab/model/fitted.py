@@ -87,15 +87,6 @@ class Fit:
         return sum(float(term.coefficients[0]) for term in self.terms if term.effect.name in DRY)
 
     @property
-    def usual_friction(self) -> float:
-        """All that goes by the direction of motion, root mean square over the training rows."""
-        own = np.concatenate(
-            [np.full(len(t.coefficients), t.effect.name in DRY or t.effect.dry_friction) for t in self.terms]
-        )
-        found = self.columns[self.training][:, own] @ self.coefficients[own]
-        return float(np.sqrt(np.mean(found**2))) if len(found) else 0.0
-
-    @property
     def static_friction(self) -> FloatArray:
         """What static friction adds to the effort beyond that of sliding, until it has fallen off; shape (N,)."""
         found = np.zeros(len(self.dataset.effort))

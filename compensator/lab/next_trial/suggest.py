@@ -6,7 +6,7 @@ from math import inf
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import fit_model, widened
+from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.next_trial.breakaway_separation import BreakawaySeparation
 from compensator.lab.next_trial.choice import Choice
@@ -34,7 +34,7 @@ def suggest(fit: Fit, diagnosis: Diagnosis, options: Sequence[Option], most: int
     rivals = rivals_of(diagnosis)
     if not rivals:
         raise UnusableDataError("the diagnosis ranks no effect: there is nothing to separate; record any motion first")
-    separation = _separation(_as_judged(fit, diagnosis), rivals)
+    separation = _separation(fit, rivals)
     pairs = _pairs(separation, diagnosis)
     enough = SURE if diagnosis.verdict == "missing" else inf  # where nothing is sure, its d' is not sure either
     if several(diagnosis):  # d' that did not tell them apart is not enough
@@ -50,14 +50,9 @@ def d_prime_of(fit: Fit, diagnosis: Diagnosis, name: str) -> float:
     candidates = [one for one in diagnosis.candidates if one.effect.name == name]
     if not candidates:
         return 0.0
-    separation = _separation(_as_judged(fit, diagnosis), candidates)
+    separation = _separation(fit, candidates)
     pairs: list[tuple[int, int | None]] = [(0, None), *((0, rival) for rival in range(1, len(separation.rivals)))]
     return float(separation.d_primes(separation.measured, pairs).min())
-
-
-def _as_judged(fit: Fit, diagnosis: Diagnosis) -> Fit:
-    """The model at the shapes that the diagnosis judged it at."""
-    return fit if diagnosis.shapes is None else fit_model(fit.dataset, fit.names, fit.training, diagnosis.shapes)
 
 
 def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:

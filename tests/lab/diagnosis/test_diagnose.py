@@ -9,7 +9,6 @@ from scipy.stats import binom
 
 from compensator.lab.diagnosis import diagnose as diagnose_module
 from compensator.lab.diagnosis import four_families
-from compensator.lab.diagnosis import unfollowed as unfollowed_module
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
@@ -21,7 +20,6 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import Screening
 from tests.lab.far_side import ARM_KG_M2, loose_teeth, twisting
 from tests.lab.synthetic import FACTS, Bench, Joint, Law, Plan, at_temperature, plans, recordings
 
@@ -193,16 +191,6 @@ def test_a_delay_beside_a_missing_effect_is_a_note():
     assert any("Measurement delay is missing" in note.text for note in found.notes)
 
 
-@pytest.mark.parametrize(("delay_s", "first"), [(0.008, "viscous_asymmetry"), (0.015, "measurement_delay")])
-def test_what_another_name_explains_is_not_said_to_be_left(delay_s, first):
-    made = recordings(Joint(extra=PLANTED["viscous_asymmetry"]), Bench(delay_s=delay_s), seed=3)
-    found = diagnosis_of(made)
-    assert found.candidates[0].effect.name == first
-    assert not found.remains
-    assert not [note for note in found.notes if note.text.startswith("After")]
-    assert len([note for note in found.notes if " is missing: adding it" in note.text]) == 1
-
-
 @pytest.mark.timeout(400)  # forty diagnoses
 def test_a_complete_model_lacks_nothing():
     """A false alarm in at most 3 % of sets; the bound leaves room for luck only, not for a worse rate."""
@@ -239,12 +227,6 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
     assert driver in found.sentence
     assert found.p_value <= 0.01
     assert f"p = {found.p_value:.3g}" in found.sentence
-
-
-def test_a_curve_that_the_noise_of_all_rows_would_draw_is_none(monkeypatch):
-    made = recordings(Joint(extra=lambda x: 0.02 * np.sign(x.v) * (x.time_s > 6.0)), seed=3)
-    monkeypatch.setattr(unfollowed_module, "screen_against_noise", lambda *_: Screening([], 0.5))
-    assert diagnosis_of(made).verdict != "unknown-effect"
 
 
 def with_luck(monkeypatch, p_value):

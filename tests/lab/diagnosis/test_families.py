@@ -1,8 +1,6 @@
 """What one family of effects says: a name must hold with all shapes found anew, as its model has them."""
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +15,7 @@ from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Screening, among_all, screen, screen_against_noise
+from compensator.lab.screening.evidence import among_all, screen, screen_against_noise
 from compensator.lab.screening.own_load import on_own_load
 from tests.lab.diagnosis.test_diagnose import SHAKEN, bristles
 from tests.lab.far_side import ARM_KG_M2, twisting
@@ -98,10 +96,3 @@ def test_near_reversals_what_takes_much_of_the_error_for_sure_is_no_luck_of_few_
     answer = answer_of(fit, replace(gathered, show_in=show_in), unsure, None)
     assert answer.verdict == verdict
     assert (answer.p_value <= SIGNIFICANT) == (verdict == "missing")
-
-
-@pytest.mark.parametrize("looks", [1, 2])
-def test_what_was_looked_at_twice_has_twice_the_chance_of_its_gain(looks):
-    candidate: Any = SimpleNamespace(gain=Gain(0.5, 0.4, 0.6, chance=0.001), looks=looks)
-    chance = families._own_chance(Screening([], 0.5), candidate, "moving")
-    assert chance == pytest.approx(looks * among_all(0.001))

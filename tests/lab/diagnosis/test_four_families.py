@@ -35,19 +35,18 @@ ENCODER = named("encoder_eccentricity", 60.0, gain=0.3)
 @pytest.mark.parametrize(
     ("steady", "chain", "kept", "first"),
     [
-        (NOTHING, ENCODER, {"backlash": 12.0, "encoder_eccentricity": 58.0}, "encoder_eccentricity"),
-        (NOTHING, ENCODER, {"backlash": 30.0, "encoder_eccentricity": 58.0}, "backlash"),  # it stands beside the chain
-        (NOTHING, ENCODER, {"backlash": 12.0, "encoder_eccentricity": 20.0}, "backlash"),  # either may be the shadow
         (NOTHING, NOTHING, {}, "backlash"),
         (COGGING, ENCODER, {"backlash": 35.0, "encoder_eccentricity": 20.0}, "encoder_eccentricity"),  # over cogging
         (COGGING, NOTHING, {"backlash": 35.0}, "backlash"),  # of which cogging is the shadow
         (COGGING, NOTHING, {"backlash": 25.0}, "cogging"),
     ],
 )
-def test_an_effect_with_memory_is_first_unless_it_is_the_shadow_of_the_chains(monkeypatch, steady, chain, kept, first):
+def test_an_effect_with_memory_is_first_where_what_shows_in_sliding_is_its_shadow(
+    monkeypatch, steady, chain, kept, first
+):
     monkeypatch.setattr(four_families, "_evidence_beside", lambda _gathered, name, _other: kept[name])
     gathered: Any = SimpleNamespace()
-    judged = FourFamilies(steady, BACKLASH, None, chain, gathered, gathered, {}, drawn=False)
+    judged = FourFamilies(steady, BACKLASH, None, chain, gathered, gathered, {})
     assert judged.first().candidates[0].effect.name == first
 
 
@@ -57,7 +56,7 @@ def test_what_shows_at_starts_from_rest_is_no_shadow_of_the_chains(monkeypatch):
     monkeypatch.setattr(four_families, "_evidence_beside", lambda _gathered, name, _other: kept[name])
     curve, dwell = replace(NOTHING, verdict="unknown-effect", strength=200.0), named("dwell_strengthening", 195.0)
     gathered: Any = SimpleNamespace()
-    judged = FourFamilies(curve, BACKLASH, dwell, ENCODER, gathered, gathered, {}, drawn=False)
+    judged = FourFamilies(curve, BACKLASH, dwell, ENCODER, gathered, gathered, {})
     assert judged.first() is dwell
 
 

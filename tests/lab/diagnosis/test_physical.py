@@ -7,14 +7,8 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.physical import is_past_scan, is_possible, is_within_bounds
-from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.rows.assembly import make_dataset
-from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
-from compensator.lab.screening.evidence import Base, Block, Evidence, screen
-from tests.lab.synthetic import FACTS, Joint, recordings
+from compensator.lab.screening.evidence import Base, Block, Evidence
 
 
 @pytest.mark.parametrize(
@@ -79,38 +73,6 @@ def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
     column = np.exp(-np.arange(200.0) / 50.0)
     item = Evidence(Block("warm_up", column[:, None], 0, 4, (50.0,)), 50.0, 400.0, 0.001, column)
     dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
-    fit = SimpleNamespace(dataset=dataset, dry_friction=0.1, usual_friction=0.1)
+    fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
     gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), excess * column)], fit=fit, show_in="sliding")
     assert is_possible(gathered, item) == possible
-
-
-@pytest.mark.parametrize(
-    ("share", "noncentrality", "possible"),
-    [
-        (0.045, 40000.0, True),
-        (-0.045, 40000.0, True),
-        (0.055, 40000.0, False),  # 0.05 is the most, and standard errors are a two hundredth
-        (-0.055, 40000.0, False),
-        (0.055, 100.0, True),  # it lies within two of them
-        (0.07, 100.0, False),
-    ],
-)
-def test_dry_friction_does_not_change_faster_with_temperature_than_oil(share, noncentrality, possible):
-    column = np.sin(np.arange(200.0))
-    item = Evidence(Block("coulomb_temperature", column[:, None], 0, 1, ()), 50.0, noncentrality, 0.001, column)
-    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
-    fit = SimpleNamespace(dataset=dataset, dry_friction=0.01, usual_friction=0.2)
-    gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), 0.2 * share * column)], fit=fit, show_in="sliding")
-    assert is_possible(gathered, item) == possible
-
-
-@pytest.mark.parametrize(("per_k", "possible"), [(0.03, True), (0.1, False)])
-def test_a_joint_that_changes_faster_with_temperature_changes_with_something_else(per_k, possible):
-    """Of Coulomb friction of 0.08 N m and what static friction is on the average."""
-    law = Joint(extra=lambda x: -per_k * 0.08 * (x.temperature_c - 30.0) * np.sign(x.v))
-    fit = fit_model(make_dataset(recordings(law, seed=3), FACTS, Processing()), default_effects(FACTS))
-    gathered = gather(fit)
-    blocks = [block for block in gathered.named if block.name == "coulomb_temperature"]
-    (found,) = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows]).evidence
-    assert is_possible(gathered, found) == possible
-    assert effect_named("coulomb_temperature").most_of_friction == 0.05

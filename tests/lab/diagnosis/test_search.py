@@ -11,7 +11,7 @@ import pytest
 from compensator.lab.diagnosis import search as search_module
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import Search, search
-from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
@@ -85,22 +85,6 @@ def test_no_more_than_asked_for_is_added(most):
     found = search_of(PLANTED["spring"], PLANTED["viscous_asymmetry"], most=most)
     assert len(found.added) == most
     assert found.last.verdict == "missing"
-
-
-@pytest.mark.parametrize(("rival_leaves", "added"), [(False, "viscous_asymmetry"), (True, "spring")])
-def test_a_name_that_leaves_something_gives_way_to_one_that_leaves_nothing(monkeypatch, rival_leaves, added):
-    made = recordings(Joint(extra=PLANTED["spring"]), seed=5)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    named = diagnose(fit)
-    best = named.candidates[0]
-    close = replace(best, effect=effect_named("viscous_asymmetry"), score=best.score - 1.0)
-    weak = replace(best, effect=effect_named("cogging"), score=1.0)
-    nothing = replace(named, verdict="nothing", p_value=0.5)
-    left = {"spring": True, "viscous_asymmetry": rival_leaves, "cogging": False}
-    monkeypatch.setattr(search_module, "diagnose", lambda fit: replace(nothing, remains=left[fit.names[-1]]))
-    found = search(fit, first=replace(named, candidates=[best, weak, close]))
-    assert found.added == (added,)
-    assert found.last.remains == rival_leaves
 
 
 @pytest.mark.parametrize("hidden", [("spring", "viscous_asymmetry"), ("spring",)])

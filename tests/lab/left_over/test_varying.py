@@ -1,23 +1,18 @@
 """A coefficient of friction that varies is told, beside a name that imitates it, too; a load weighed wrongly is not."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.notes import part_of_it
 from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.left_over import following, varying
-from compensator.lab.left_over import left_over as left_over_module
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.left_over.left_over import left_beside, left_over
+from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import screen
 from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import FACTS
 
@@ -30,17 +25,16 @@ def thinning(n_m_s_rad_k: float = THINNING_N_M_S_RAD_K, seed: int = 0) -> Fit:
     return fitted(lambda x: n_m_s_rad_k * (x.temperature_c - 32.0) * x.v, seed)
 
 
-def found(fit: Fit, most: float = PLAIN.varying, look_again: float = 0.0) -> Varying | None:
+def found(fit: Fit, most: float = PLAIN.varying) -> Varying | None:
     with withheld(["viscous_temperature"]):
         gathered = with_noise(gather(fit))
-    return varying_of(gathered, white_rows_of(gathered), most, look_again)
+    return varying_of(gathered, white_rows_of(gathered), most)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_noise_varies_with_nothing(seed):
     fit = fitted(seed=seed)
     assert found(fit) is None
-    assert found(fit, look_again=1.0) is None
 
 
 def test_a_lubricant_that_thins_is_told_as_friction_that_varies_with_temperature():
@@ -60,19 +54,6 @@ def test_it_is_said_where_no_curve_is():
     assert "it has the form of viscous friction that varies with temperature. Repeat" in sentence
 
 
-def test_a_name_that_imitates_it_leaves_it():
-    fit = thinning(3.0 * THINNING_N_M_S_RAD_K)
-    with withheld(["viscous_temperature"]):
-        gathered = with_noise(gather(fit))
-        evidence = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows]).evidence
-        named = next(one for one in evidence if one.block.name == IMITATION)
-        left = left_beside(fit_effects(fit.dataset, [*fit.names, IMITATION], fit.training), gathered, named)
-    assert isinstance(left, Varying)
-    told = part_of_it(IMITATION, left, FACTS)
-    assert "has the form of viscous friction that varies with temperature" in told.text
-    assert told.values == {"effect": IMITATION, "of": "Viscous friction", "condition": "temperature"}
-
-
 def test_the_effect_itself_leaves_no_such_thing():
     fit = thinning()
     assert found(fit_effects(fit.dataset, [*fit.names, "viscous_temperature"], fit.training)) is None
@@ -90,19 +71,3 @@ def test_what_is_next_to_nothing_beside_dry_friction_is_none(monkeypatch):
     assert found(fit) is not None
     monkeypatch.setattr(following, "LEAST_OF_FRICTION", 1.0)
     assert found(fit) is None
-
-
-def test_it_does_not_hide_itself_in_noise_that_is_learnt_with_it():
-    told = found(thinning(), 1.0)
-    assert told is not None
-    most = 0.5 * told.chance
-    assert found(thinning(), most) is None
-    assert found(thinning(), most, 2.0 * told.chance) is not None
-
-
-def test_in_a_model_that_lacks_nothing_for_sure_it_is_not_looked_at_again(monkeypatch):
-    told = found(thinning(), 1.0)
-    assert told is not None
-    monkeypatch.setattr(left_over_module, "PLAIN", replace(PLAIN, varying=0.5 * told.chance))
-    with withheld(["viscous_temperature"]):
-        assert left_over(with_noise(gather(thinning()))).varying is None

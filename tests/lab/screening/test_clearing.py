@@ -3,12 +3,11 @@
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
-from compensator.lab.screening.clearing import _learnt, _stands_out, with_noise
-from compensator.lab.screening.evidence import Base, Block, most_likely, score_of
+from compensator.lab.screening.clearing import _learnt, with_noise
+from compensator.lab.screening.evidence import Base, Block, most_likely
 from compensator.lab.screening.noise import Noise
-from tests.lab.screening.test_noise import ALL, NOTHING, ROWS, STEADY, TRIALS, coloured, dataset, learnt
+from tests.lab.screening.test_noise import ALL, NOTHING, ROWS, STEADY, TRIALS, coloured, dataset
 
 BLOCKS, SHAPES = 100, 20  # as many as a catalogue has, and one of its effects
 
@@ -76,47 +75,3 @@ def test_no_more_than_two_are_taken_off():
     (second,) = first.made
     assert len(second.taken) == 2
     assert not second.made
-
-
-def wave(cycles: float) -> Block:
-    """What comes back at one frequency in the first trial, as an order of the angle does where the speed is even."""
-    angle = 2.0 * np.pi * cycles * np.arange(ROWS) / ROWS
-    columns = np.zeros((TRIALS * ROWS, 2))
-    columns[:ROWS] = np.column_stack([np.cos(angle), np.sin(angle)])
-    return Block("wave", columns, 0, SHAPES)
-
-
-def judged(values: np.ndarray, block: Block) -> tuple[float, bool]:
-    """Score of a block over noise that is learnt with it in it, and whether it stands out nevertheless."""
-    base = Base.of(NOTHING, values)
-    noises = learnt(values), learnt(base.extended(block.columns).residual)
-    left = SimpleNamespace(bases=[base])
-    return score_of(left.bases, block, noises[0]), _stands_out(left, block, noises, BLOCKS)
-
-
-def test_what_is_most_of_its_colour_is_not_hidden_by_itself():
-    random, block = np.random.default_rng(2), wave(3.0)
-    found = [judged(coloured(random, 0.3) + 2.0 * block.columns[:, 0], block) for _ in range(5)]
-    assert all(stands_out for _, stands_out in found)
-    assert all(score <= 0.0 for score, _ in found)
-
-
-@pytest.mark.parametrize("memory", [0.3, 0.97])
-def test_noise_however_slow_does_not_stand_out(memory):
-    random = np.random.default_rng(3)
-    tried = [wave(cycles) for cycles in (0.5, 1.0, 1.5, 2.0, 3.0)]
-    for _ in range(8):
-        values = coloured(random, memory)
-        assert not any(judged(values, block)[1] for block in tried)
-
-
-def test_what_hides_itself_is_taken_off_all_the_same():
-    """Else the noise that candidates are held against has it, and none of them can be it."""
-    random, block = np.random.default_rng(2), wave(3.0)
-    values = coloured(random, 0.3) + 2.0 * block.columns[:, 0]
-    base = Base.of(NOTHING, values)
-    found = with_noise(Model([base], [block])).covariance(block.columns)
-    without = learnt(base.extended(block.columns).residual).covariance(block.columns)
-    hidden = learnt(values).covariance(block.columns)
-    assert np.trace(found) == pytest.approx(np.trace(without), rel=0.2)
-    assert np.trace(hidden) > 2.0 * np.trace(found)

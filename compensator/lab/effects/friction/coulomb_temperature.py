@@ -4,7 +4,6 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape, at_
 from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain Coulomb coefficient holds
-MOST_PER_K = 0.05  # of dry friction: oils of ISO VG 100 .. 220 thin by so much or more at room temperature (ASTM D341)
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
@@ -29,5 +28,4 @@ EFFECT = Effect(
     varies_with="temperature_c",
     breakaway=at_rest(columns, PARAMETERS, "temperature"),
     dry_friction=True,
-    most_of_friction=MOST_PER_K,
 )
