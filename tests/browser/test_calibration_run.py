@@ -30,7 +30,8 @@ def test_it_is_paused_gone_on_with_and_its_curves_are_shown(bench, open_page):
 
 def test_escape_ends_it_and_the_page_offers_to_go_on(bench, open_page):
     page = open_page("#trials", service=bench)
-    page.get_by_label("Time for the curves [min]").fill("0.5")
+    page.get_by_label("Known to [mA]").fill("0.1")
+    page.get_by_label("Time for the curves [min]").fill("60")
     page.get_by_role("button", name="Measure: the joint moves").click()
     page.get_by_text("speeds next").wait_for()
     page.keyboard.press("Escape")
