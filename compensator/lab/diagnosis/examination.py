@@ -61,7 +61,7 @@ NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in fo
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
-    """Candidates for the best shape of each effect, those that are confirmed first, each kind by score."""
+    """Candidates for the best shape of each effect: the answer, others that are confirmed, the rest; each by score."""
     before = _held_out(fit, gathered.show_in)
     fits = [with_effect(fit, item.block.name, shape_of(item)) for item in evidence]
     afters = [_held_out(explained, gathered.show_in) for explained in fits]
@@ -73,7 +73,29 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
         found = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
         candidates.append(_beside_chain(found, fit, fits[index], gathered.show_in))
-    return sorted(candidates, key=lambda candidate: not is_confirmed(candidate))  # stable: by score within each kind
+    confirmed = [index for index, candidate in enumerate(candidates) if is_confirmed(candidate)]
+    first = _best_predictor(confirmed, evidence, afters, given)
+    # stable: by score within each kind
+    order = sorted(range(len(candidates)), key=lambda index: (index != first, index not in confirmed))
+    return [candidates[index] for index in order]
+
+
+def _best_predictor(
+    confirmed: list[int], evidence: list[Evidence], afters: list[HeldOut], given: list[dict[str, float]]
+) -> int | None:
+    """Which of the confirmed candidates, best score first, is the answer; None where none is confirmed.
+
+    Of two that explain the same, the one that predicts other trials better for sure: the score is had beside all that
+    formulas leave open, which may be most of what tells the two apart.
+    """
+    first = confirmed[0] if confirmed else None
+    for other in confirmed[1:]:
+        assert first is not None
+        kept = given[other].get(evidence[first].block.name, 0.0)
+        same = kept < EXPLAINED_BY_RIVAL * evidence[first].noncentrality
+        if same and chance_not_worse(afters[first], afters[other]) <= SIGNIFICANT:
+            first = other
+    return first
 
 
 def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:

@@ -89,3 +89,20 @@ def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     for physical in (True, False):
         candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, physical, None, rows)
         assert is_confirmed(candidate) == physical
+
+
+@pytest.mark.parametrize(
+    ("kept", "chance", "first"),
+    [
+        (0.2, 0.004, 1),  # it explains the other's evidence, and predicts other trials better for sure
+        (0.2, 0.05, 0),  # not for sure
+        (0.8, 0.004, 0),  # the two explain different things: either may be missing
+    ],
+)
+def test_of_two_that_explain_the_same_the_better_predictor_is_the_answer(monkeypatch, kept, chance, first):
+    monkeypatch.setattr(examination, "chance_not_worse", lambda *_: chance)
+    evidence: Any = [SimpleNamespace(block=SimpleNamespace(name=n), noncentrality=100.0) for n in ("one", "other")]
+    afters: Any = [None, None]
+    given = [{"one": 0.0, "other": 0.0}, {"one": 100.0 * kept, "other": 0.0}]
+    assert examination._best_predictor([0, 1], evidence, afters, given) == first
+    assert examination._best_predictor([], evidence, afters, given) is None

@@ -203,6 +203,14 @@ def test_of_a_single_moment_nothing_is_averaged(name):
     assert EFFECTS[name].columns(moment, (9.0,))[:, 0] == pytest.approx([way * np.cos(phase), way * np.sin(phase)])
 
 
+@pytest.mark.parametrize("name", ["cogging", "position_periodic_friction"])
+def test_what_goes_round_with_the_motor_is_looked_for_where_the_gear_is_known(name):
+    geared = replace(motion(), facts=Facts(gear_ratio=76.0))
+    assert {(76.0,), (152.0,)} <= set(EFFECTS[name].shapes(geared)) - set(EFFECTS[name].shapes(motion()))
+    direct = replace(motion(), facts=Facts(gear_ratio=1.0))
+    assert all(1.0 not in shape for shape in EFFECTS[name].shapes(direct))
+
+
 def test_units_are_the_studys_own():
     (viscous,) = EFFECTS["viscous"].parameters
     assert viscous.unit_in("N", "m") == "N s/m"

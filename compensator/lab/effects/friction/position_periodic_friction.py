@@ -5,12 +5,16 @@ import numpy as np
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
+MOTOR_ORDERS = (1, 2)  # an eccentric pinion; the wave generator of a harmonic drive
+
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Orders per joint turn for a rotary joint; cycles over the range of travel for a linear one."""
-    if motion.facts.joint == "rotary":
-        return [(float(order),) for order in range(3, 31)]
-    return [(2.0 * np.pi * cycles / motion.position_span,) for cycles in range(1, 31)]
+    """Orders per joint turn, and per motor turn where the gear ratio is known; cycles over a linear joint's travel."""
+    if motion.facts.joint != "rotary":
+        return [(2.0 * np.pi * cycles / motion.position_span,) for cycles in range(1, 31)]
+    joint: list[Shape] = [(float(order),) for order in range(3, 31)]
+    ratio = motion.facts.gear_ratio
+    return joint if ratio is None else joint + [(order * ratio,) for order in MOTOR_ORDERS if order * ratio > 30.0]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
