@@ -54,19 +54,18 @@ def hidden_effect(configuration: BenchConfiguration, store: Store, seed: int) ->
     made = create_study(store, f"hidden effect, seed {seed}", [experiment_id], hold_out=["load_kg=0.05"], base=BASE)
     study_id = made.study_id
     before = compare(store, study_id)
-    floor = before.error.floor
-    assert floor is not None  # an excitation repeats its trials
     found = diagnose(store, study_id)
     first = found.ranking[0]
     change = add_effect(store, study_id, first.effect)
     rungs = ladder(store, study_id)
+    assert rungs.floor is not None  # an excitation repeats its trials
     right = "It was." if first.effect == hidden.name else f"It was not: hidden was {hidden.name}."
     return Section(
         title="A hidden effect: compare, learn what is missing, add it",
         sentences=[
             f"{len(made.trials)} recordings of a plant with one more mechanism than the model. The trials with "
             f"50 g are held out. The model's error on them is {before.error.held_out.relative:.2%} of the "
-            f"effort; repeated trials differ by {floor.relative:.2%}: no model can beat that.",
+            f"effort; repeated trials differ by {rungs.floor:.2%}: no model can beat that.",
             found.sentence,
             change.sentence,
             f"Named: {first.title.lower()}. {right}",
