@@ -2,6 +2,7 @@
 
 from bench.store import Store
 from bench.study.errors import lab_errors
+from bench.study.judged import diagnosis_of_model
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep
@@ -23,8 +24,9 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
     """
     material = load(store, study_id)
     first = model_of(store, study_id, model_id)
+    fit = material.fit_of(first)
     with lab_errors():
-        found = search_from(material.fit_of(first), most)
+        found = search_from(fit, most, diagnosis_of_model(material, first, fit))
     parent, before = first.id, kept_of(first).held_out
     steps: list[SearchStep] = []
     for step in found.steps:
@@ -38,6 +40,7 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
                 instead_of=step.instead_of,
                 before=before,
                 after=step.held_out.relative,
+                rivals=list(step.rivals),
                 sentence=_sentence(step, before),
             )
         )
@@ -57,4 +60,5 @@ _DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}
 
 def _sentence(step: Step, before: float) -> str:
     instead = f" instead of {step.instead_of}" if step.instead_of else ""
-    return f"{_DONE[step.change]} {step.effect}{instead}: held-out error {before:.2%} to {step.held_out.relative:.2%}."
+    told = f"{_DONE[step.change]} {step.effect}{instead}: held-out error {before:.2%} to {step.held_out.relative:.2%}."
+    return told if not step.rivals else f"{told} These trials cannot tell it from {' or '.join(step.rivals)}."

@@ -13,8 +13,8 @@ from bench.study.create import create_study
 from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, WARMTH, coverage
 from bench.study.explanation.explain import STEPS, explain
 from bench.study.models.coverage import Coverage
-from compensator.lab.recordings.recording import Recording
-from tests.lab.synthetic import plans
+from compensator.lab.recordings.recording import FloatArray, Recording
+from tests.lab.synthetic import Joint, Truth, plans
 from tests.study.conftest import imported
 
 FREE = Rig.model_validate({"name": "free shaft", "horizontal": True})
@@ -98,3 +98,18 @@ def test_explain_ends_in_a_report_of_one_page(store: Store, experiment_id: int, 
     for words in ("What these data can and cannot tell", "Before and after", "What to record next", "<script"):
         assert words in found.html
     assert "http://" not in found.html.split("<script")[0]
+
+
+def test_explain_goes_on_beside_a_curve_where_no_formula_follows(store: Store) -> None:
+    """A friction that catches at one place, and drag that differs by direction, which shows beside it."""
+
+    def law(x: Truth) -> FloatArray:
+        caught = 0.12 * np.exp(-(((x.q - 0.2) / 0.25) ** 2)) * np.sign(x.v)
+        return caught + 0.012 * np.abs(x.v)
+
+    experiment_id = imported(store, plans(), Joint(extra=law))
+    found = explain(store, experiment_id, "a cable that catches", lambda step, number: None)
+    added = [rung.added for rung in found.rungs.rungs]
+    assert "curve_of_position_against_motion" in added
+    assert "viscous_asymmetry" in found.rungs.rungs[-1].effects
+    assert found.rungs.rungs[-1].held_out < 0.5 * found.rungs.rungs[0].held_out

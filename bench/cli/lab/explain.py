@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.output import FileError, console, percent, say, table, write_whole
+from bench.cli.output import FileError, Json, console, percent, print_json, say, table, write_whole
 from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, show
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
@@ -34,6 +34,7 @@ def explain(
     hold_out: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_HOLD_OUT)] = None,
     html: Annotated[Path | None, typer.Option(help="Report to write; without it explain-NAME.html.")] = None,
     name: Annotated[str | None, typer.Option(help="Name; without it, that of the files.")] = None,
+    as_json: Json = False,
 ) -> None:
     """Import files of any bench, say what a model of the joint lacks, and write a report for a colleague."""
     from bench.recording_set import import_recording_set, read_mapping, read_rig
@@ -49,9 +50,9 @@ def explain(
     report = html or Path(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}.html")
     if report.exists():
         raise FileError(f"{report}: is there already; name another file with --html, or remove it")
-    if guess is not None:
+    if guess is not None and not as_json:
         show(guess, recordings.notes)
-    with session_of(context).open_store() as store, _progress() as bar:
+    with session_of(context).open_store() as store, _progress(hidden=as_json) as bar:
         task = bar.add_task("import", total=len(STEPS) + 1)
         experiment_id = import_recording_set(store, recordings, called)
 
@@ -61,6 +62,10 @@ def explain(
         came_in = None if guess is None else _came_in(guess, recordings.notes)
         found = explain_experiment(store, experiment_id, called, tell, hold_out or [], came_in)
         bar.update(task, description="done", completed=len(STEPS) + 1)
+    write_whole(report, [found.html.encode()])
+    if as_json:
+        print_json({"report": str(report), **found.as_json()})
+        return
     table(
         "What these data can and cannot tell",
         ["of", "found", "what that leaves open"],
@@ -77,7 +82,6 @@ def explain(
     )
     for sentence in found.sentences:
         say(sentence)
-    write_whole(report, [found.html.encode()])
     say(f"written: {report}; kept as study {found.study_id}")
 
 
@@ -85,11 +89,11 @@ def _interval(rung: "Rung") -> str:
     return f"{percent(rung.held_out_low)} to {percent(rung.held_out_high)}"
 
 
-def _progress() -> "Progress":
+def _progress(hidden: bool) -> "Progress":
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    return Progress(*columns, TimeElapsedColumn(), console=console())
+    return Progress(*columns, TimeElapsedColumn(), console=console(), disable=hidden)
 
 
 def _came_in(guess: "Guess", notes: tuple[str, ...]) -> "Section":

@@ -5,11 +5,14 @@ from dataclasses import dataclass
 
 from bench.report import Figure, Line, Section, html_page
 from bench.store import Store
+from bench.study.changes import add_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
 from bench.study.diagnose import diagnose
 from bench.study.explanation.coverage import coverage
 from bench.study.ladder import ladder
+from bench.study.material import model_of
+from bench.study.models.change import SearchStep
 from bench.study.models.comparison import Comparison, TrialError
 from bench.study.models.coverage import Coverage
 from bench.study.models.diagnosis import Diagnosis
@@ -19,7 +22,9 @@ from bench.study.report.diagnosis_sections import diagnosis_section, provenance_
 from bench.study.report.head_section import head_section, summary
 from bench.study.report.model_sections import ladder_section, measured_section, model_section, residual_section
 from bench.study.search import search
+from compensator.lab.effects.catalogue import effect_named
 
+MOST_CURVES = 2  # without physics: more would be a table of the recordings, and no explanation
 STEPS = ("base model", "what the data can tell", "comparison", "diagnosis", "search", "report")
 Tell = Callable[[str, int], None]
 
@@ -41,6 +46,15 @@ class Explained:
     rungs: Ladder
     coverage: Coverage
     html: str
+
+    def as_json(self) -> dict[str, object]:
+        """All but the page."""
+        return {
+            "study_id": self.study_id,
+            "sentences": list(self.sentences),
+            "ladder": self.rungs.model_dump(mode="json"),
+            "coverage": self.coverage.model_dump(mode="json"),
+        }
 
 
 def explain(
@@ -74,21 +88,20 @@ def explain(
     tell(STEPS[3], 3)
     missing = diagnose(store, study_id, first)
     tell(STEPS[4], 4)
-    found = search(store, study_id, first)
+    model_id, last, confused = _searched(store, study_id, first)
     tell(STEPS[5], 5)
-    now = before if found.model_id == first else compare(store, study_id, found.model_id)
-    last = missing if found.model_id == first else diagnose(store, study_id, found.model_id)
+    now = before if model_id == first else compare(store, study_id, model_id)
     rungs = ladder(store, study_id)
     study = describe(store, study_id)
     sections = [
-        head_section(study, rungs, last.sentence, store),
+        head_section(study, rungs, last.sentence, store, confused),
         *([came_in] if came_in else []),
         measured_section(study, store),
         coverage_section(told),
         ladder_section(rungs),
         _before_and_after(before, now),
         diagnosis_section("What was missing from the first model", missing, before),
-        *([diagnosis_section("What is left", last, now)] if last is not missing else []),
+        *([diagnosis_section("What is left", last, now)] if model_id != first else []),
         residual_section(before, now),
         model_section(now),
         advice_section(told, _separating(missing, last)),
@@ -96,11 +109,38 @@ def explain(
     ]
     return Explained(
         study_id=study_id,
-        sentences=tuple(summary(study, rungs, last.sentence)),
+        sentences=tuple(summary(study, rungs, last.sentence, confused)),
         rungs=rungs,
         coverage=told,
         html=html_page(f"What the model of {name} lacks", sections),
     )
+
+
+def _searched(store: Store, study_id: int, first: int) -> tuple[int, Diagnosis, list[str]]:
+    """The last model of a search, what it lacks, and which of its effects could as well be others, in sentences.
+
+    Where no formula follows what is missing, a free curve fills the gap, if it predicts other trials better for sure;
+    then the search goes on beside it: what the curve cannot be, as what differs by direction, shows only then.
+    """
+    found = search(store, study_id, first)
+    steps = [*found.steps]
+    last = diagnose(store, study_id, found.model_id)
+    for _ in range(MOST_CURVES):
+        curve = last.provisional
+        if curve is None or curve.gain_low <= 0.0:
+            break
+        filled = add_effect(store, study_id, curve.effect, last.model_id)
+        found = search(store, study_id, filled.model_id)
+        steps += found.steps
+        last = diagnose(store, study_id, found.model_id)
+    kept = model_of(store, study_id, found.model_id).effects
+    added = {one.effect: one for one in steps if one.rivals and one.effect in kept}
+    return found.model_id, last, [_confused(one) for one in added.values()]
+
+
+def _confused(step: SearchStep) -> str:
+    title, *others = (effect_named(name).title.lower() for name in (step.effect, *step.rivals))
+    return f"The {title} that was added may as well be {' or '.join(others)}: these trials cannot tell them apart."
 
 
 def _separating(*found: Diagnosis) -> list[str]:

@@ -49,6 +49,7 @@ class SearchStep(StudyModel):
     instead_of: str | None
     before: Number
     after: Number
+    rivals: list[str] = Field(description="of an effect that was added: what these trials cannot tell it from")
     sentence: str
 
 

@@ -1,6 +1,6 @@
 """The head of a study's report: when, who, on what, with which software; and what came out in three sentences."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 
 from bench.provenance import software
@@ -18,7 +18,7 @@ _JUDGED_BY = {
 }
 
 
-def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store) -> Section:
+def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store, confused: Sequence[str] = ()) -> Section:
     """What whoever files the report looks for first.
 
     Args:
@@ -26,6 +26,7 @@ def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store) -> S
         rungs: its models.
         diagnosis: of the newest model, in a sentence.
         store: with its experiments.
+        confused: which of its effects could as well be others, in sentences.
     """
     numbers = dict.fromkeys(store.trial(one.trial_id).experiment_id for one in study.trials)
     experiments = [store.experiment(number) for number in numbers]
@@ -41,11 +42,11 @@ def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store) -> S
         ("version", str(now.get("version") or NOT_TOLD)),
         ("commit", str(now.get("commit") or NOT_TOLD)),
     ]
-    return Section("In short", summary(study, rungs, diagnosis), [Table("Head", ["", ""], facts)])
+    return Section("In short", summary(study, rungs, diagnosis, confused), [Table("Head", ["", ""], facts)])
 
 
-def summary(study: Study, rungs: Ladder, diagnosis: str) -> list[str]:
-    """What was measured, what the model is off by, what it lacks."""
+def summary(study: Study, rungs: Ladder, diagnosis: str, confused: Sequence[str] = ()) -> list[str]:
+    """What was measured, what the model is off by, what in it could be another name, what it lacks."""
     held = sum(one.role == "held_out" for one in study.trials)
     first, last = rungs.rungs[0], rungs.rungs[-1]
     added = [name.replace("_", " ") for name in last.effects if name not in first.effects]
@@ -59,6 +60,7 @@ def summary(study: Study, rungs: Ladder, diagnosis: str) -> list[str]:
     return [
         f"{many} {'were' if len(study.trials) != 1 else 'was'} measured{f', {judged}' if judged else ''}.",
         f"{off}, on {'stretches' if 'block' in last.held_out_kind else 'trials'} that it was not fitted to.",
+        *confused,
         diagnosis,
     ]
 

@@ -161,8 +161,8 @@ def _residual_against(fit: Fit) -> list[ResidualAgainst]:
     motion = dataset.rows_of([trial.motion.direction for trial in dataset.trials])
     found = []
     for name, values in available(dataset).items():
-        if name == "direction":
-            continue
+        if name in ("direction", "speed"):
+            continue  # the sides are the directions, on either of which velocity is speed
         sides: dict[Direction, BoolArray] = {"forward": rows & (motion > 0), "backward": rows & (motion < 0)}
         for direction, side in sides.items():
             if side.any():

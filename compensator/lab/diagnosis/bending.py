@@ -7,6 +7,8 @@ radian shows, so that flips of their signs cannot be sure of it.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import LEAST_GAIN, SIGNIFICANT, with_effect
 from compensator.lab.model.fit import with_columns
@@ -43,7 +45,7 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
         fit: of the model.
         gathered: what it may be missing in steady sliding, against noise that is known.
     """
-    if gathered.noise is None:
+    if gathered.noise is None or not _turns_back(gathered):
         return None
     found = screen_against_noise(gathered.bases, [gathered.curves.hysteresis], gathered.noise).evidence
     if not found or found[0].score <= 0.0 or among_all(found[0].p_value) > SIGNIFICANT:
@@ -66,7 +68,7 @@ def still_bending(explained: Fit, gathered: Candidates, named: Evidence) -> bool
         named: the effect's evidence.
     """
     given = gathered.with_block(named.block)
-    if given.noise is None:
+    if given.noise is None or not _turns_back(gathered):
         return False
     beside = score_of(given.bases, given.curves.hysteresis, given.noise)
     if beside >= 0.0 and score_of(gathered.bases, gathered.curves.hysteresis, gathered.noise) >= named.score + STRONG:
@@ -74,6 +76,14 @@ def still_bending(explained: Fit, gathered: Candidates, named: Evidence) -> bool
     if beside < VERY_STRONG:
         return False
     return bending(explained, with_noise(gather_curves(explained, gathered.show_in))) is not None
+
+
+def _turns_back(gathered: Candidates) -> bool:
+    """Whether any trial moves both ways: nothing bends back and forth along with a shaft that turns on."""
+    dataset = gathered.fit.dataset
+    ways = np.sign(dataset.rows_of([trial.motion.velocity for trial in dataset.trials]))
+    trials = [set(dataset.trial_index[gathered.rows & (ways == way)].tolist()) for way in (1.0, -1.0)]
+    return bool(trials[0] & trials[1])
 
 
 def _possible(candidates: Sequence[Candidate]) -> list[Candidate]:

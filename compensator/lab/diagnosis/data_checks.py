@@ -3,11 +3,12 @@
 import numpy as np
 from scipy.stats import spearmanr
 
+from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.wording import some_of
 from compensator.lab.left_over.orders import LEAST_OF_EFFORT
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve, solve_without
-from compensator.lab.model.validation import relative_error, rms
+from compensator.lab.model.validation import rms
 from compensator.lab.recordings.processing import SATURATED_DUTY
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
@@ -17,16 +18,8 @@ from compensator.lab.rows.dataset import Dataset
 ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
 FEWEST_TRIALS_TO_COMPARE = 5
 SATURATED_SHARE = 0.2
-UNEXPLAINED = 0.8  # of the effort: a rigid joint with friction explains more, whatever it lacks
-DISSIPATIVE = ("inertia", "coulomb", "viscous")
-BETTER = 0.9  # of the error: what turning the sign of the effort must bring
-POOR = 0.4  # of the effort: what is left where inertia and friction would be negative, and that is no accident
-MIRRORED = 0.5  # of the error of one trial: the same
+MIRRORED = 0.5  # of the error of one trial: what turning the sign of its effort must bring
 UNLIKE = 2.0  # times what the median of the other trials leaves: less is what the model leaves anywhere
-SUSPECT = 0.2  # of the effort: an error from which clocks are tried
-MOST_LAG_S, LAG_STEP_S = 2.0, 0.1
-LEAST_LAG_S = 0.3  # less may be a delay of the chain, which is an effect of its own
-MOVED = 0.6  # of the error: what moving the effort in time must leave at most
 FEWEST_ROWS = 20  # of a trial whose sign is judged
 FEWEST_ROWS_OF_ODD = 5  # of a trial: an error of four times the others' is no chance in so many
 TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
@@ -36,85 +29,22 @@ WARMER_K = 2.0
 
 
 def fatal_problems(fit: Fit) -> list[str]:
-    """Problems that make any ranking of effects one of noise: stuck sensors, wrong signs, units and clocks."""
+    """Problems that make any ranking of effects one of noise, whatever is missing: stuck sensors, signs, units."""
     stuck = stuck_positions([trial.signals.recording for trial in fit.dataset.trials], fit.dataset.facts)
-    found = [*_late(fit), *_wrong_sign(fit)][:1]  # what is late looks turned, too
-    return [*stuck, *found, *_mirrored_trials(fit), *_load_units(fit)]
+    return [*stuck, *_mirrored_trials(fit), *_load_units(fit)]
 
 
 def data_problems(fit: Fit) -> list[str]:
     """Sentences, each naming the trial or channel, what was found, and what to do; those that are fatal first."""
+    alien = alien_effort(fit)
     return [
         *fatal_problems(fit),
-        *unexplained(fit),
+        *([] if alien is None else [alien.text]),
         *_ordered_conditions(fit),
         *_odd_trials(fit),
         *_few_usable(fit),
         *_unused(fit),
         *_same_samples(fit),
-    ]
-
-
-def _wrong_sign(fit: Fit) -> list[str]:
-    held = [
-        term.effect.name
-        for term in fit.terms
-        if term.effect.name in DISSIPATIVE and term.kept[0] and term.at_bound[0] and term.coefficients[0] <= 0.0
-    ]
-    if "inertia" not in held or len(held) < 2:
-        return []
-    columns, effort = fit.training_equations
-    error = relative_error(effort - columns @ fit.coefficients, effort)
-    turned = relative_error(-effort - columns @ solve(columns, -effort, fit.bounds).coefficients, effort)
-    would = f"{' and '.join(held)} would be negative"
-    if turned < BETTER * error:
-        return [
-            f"{would}: effort and motion have opposite signs (turned, the effort leaves {turned:.0%} instead of "
-            f"{error:.0%}); turn the sign of {' or '.join(fit.dataset.effort_definition.channels)}, or of position"
-        ]
-    if error < POOR:
-        return []
-    return [
-        f"{would}, and {error:.0%} of the effort is left: effort and motion have opposite signs, or one lags far "
-        "behind the other; check the sign and the time of the effort channel and of position"
-    ]
-
-
-def unexplained(fit: Fit) -> list[str]:
-    """An effort that has next to nothing to do with the motion, unless an effect is named that explains most of it."""
-    error = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
-    if error < UNEXPLAINED or not set(DISSIPATIVE) <= set(fit.names):
-        return []
-    return [
-        f"inertia and friction explain next to nothing: the error is {error:.0%} of the effort; check that effort and "
-        "position are of the same joint and time, and their units"
-    ]
-
-
-def _late(fit: Fit) -> list[str]:
-    """Effort and motion apart in time by more than any chain delays: clocks that were never laid over each other."""
-    dataset, rows = fit.dataset, fit.training
-    error = relative_error(fit.residual[rows], dataset.effort[rows])
-    if error < SUSPECT:
-        return []
-    weight = fit.weight[rows]
-    columns, errors = weight[:, None] * fit.columns[rows], {}
-    for lag_s in np.arange(-MOST_LAG_S, MOST_LAG_S + 0.5 * LAG_STEP_S, LAG_STEP_S):
-        moved = [np.interp(t.signals.time_s + lag_s, t.signals.time_s, t.signals.effort)[None] for t in dataset.trials]
-        effort = weight * dataset.stack(moved)[rows, 0]
-        errors[float(lag_s)] = relative_error(
-            effort - columns @ solve(columns, effort, fit.bounds).coefficients, effort
-        )
-    best = min(errors, key=lambda lag_s: errors[lag_s])
-    effort = weight * dataset.effort[rows]
-    turned = relative_error(-effort - columns @ solve(columns, -effort, fit.bounds).coefficients, effort)
-    if abs(best) < LEAST_LAG_S or errors[best] > min(MOVED * error, turned):  # a sine that is turned seems late, too
-        return []
-    which = "behind" if best > 0.0 else "ahead of"
-    return [
-        f"the effort is about {abs(best):.1f} s {which} the motion (moved by that, it leaves {errors[best]:.0%} "
-        f"instead of {error:.0%}); lay the clocks of {' and '.join(dataset.effort_definition.channels)} and of "
-        "position over each other"
     ]
 
 

@@ -8,7 +8,8 @@ and shapes), does it help (held-out error, resampled by whole trials).
 from math import nan
 
 from compensator.lab.at_rest.rest_comparison import compare_at_rest
-from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, unexplained
+from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
+from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import Answer
@@ -20,13 +21,12 @@ from compensator.lab.diagnosis.run_to_run import differences_by_run
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
+from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.evidence import least_p_value, screen
-
-EXPLAINED = 0.75  # of the error: what an effect may leave of an effort that seemed alien to the motion
 
 
 def diagnose(fit: Fit) -> Diagnosis:
@@ -43,16 +43,24 @@ def diagnose(fit: Fit) -> Diagnosis:
     """
     if problems := fatal_problems(fit):
         return _data_problem(fit, problems[0])
-    families = judged(fit)
+    alien = alien_effort(fit)
+    try:
+        families = judged(fit)
+    except UnusableDataError:
+        if alien is None:
+            raise
+        return _data_problem(fit, alien.text)
     first = families.first()
-    if (problems := unexplained(fit)) and not _explains_most(first):
-        return _data_problem(fit, problems[0])
+    nothing = first.verdict == "nothing"
+    too_short = nothing and least_p_value(families.stretches) > SIGNIFICANT
+    explained = alien is not None and _explains_more(first, alien)
+    if alien is not None and not explained and (alien.mended or not too_short):
+        return _data_problem(fit, alien.text)
     others = [answer for answer in families.in_order if answer is not first]
     left = _left_in_sliding(fit, families.gathered, first) if first is families.memory else []
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
-    nothing = first.verdict == "nothing"
     return Diagnosis(
         verdict=first.verdict,
         sentence=first.sentence,
@@ -60,10 +68,10 @@ def diagnose(fit: Fit) -> Diagnosis:
         classes=_classes(ranked),
         candidates=ranked,
         driver=first.driver,
-        data_problems=data_problems(fit),
+        data_problems=[one for one in data_problems(fit) if not (explained and alien and one == alien.text)],
         notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
         left_out=families.left_out,
-        too_short=nothing and least_p_value(families.stretches) > SIGNIFICANT,
+        too_short=too_short,
         remains=first.remains or bool(left) or (nothing and families.steady.remains),
     )
 
@@ -77,11 +85,9 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     return screening.evidence[0].block.name if screening.evidence else None
 
 
-def _explains_most(answer: Answer) -> bool:
-    """Whether an effect is named that makes sense of an effort that seemed alien to the motion, as a resonance can."""
-    if answer.verdict != "missing":
-        return False
-    return answer.candidates[0].gain.value > 1.0 - EXPLAINED
+def _explains_more(answer: Answer, alien: AlienEffort) -> bool:
+    """Whether an effect is named that makes more sense of an effort that seems alien to the motion than a mend does."""
+    return answer.verdict == "missing" and answer.candidates[0].after <= alien.leaves
 
 
 def _data_problem(fit: Fit, problem: str) -> Diagnosis:

@@ -31,7 +31,8 @@ def best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
     found = [_best_shape(gathered, shapes) for shapes in of_each.values()]
     ranked = sorted(found, key=lambda item: -item.score)
     order = list(catalogue())
-    tied = [item for item in ranked if _ties(item, ranked[0])]
+    best = next((item for item in ranked if is_physical(gathered, item)), None)
+    tied = [item for item in ranked if best is not None and _ties(item, best)]
     plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
     return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
 
@@ -70,7 +71,8 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     candidates = []
     for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
         alike = _alike(item, spans)
-        rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, evidence, alike)}
+        possible = [other for other in evidence if is_physical(gathered, other)]
+        rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
         found = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
         candidates.append(_beside_chain(found, fit, fits[index], gathered.show_in))
     confirmed = [index for index, candidate in enumerate(candidates) if is_confirmed(candidate)]

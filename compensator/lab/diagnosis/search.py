@@ -15,7 +15,7 @@ from typing import Literal
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
@@ -36,6 +36,7 @@ class Step:
         change: what was done; effect: to which effect; instead_of: for a swap, which one gave way.
         fit: the model after it.
         held_out: its error, on the study's rows.
+        rivals: effects that it could as well be, of one that is added.
     """
 
     change: Change
@@ -43,6 +44,7 @@ class Step:
     instead_of: str | None
     fit: Fit
     held_out: HeldOut
+    rivals: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,17 +94,19 @@ def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -
 
 def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
     """As long as a diagnosis names an effect. Arguments as `search`."""
-    start, steps = fit, []
+    start, steps, undecided = fit, [], set[str]()
     while diagnosis.verdict == "missing" and len(fit.names) < len(start.names) + most:
-        name = diagnosis.classes[0][0]
-        steps.append(_step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training)))
+        name, *rivals = diagnosis.classes[0]
+        added = _step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training))
+        steps.append(replace(added, rivals=tuple(rivals)))
         swapped = _swaps(start, steps[-1].fit)
         steps += swapped
         steps += _drops(start, steps[-1].fit, last_too=bool(swapped))
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
-            break  # the same model again: the trials do not decide
+            undecided.add(name)  # the same model again: the trials do not decide, and the search goes on without it
         fit = steps[-1].fit
-        diagnosis = diagnose(fit)
+        with withheld(undecided):
+            diagnosis = diagnose(fit)
     return Search(start, tuple(steps), diagnosis)
 
 

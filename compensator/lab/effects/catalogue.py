@@ -15,6 +15,7 @@ from compensator.lab.effects.electrical import (
     cogging_orders,
     current_gain_asymmetry,
     dead_time,
+    effort_filter,
     encoder_eccentricity,
     measurement_delay,
     supply_sag,
@@ -92,6 +93,7 @@ _OURS = (
     rate_dependent_breakaway,
     elasticity,
     measurement_delay,
+    effort_filter,
     encoder_eccentricity,
     current_gain_asymmetry,
     dead_time,
@@ -108,6 +110,12 @@ def catalogue() -> dict[str, Effect]:
         effect: Effect = point.load()
         effects.setdefault(effect.name, effect)
     return effects
+
+
+@cache
+def chain_effects() -> frozenset[str]:
+    """Names of the effects of the measuring chain."""
+    return frozenset(name for name, effect in catalogue().items() if effect.pipeline)
 
 
 def effect_named(name: str) -> Effect:

@@ -32,6 +32,7 @@ class _Variable:
 _VARIABLES = {
     "position": _Variable("position", lambda motion: motion.place),
     "velocity": _Variable("velocity", lambda motion: motion.velocity),
+    "speed": _Variable("speed", lambda motion: np.abs(motion.velocity)),
     "acceleration": _Variable("acceleration", lambda motion: motion.acceleration),
     "load": _Variable("the predicted load", lambda motion: motion.load_effort, "load"),
     "load_kg": _Variable("the load at the tip", lambda motion: np.full(len(motion.time_s), motion.load_kg)),
@@ -52,6 +53,8 @@ def name_of(driver: str) -> str | None:
     variable, against, _ = driver.partition(" against motion")
     if variable not in _VARIABLES:
         return None
+    if variable == "velocity" and against:
+        variable = "speed"  # friction the same both ways: what differs by direction has names, and shows beside it
     # what comes up after a reversal is friction, whether that is said or not
     return f"{PREFIX}{variable}{AGAINST_MOTION if against or variable == 'since_reversal' else ''}"
 

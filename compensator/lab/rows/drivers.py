@@ -47,6 +47,7 @@ DRIVERS: dict[str, Driver] = {
     driver.name: driver
     for driver in (
         Driver("velocity", "velocity", "{position}/s", lambda t: t.motion.velocity),
+        Driver("speed", "speed", "{position}/s", lambda t: np.abs(t.motion.velocity)),
         Driver("position", "position", "{position}", lambda t: t.motion.place),
         Driver("acceleration", "acceleration", "{position}/s2", lambda t: t.motion.acceleration),
         Driver("load", "predicted load", "{effort}", lambda t: t.motion.load_effort),

@@ -104,6 +104,15 @@ def twisted(m: Motion) -> list[np.ndarray]:
     return [-0.1 * np.array(found)]
 
 
+def smoothed(m: Motion, time_constant_s: float) -> np.ndarray:
+    """Predicted effort behind a low-pass of first order that is settled at the start."""
+    kept, now, found = np.exp(-0.05 / time_constant_s), predicted(m)[0], []
+    for value in predicted(m):
+        now = kept * now + (1.0 - kept) * value
+        found.append(now)
+    return np.array(found)
+
+
 def flank(m: Motion) -> np.ndarray:
     """Which flank carries the load, unsure below a twentieth of the largest effort."""
     return np.tanh((1.3 * np.sin(m.position) - 0.2) / (0.05 * 1.5))
@@ -135,6 +144,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "spring": ((), lambda m: [m.position]),
     "centre_of_mass_angle": ((), lambda m: [np.cos(m.position), WEIGHT_N_M * np.cos(m.position)]),
     "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
+    "effort_filter": ((0.2,), lambda m: [smoothed(m, 0.2) - predicted(m)]),
     "back_driving_friction": ((), lambda m: [back_driven(m, 1.3 * np.sin(m.position) - 0.2)]),
     "cogging": ((9.0,), lambda m: over_a_sample(m, 9.0)),
     "cogging_orders": (
