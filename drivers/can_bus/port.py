@@ -69,12 +69,13 @@ class CanPort:
         Raises:
             DriveConnectionError: as `send`.
         """
-        end_s = time.perf_counter() + _SEND_S
+        end_s = 0.0  # a clock is asked only where there was no room
         while True:
             try:
                 self._bus.send(message)
                 return
             except (can.CanError, OSError) as error:
+                end_s = end_s or time.perf_counter() + _SEND_S
                 if "buffer full" not in str(error).lower() or time.perf_counter() > end_s:
                     raise self._lost("sending", error) from error
                 time.sleep(_RETRY_S)
@@ -109,14 +110,16 @@ class CanPort:
 
     def wait_beyond(self, before: dict[int, int], limit_s: float) -> list[int]:
         """The same, counted from numbers that were taken before something was asked for."""
-        end_s = time.perf_counter() + limit_s
         missing = {can_id for can_id, number in before.items() if self.number(can_id) == number}
+        left_s, end_s = limit_s, time.perf_counter() + limit_s
         while missing:
-            left_s = end_s - time.perf_counter()
             taken = self._take(max(left_s, 0.0))
-            if taken is None and left_s <= 0.0:
+            if taken is not None:
+                missing.discard(taken)
+            elif left_s <= 0.0:
                 break
-            missing.discard(-1 if taken is None else taken)
+            if missing:
+                left_s = end_s - time.perf_counter()
         return sorted(missing)
 
     def heard_ids(self) -> list[int]:
@@ -138,7 +141,9 @@ class CanPort:
             self.garbled += message.is_error_frame
             return -1
         can_id: int = message.arbitration_id
-        self._heard[can_id] = Heard(bytes(message.data), time.perf_counter(), self.number(can_id) + 1)
+        before = self._heard.get(can_id)
+        number = 1 if before is None else before.number + 1
+        self._heard[can_id] = Heard(bytes(message.data), time.perf_counter(), number)
         return can_id
 
     def _lost(self, doing: str, error: Exception) -> DriveConnectionError:

@@ -68,10 +68,8 @@ class Feedback(NamedTuple):
 
 def command(ranges: Ranges, torque_n_m: float, damping: float = 0.0) -> bytes:
     """The frame of a torque, with both gains zero unless it shall damp [N m s/rad]."""
-    centre_16, centre_12 = _word(0.0, 1.0, 16), _word(0.0, 1.0, 12)
-    torque = _word(torque_n_m, ranges.torque_n_m, 12)
     damping_word = round(damping / DAMPING_FULL * 0xFFF)
-    word = centre_16 << 48 | centre_12 << 36 | damping_word << 12 | torque
+    word = _STAND | damping_word << 12 | _word(torque_n_m, ranges.torque_n_m, 12)
     return word.to_bytes(8, "big")
 
 
@@ -106,6 +104,10 @@ def error_name(state: int) -> str:
 def _word(value: float, full: float, bits: int) -> int:
     top = (1 << bits) - 1
     return round((min(max(value, -full), full) + full) / (2.0 * full) * top)
+
+
+_STAND = _word(0.0, 1.0, 16) << 48 | _word(0.0, 1.0, 12) << 36
+"""Position and speed of 0 in their places; with gains of 0 they mean nothing."""
 
 
 def _value(word: int, full: float, bits: int) -> float:
