@@ -1,4 +1,4 @@
-// Live: what the joint does, drawn whenever rows arrive (more than twenty times a second); frozen, zoomed, channel by channel.
+// Live: what the joint does, drawn with each frame while rows arrive; frozen, zoomed, channel by channel.
 
 import { readingNote } from "../app/state.js";
 import { liveJoint } from "../joint/livejoint.js";

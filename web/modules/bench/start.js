@@ -55,13 +55,19 @@ export async function startForm(place, live, queued) {
     replace(parameters, form.element);
     soon();
   };
-  const send = async (path, body, pressed, told) => {
+  // one at a time: what is said of the second would be written over by the answer to the first
+  const alone = async (...order) => {
+    button.disabled = later.disabled = true;
+    await send(...order);
+    button.disabled = later.disabled = false;
+  };
+  const send = async (path, body, told) => {
     replace(answer);
     if ((await plan()) === null) {
       replace(answer, problemBox(new Error("Not started, nothing has moved, nothing is recorded. See what is marked.")));
       return;
     }
-    const done = await attempt(answer, () => post(path, body()), { button: pressed });
+    const done = await attempt(answer, () => post(path, body()));
     if (!done) return;
     started = done.experiment_id ?? null;
     replace(answer, h("div", { class: "good", role: "status" }, told(done)));
@@ -74,8 +80,8 @@ export async function startForm(place, live, queued) {
     started = null;
     replace(answer);
   });
-  button.addEventListener("click", () => send("/experiments", wanted, button, (done) => `Experiment ${done.experiment_id} has started.`));
-  later.addEventListener("click", () => send("/queue", () => ({ items: [wanted()] }), later, () => "It is in the queue; it starts when it is its turn."));
+  button.addEventListener("click", () => alone("/experiments", wanted, (done) => `Experiment ${done.experiment_id} has started.`));
+  later.addEventListener("click", () => alone("/queue", () => ({ items: [wanted()] }), () => "It is in the queue; it starts when it is its turn."));
   choice.addEventListener("change", () => {
     note({ view: "bench", query: { kind: choice.value } });
     choose();

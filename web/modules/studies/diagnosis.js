@@ -3,6 +3,7 @@
 import { bar } from "./beforeafter.js";
 import { h, replace } from "../ui/dom.js";
 import { chance as chanceIs, interval, nameOf, number, percent } from "../ui/format.js";
+import { shownUnit } from "../ui/units.js";
 import { colour } from "../ui/colours.js";
 import { band, draw } from "../plots/plotly.js";
 
@@ -49,7 +50,7 @@ async function card(parent, one, add) {
   const button = h("button", { type: "button", class: one.in_class ? "primary" : "", onclick: () => add(one.effect, answer) }, `Add ${one.title}`);
   parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ",
     one.in_class && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")),
-  h("div", { class: "bars" }, bar("held-out now", one.held_out_before, highest, "purple"), bar("with the effect", one.held_out_after, highest, "blue")),
+  h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar("with the effect", one.held_out_after, highest, "blue")),
   h("p", {}, evidence(one)), one.picture && plot, button, answer));
   if (one.picture) await picture(plot, one);
 }
@@ -61,7 +62,7 @@ async function provisional(parent, one, add) {
   const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
   const button = h("button", { type: "button", class: "primary", onclick: () => add(one.effect, answer) }, "Add as a provisional term");
   parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ", h("span", { class: "badge stale" }, "provisional")),
-    h("div", { class: "bars" }, bar("held-out now", one.held_out_before, highest, "purple"), bar("with the curve", one.held_out_after, highest, "blue")),
+    h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar("with the curve", one.held_out_after, highest, "blue")),
     h("p", {}, one.sentence), plot, button, answer));
   await picture(plot, one);
 }
@@ -83,9 +84,11 @@ function ends({ gain, gain_low: low, gain_high: high }) {
 }
 
 function picture(plot, { picture: shown, title }) {
+  const { unit, factor } = shownUnit(shown.unit);
+  const x = shown.x.map((value) => factor * value);
   return draw(plot, [
-    band(shown.x, shown.low, shown.high, "residual", "blue"),
-    { x: shown.x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
-    { x: shown.curve_x, y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
-  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${shown.unit ? ` [${shown.unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
+    band(x, shown.low, shown.high, "residual", "blue"),
+    { x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
+    { x: shown.curve_x.map((value) => factor * value), y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
+  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${unit ? ` [${unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
 }

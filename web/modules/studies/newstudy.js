@@ -3,7 +3,7 @@
 import { get, post, token } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
-import { nameOf, quantity, when } from "../ui/format.js";
+import { capital, nameOf, quantity, when } from "../ui/format.js";
 import { heldOut, TrialChoice, used } from "./trialchoice.js";
 
 const MOST = 500;
@@ -56,7 +56,7 @@ export async function newStudy(place, wanted = null) {
     button.textContent = found.carries ? "Create study" : "Create study all the same";
     button.className = found.carries ? "primary" : "";
     replace(carries, found.problem ? problemBox(found.problem) : h("div", { class: found.carries ? "good" : "problem", role: "status" }, found.sentence),
-      !found.problem && h("p", { class: "soft" }, found.hold_out ? `Worth holding out: ${criterion(found.hold_out)} (${found.advice}).` : `${found.advice[0].toUpperCase()}${found.advice.slice(1)}.`));
+      !found.problem && h("p", { class: "soft" }, found.hold_out ? `Worth holding out: ${criterion(found.hold_out)} (${found.advice}).` : `${capital(found.advice)}.`));
   };
   const checkSoon = () => {
     clearTimeout(timer);

@@ -2,9 +2,10 @@
 // A view shows itself when its first answers are there, all at once: nothing jumps while it fills.
 
 import { h } from "./dom.js";
+import { capital } from "./format.js";
 
 export function problemBox(error) {
-  return h("div", { class: "problem", role: "alert" }, error.message);
+  return h("div", { class: "problem", role: "alert" }, capital(error.message));
 }
 
 // runs an action; `place` says meanwhile that it is busy, and afterwards what went wrong
