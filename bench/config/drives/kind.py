@@ -35,6 +35,7 @@ class ConformanceBench:
         knows_counts: whether it knows its encoder, and refuses a rig that says otherwise; None: its position needs
             no counts, for it is told in turns.
         has_watchdog: whether it stops by itself when its host falls silent.
+        tells_firmware: whether it says which version runs in it.
     """
 
     name: str
@@ -46,6 +47,7 @@ class ConformanceBench:
     is_checked: bool | None = True
     knows_counts: bool | None = False
     has_watchdog: bool = True
+    tells_firmware: bool = True
 
 
 SettingsT = TypeVar("SettingsT", bound=DriveSettings)
