@@ -46,3 +46,15 @@ def test_a_challenge_is_made_guessed_at_and_revealed(open_page, monkeypatch):
     assert page.locator("[aria-label='What was hidden'] tbody tr").count() == 1
     # what is drawn may be one that no recording of motion can tell: then nothing was missed, and that is said
     page.get_by_text(re.compile("^(Missed|Hidden, but no recording of motion can tell)")).first.wait_for()
+
+
+def test_what_takes_long_is_cancelled_and_says_so(open_page):
+    page = open_page("#learn")
+    page.set_default_timeout(60_000)
+    page.route("**/api/v1/challenges", lambda route: None if route.request.method == "POST" else route.fallback())
+    page.get_by_role("button", name="New challenge").click()
+    page.get_by_role("progressbar", name="Drawing a joint").wait_for()
+    page.get_by_text("s left").wait_for()
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_text("Cancelled: nothing of it is kept.").wait_for()
+    assert page.get_by_role("button", name="New challenge").is_enabled()

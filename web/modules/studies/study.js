@@ -116,12 +116,17 @@ class Study {
 
   add(effect, place) {
     const body = { effect, model_id: this.model };
-    return attempt(place, async () => this.changed(await post(`${this.path}/models`, body)), { busy: "Fitting …" });
+    return this.fitted(place, body);
+  }
+
+  async fitted(place, body) {
+    const result = await patiently(place, "fit", "Fitting …", (signal) => post(`${this.path}/models`, body, 0, { signal }));
+    if (result) await attempt(place, () => this.changed(result));
   }
 
   drop(effect) {
     const body = { effect, model_id: this.model, action: "drop" };
-    return attempt(this.parts.change, async () => this.changed(await post(`${this.path}/models`, body)), { busy: "Fitting …" });
+    return this.fitted(this.parts.change, body);
   }
 
   async changed(result) {
