@@ -22,7 +22,7 @@ class Reading(NamedTuple):
         sample: as the drive gave it.
         velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
         current_a: measured where the drive measures it, else eq. (3) [A].
-        current_estimate_a: by eq. (3), NaN where that is not known [A].
+        current_estimate_a: by eq. (3), or by the torque that a drive tells; NaN where neither is known [A].
     """
 
     time_s: float

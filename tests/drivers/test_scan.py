@@ -33,6 +33,8 @@ def scan(*options):
         ("odrive", ("--node", "12"), "node_id", [12]),
         ("damiao", ("--motor", "5", "--feedback", "37"), "motor_id", [5]),
         ("robstride", ("--motor", "9"), "motor_id", [9]),
+        ("moteus", ("--id", "7", "--joints", "2"), "servo_id", [7, 8]),
+        ("moteus", ("--id", "7", "--uart"), "servo_id", [7]),
     ],
 )
 def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):
