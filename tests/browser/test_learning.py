@@ -40,6 +40,7 @@ def test_a_challenge_is_made_guessed_at_and_revealed(open_page, monkeypatch):
     page.locator("fieldset input:checked").first.wait_for()
     page.get_by_role("link", name="Learn").click()
     page.get_by_role("button", name="Guess at challenge").first.click()
+    assert page.get_by_label("or what a study").input_value() == ""  # none was made of it
     page.get_by_label("I say").select_option("nothing")
     page.get_by_role("button", name="Reveal").click()
     page.get_by_text("One mechanism was hidden").wait_for()

@@ -26,7 +26,7 @@ function cell(map, { down, across, value, highest, effort }, ask) {
   const [left, right] = [map.across_edges[across], map.across_edges[across + 1]];
   const [low, high] = [map.down_edges[down], map.down_edges[down + 1]];
   const words = `${spanOf(map.across, left, right)}, ${spanOf(map.down, low, high)}`;
-  const button = h("button", { type: "button", class: "cell", "aria-label": `${words}: ${number(effort.factor * value, 2)} ${effort.unit}`,
+  const button = h("button", { type: "button", class: value === highest ? "cell worst" : "cell", "aria-label": `${words}: ${number(effort.factor * value, 2)} ${effort.unit}`,
     title: `${words}: ${number(effort.factor * value, 3)} ${effort.unit} rms, mean ${number(effort.factor * map.mean[down][across], 2)}, ${map.count[down][across]} rows` }, number(effort.factor * value, 2));
   button.style.background = `color-mix(in srgb, var(--heat) ${Math.round((DARKEST_PERCENT * value) / (highest || 1))}%, var(--panel))`;
   button.addEventListener("click", () => ask([`${map.across.driver}=${left}..${right}`, `${map.down.driver}=${low}..${high}`], words));

@@ -35,7 +35,7 @@ export async function newStudy(place, wanted = null) {
   const [choice, carries, answer] = [h("div", { class: "form" }), h("div"), h("div")];
   let timer = null;
   const [using, holding] = [new TrialChoice(used), new TrialChoice(heldOut)];
-  const button = h("button", { class: "primary" }, "Create study");
+  const button = h("button", { class: "primary", id: "study-create" }, "Create study");
   const chosen = () => boxes.filter((box) => box.checked).map((box) => Number(box.value));
   const change = () => attempt(choice, async () => {
     const trials = await trialsOf(chosen());

@@ -89,7 +89,7 @@ class Study {
 
   askDiagnosis() {
     const { diagnosed, diagnose } = this.parts;
-    const button = h("button", { class: "primary", type: "button" }, "Diagnose");
+    const button = h("button", { class: "primary", type: "button", id: "diagnose-now" }, "Diagnose");
     replace(diagnosed);
     button.addEventListener("click", async () => {
       const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal }), { button });
@@ -164,6 +164,8 @@ class Study {
 
   #layOut(place) {
     const { parts } = this;
+    parts.diagnosed.className = "diagnosed";
+    parts.change.className = "study-change";
     replace(parts.add, panel("Model", parts.model, parts.change, h("h3", {}, "Search by itself"), parts.search));
     replace(parts.result, panel("Ladder: the error from model to model", parts.ladder), panel("Parameters", parts.parameters));
     const shown = h("div", { class: "study-steps" }, parts.record, parts.compare, parts.diagnose, parts.add, parts.result);
