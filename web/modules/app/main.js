@@ -6,6 +6,7 @@ import { homeView } from "../home/home.js";
 import { learnView } from "../learn/learn.js";
 import { queueView } from "../queue/view.js";
 import { studiesView } from "../studies/studies.js";
+import { versusView } from "../studies/versus.js";
 import { beginTour, tour } from "../tour/tour.js";
 import { trialsView } from "../trials/trials.js";
 import { h, panel, replace } from "../ui/dom.js";
@@ -27,6 +28,7 @@ const VIEWS = {
   queue: { open: queueView, tab: "Queue" },
   trials: { open: trialsView, tab: "Trials" },
   study: { open: studiesView, tab: "Study" },
+  compare: { open: versusView },
   learn: { open: learnView, tab: "Learn" },
   tour: { open: beginTour },
 };
