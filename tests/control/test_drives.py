@@ -125,6 +125,6 @@ def test_a_drive_that_tells_a_torque_and_no_current_has_an_effort_in_its_record(
     joint = ControlledJoint(told, Guard(Limits()), current_servo(RIG), torque_constant_n_m_a=0.02)
     joint.begin()
     row = dict(zip(RECORDED, row_of(joint.action, joint.reading), strict=True))
-    assert row["current_estimate_a"] == pytest.approx(0.5)
-    assert isnan(row["current_a"])
+    assert row["current_a"] == pytest.approx(0.5)
+    assert isnan(row["current_estimate_a"])
     assert joint.reading.current_a == pytest.approx(0.5)
