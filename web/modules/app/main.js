@@ -4,6 +4,7 @@ import { benchView } from "../bench/bench.js";
 import { commissionView } from "../commission/commission.js";
 import { homeView } from "../home/home.js";
 import { learnView } from "../learn/learn.js";
+import { numbersView } from "../numbers/numbers.js";
 import { queueView } from "../queue/view.js";
 import { studiesView } from "../studies/studies.js";
 import { versusView } from "../studies/versus.js";
@@ -28,6 +29,7 @@ const VIEWS = {
   queue: { open: queueView, tab: "Queue" },
   trials: { open: trialsView, tab: "Trials" },
   study: { open: studiesView, tab: "Study" },
+  numbers: { open: numbersView },
   compare: { open: versusView },
   learn: { open: learnView, tab: "Learn" },
   tour: { open: beginTour },

@@ -1,12 +1,13 @@
 // Starting an experiment: choose a kind, fill in the form that its schema gives, see what would move, start. Only the
 // Start button moves the joint; Enter in a field does not.
 
-import { here, note } from "../app/address.js";
+import { here, note, written } from "../app/address.js";
 import { get, post, token } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
 import { Form } from "../ui/form.js";
 import { duration } from "../ui/format.js";
+import { presets } from "../ui/presets.js";
 import { withShownUnit } from "../ui/units.js";
 
 const PLAN_AFTER_MS = 300; // of quiet in the fields
@@ -88,8 +89,10 @@ export async function startForm(place, live, queued) {
   });
   document.addEventListener("token-set", soon);
   choose();
+  const kept = h("div");
+  presets(kept, "bench", () => written({ view: "bench", query: { kind: choice.value, ...form.values() } }), (hash) => { location.hash = hash; });
   replace(place, h("form", { class: "form", onsubmit: (event) => { event.preventDefault(); plan(); }, novalidate: true },
-    h("label", { for: "kind" }, "What to do", choice), summary, parameters, further.element,
+    h("label", { for: "kind" }, "What to do", choice), summary, kept, parameters, further.element,
     h("div", { class: "start" }, motion, h("div", { class: "row" }, button, later), answer)));
 }
 
