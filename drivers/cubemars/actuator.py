@@ -54,6 +54,7 @@ class CubemarsActuator(MitActuator):
         self._is_on = False
         self._last: Frame = self.disable_frame()
         self.switch_off()
+        self.check_alone()
         self.reading(perf_counter())
 
     def torque_frame(self, torque_n_m: float, damping: float) -> Frame:

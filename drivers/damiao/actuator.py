@@ -40,6 +40,7 @@ class DamiaoActuator(MitActuator):
             "Damiao", settings.model or "MIT-protocol actuator", str(software), "", software == SIMULATED_SOFTWARE
         )
         self.switch_off()
+        self.check_alone()
         self._forgive_lost_host()
         self._set(Register.CONTROL_MODE, protocol.MIT_MODE, DriveConfigurationError)
         self._set(Register.TIMEOUT, round(settings.watchdog_s / protocol.TIMEOUT_STEP_S), WatchdogError)

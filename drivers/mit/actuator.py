@@ -183,6 +183,24 @@ class MitActuator(ABC):
             self.missed()
         raise self.no_answer("feedback", began_s)
 
+    def check_alone(self) -> None:
+        """Ask once, and see that one answers: two of one id would both turn, and be taken for one.
+
+        Raises:
+            DriveConfigurationError: more than one does.
+        """
+        self.bus.drain()
+        before = self.bus.number(self.answer_id)
+        self.bus.send(*self.question())
+        self.bus.wait_for([-1], self.answer_timeout_s)  # which never comes
+        answers = self.bus.number(self.answer_id) - before
+        if answers > 1:
+            raise DriveConfigurationError(
+                self.device,
+                f"{answers} answers came to one question: there are two actuators with {self.addresses()} on the bus. "
+                "Give each an id of its own",
+            )
+
     def missed(self) -> None:
         """An answer was missed: what comes late is no answer to the next question."""
         self._has_missed = True

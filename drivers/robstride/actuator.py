@@ -52,6 +52,7 @@ class RobstrideActuator(MitActuator):
         self._timeout = protocol.WORD.pack(round(settings.watchdog_s / protocol.TIMEOUT_STEP_S))
         self.switch_off()
         self.identity = self._identify()
+        self.check_alone()
         self._check_ranges()
         self._set(Parameter.RUN_MODE, protocol.WORD.pack(protocol.OPERATION_MODE), DriveConfigurationError)
         self._set(Parameter.TIMEOUT, self._timeout, WatchdogError)
