@@ -49,6 +49,13 @@ def test_words_of_the_service_begin_with_a_capital_and_names_stay(call):
     assert call("ui/format", "m.capital('load_kg is 5 kg')") == "load_kg is 5 kg"
 
 
+def test_sentences_of_the_lab_have_the_words_and_signs_of_the_page(call):
+    said = "it varies with velocity; 1.69% to 0.49% (gain 71%, 90 % interval 69% .. 73%; p <= 0.001)"
+    assert call("ui/format", f"m.spoken('{said}')") == (
+        "it varies with speed; 1.69 % to 0.49 % (gain 71 %, 90 % interval 69 % to 73 %; p ≤ 0.001)"
+    )
+
+
 def test_a_small_effort_is_shown_in_thousandths(call):
     assert call("ui/units", "m.milli(0.002, 'N m')") == {"unit": "mN m", "factor": 1000}
     assert call("ui/units", "m.milli(2, 'A')") == {"unit": "A", "factor": 1}

@@ -15,7 +15,7 @@ export function challengePanel(place) {
   const button = h("button", { type: "button", class: "primary" }, "New challenge");
   const refresh = () => attempt(list, async () => replace(list, challengeTable((await get("/challenges")).items, revealed)));
   button.addEventListener("click", async () => {
-    const made = await patiently(answer, `challenge ${level.value}`, "Drawing a joint at random, and recording it …", (signal) => post("/challenges", { difficulty: level.value }, 0, { signal }), { button });
+    const made = await patiently(answer, `challenge ${level.value}`, "Drawing a joint at random, and recording it …", (signal) => post("/challenges", { difficulty: level.value }, 0, { signal }), { button, again: () => button.click() });
     if (!made) return;
     replace(answer, h("div", { class: "good", role: "status" }, `Challenge ${made.challenge_id} is ready. Make a study of experiment ${made.experiment_id}, find what its model lacks, then come back and guess.`));
     await refresh();
@@ -52,13 +52,15 @@ async function guessForm(place, challenge) {
     const guess = choices.map((choice) => choice.value).filter(Boolean).join(",");
     const body = study.value ? { study_id: Number(study.value) } : { guess };
     const told = await attempt(answer, () => post(`/challenges/${challenge.challenge_id}/reveal`, body), { busy: "Opening …" });
-    if (told) replace(answer, verdict(told));
+    if (!told) return;
+    replace(answer, verdict(told));
+    answer.scrollIntoView({ block: "nearest" });
   };
   replace(place, h("h3", {}, `What is hidden in challenge ${challenge.challenge_id}?`), h("form", { class: "form", onsubmit: submit },
     h("div", { class: "row" }, h("label", { for: "guess-0" }, "I say", choices[0]), h("label", { for: "guess-1" }, "and", choices[1]),
       h("label", { for: "guess-study" }, "or what a study added and found", study)), h("div", { class: "row" }, h("button", { class: "primary" }, "Reveal")), answer));
   place.scrollIntoView({ block: "nearest" });
-  choices[0].focus();
+  (own ? study : choices[0]).focus();
 }
 
 const LOOKED_AT = 5; // of the newest studies

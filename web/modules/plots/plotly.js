@@ -21,7 +21,7 @@ function numbersOf({ data, layout: { xaxis, yaxis } }) {
 }
 
 function axis(extra) {
-  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, exponentformat: "power", ...extra };
+  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, exponentformat: "none", ...extra };
 }
 
 export function layout(extra = {}) {

@@ -18,7 +18,7 @@ export async function newStudy(place, wanted = null) {
     replace(place, h("p", { class: "soft" }, "There are no trials yet: start an experiment on the Bench, or import a recording set under Trials."));
     return;
   }
-  const name = h("input", { id: "study-name", required: true, value: `study ${new Date().toLocaleDateString()}` });
+  const name = h("input", { id: "study-name", required: true, value: `study ${when(new Date()).slice(0, 10)}` });
   const boxes = usable.map((one) => h("input", { type: "checkbox", value: String(one.experiment_id), checked: one.experiment_id === wanted }));
   const labels = usable.map((one, index) => h("label", { class: "inline" }, boxes[index], words(one)));
   const find = h("input", { type: "search", id: "study-find", placeholder: "kind, tag, note, outcome …", oninput: () => {
@@ -67,7 +67,7 @@ export async function newStudy(place, wanted = null) {
   const submit = async (event) => {
     event.preventDefault();
     const body = { name: name.value, experiment_ids: chosen(), where: using.unlessAll(), hold_out: holding.chosen() };
-    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …" });
+    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …", again: () => button.click() });
     if (study) location.hash = `#study/${study.study_id}`;
   };
   replace(place, h("form", { class: "form", onsubmit: submit }, h("label", { for: "study-name" }, "Name", name),

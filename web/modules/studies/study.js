@@ -5,7 +5,7 @@ import { get, post, remove } from "../app/api.js";
 import { attempt, patiently, together } from "../ui/attempt.js";
 import { h, panel, replace, table } from "../ui/dom.js";
 import { withFiles } from "../ui/files.js";
-import { conditions } from "../ui/format.js";
+import { conditions, spoken } from "../ui/format.js";
 import { beforeAfter } from "./beforeafter.js";
 import { comparison } from "./comparison.js";
 import { diagnosis } from "./diagnosis.js";
@@ -133,7 +133,7 @@ class Study {
 
   async changed(result) {
     const before = this.compared?.model_id === result.parent_id ? this.compared : await get(`${this.path}/compare`, { model_id: result.parent_id });
-    this.told(h("div", { class: "good", role: "status" }, result.sentence));
+    this.told(h("div", { class: "good", role: "status" }, spoken(result.sentence)));
     await this.select(result.model_id);
     if (this.compared?.model_id !== result.model_id) return;
     beforeAfter(this.parts.change, result, { undo: () => this.undo(result.parent_id) });

@@ -5,11 +5,17 @@ import { h } from "./dom.js";
 import { capital } from "./format.js";
 
 export function problemBox(error) {
-  return h("div", { class: "problem", role: "alert" }, capital(error.message));
+  const words = error.status === 401 ? "This needs the token: paste it at the head of the page." : capital(error.message);
+  return h("div", { class: "problem", role: "alert" }, words);
+}
+
+// what moves nothing goes on by itself once there is a token; what moves something has to be pressed again
+function onceThereIsAToken(error, again) {
+  if (error.status === 401 && again) document.addEventListener("token-set", again, { once: true });
 }
 
 // runs an action; `place` says meanwhile that it is busy, and afterwards what went wrong
-export async function attempt(place, action, { button = null, busy = "" } = {}) {
+export async function attempt(place, action, { button = null, busy = "", again = null } = {}) {
   if (busy) place.replaceChildren(h("p", { class: "busy", role: "status" }, busy));
   else place.querySelector(":scope > .problem")?.remove();
   if (button) button.disabled = true;
@@ -19,6 +25,7 @@ export async function attempt(place, action, { button = null, busy = "" } = {}) 
     return result;
   } catch (error) {
     if (error.name !== "AbortError") place.replaceChildren(problemBox(error));
+    onceThereIsAToken(error, again);
     return undefined;
   } finally {
     if (button) button.disabled = false;
@@ -30,7 +37,7 @@ const USUAL_S = { "challenge easy": 12, "challenge medium": 12, "challenge hard"
 
 // runs what takes a while: `place` says for how long it has run and about how long it still takes, and cancels it.
 // action(signal): the request; the service ends what it computes when the request is broken off
-export async function patiently(place, key, words, action, { button = null } = {}) {
+export async function patiently(place, key, words, action, { button = null, again = null } = {}) {
   const way = new AbortController();
   const expected_s = Number(localStorage.getItem(`took ${key}`)) || USUAL_S[key] || null;
   const begin_ms = performance.now();
@@ -53,6 +60,7 @@ export async function patiently(place, key, words, action, { button = null } = {
     return result;
   } catch (error) {
     place.replaceChildren(error.name === "AbortError" ? h("p", { class: "soft", role: "status" }, "Cancelled: nothing of it is kept.") : problemBox(error));
+    onceThereIsAToken(error, again);
     return undefined;
   } finally {
     clearInterval(timer);

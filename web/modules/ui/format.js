@@ -61,6 +61,11 @@ export function capital(text) {
   return /^[a-z]+[ ,;:]/.test(text) ? text[0].toUpperCase() + text.slice(1) : text;
 }
 
+// a sentence of the lab in the words and signs of the page
+export function spoken(text) {
+  return text.replace(/\bvelocity\b/g, "speed").replace(/(\d)%/g, "$1 %").replace(/(\d(?: %)?) \.\. (?=[-−\d])/g, "$1 to ").replaceAll("<=", "≤");
+}
+
 // a time as people say it
 export function duration(time_s) {
   if (time_s < 90) return `${number(Math.round(time_s))} s`;
