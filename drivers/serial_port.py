@@ -34,6 +34,11 @@ class SerialPort:
         except (OSError, ValueError) as error:  # SerialException is an OSError
             raise DriveConnectionError(device, f"{error}; {_ports()}") from error
 
+    def fileno(self) -> int:
+        """For `select`."""
+        number: int = self._port.fileno()
+        return number
+
     def close(self) -> None:
         """Give the port back. Safe to call twice."""
         self._port.close()

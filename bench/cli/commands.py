@@ -93,6 +93,11 @@ COMMANDS = (
         "Show one trial: conditions, results, events; or all its samples as CSV or Parquet.",
     ),
     CommandEntry(
+        "record",
+        "bench.cli.records.record:record",
+        "Record a servo that another program moves (LeRobot, a vendor's tool): it opens the port that is offered here.",
+    ),
+    CommandEntry(
         "export",
         "bench.cli.records.recordings:export",
         "Write all trials of an experiment: a recording set (rig.toml, trials.csv, one CSV per trial), or one Parquet.",

@@ -19,7 +19,7 @@ class Reading(NamedTuple):
 
     Attributes:
         time_s: since the start of the trial, from the drive's own stamps [s].
-        sample: as the drive gave it.
+        sample: as the drive gave it; where it tells a torque and no current, with that over the constant.
         velocity_rad_s: the drive's, or derived where the drive has none [rad/s].
         current_a: measured where the drive measures it, else eq. (3) [A].
         current_estimate_a: by eq. (3), NaN where that is not known [A].

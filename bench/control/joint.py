@@ -137,7 +137,10 @@ class ControlledJoint:
             velocity_rad_s = self._derived_velocity(sample)
         estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
         if current_a != current_a:  # NaN
-            current_a = estimate_a if torque_n_m != torque_n_m else torque_n_m / self._torque_constant_n_m_a
+            current_a = estimate_a
+            if torque_n_m == torque_n_m:  # an actuator that makes a torque of its current before it tells it
+                current_a = torque_n_m / self._torque_constant_n_m_a
+                sample = sample._replace(current_a=current_a)
         self.reading = Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a, estimate_a)
 
     def check(self, target_rad: float) -> None:

@@ -34,6 +34,8 @@ from bench.store.upkeep.space import SpaceNeed
 from drivers.contract import Description, Watchdog
 from drivers.errors import DriveError
 
+WINDING_UP_S = 5.0  # what the thread of a run may take once its record is closed and the drive is off
+
 
 @dataclass(frozen=True)
 class HostProcess:
@@ -161,8 +163,10 @@ class Runner(BenchControl):
     def _refuse_when_busy(self) -> None:
         if self._closed:
             raise BusyError("the bench is closed; nothing can be started")
-        if not self.wait(0.0) and self._run is not None:
-            name = f"experiment {self._run.experiment_id} ({self._run.request.kind})"
+        run = self._run
+        # who sees the end of a run may start at once: what is left of its thread is a moment
+        if not self.wait(0.0 if run is None or run.outcome == "running" else WINDING_UP_S) and run is not None:
+            name = f"experiment {run.experiment_id} ({run.request.kind})"
             raise BusyError(f"{name} is running; wait for its end, or stop it")
 
     def _launch(self, run: ExperimentRun, kind: ExperimentKind) -> int:

@@ -1,6 +1,7 @@
 """Fits and diagnoses are waited for here: in worker threads of their own, so that they never hold up STOP or the
 readers."""
 
+import asyncio
 from collections.abc import Callable
 from typing import Concatenate, ParamSpec, TypeVar
 
@@ -8,13 +9,15 @@ import anyio
 import anyio.to_thread
 from fastapi import FastAPI, Request
 
-from bench.service.lab import Lab
+from bench.service.lab import Asker, Lab
 from bench.store import Store
 
 P = ParamSpec("P")
 T = TypeVar("T")
 MOST_AT_ONCE = 2
 MOST_AT_BENCH = 8  # they wait, and take no processor
+LOOK_EVERY_S = 0.25  # whether the one who asked is still there
+RELOADED_S = 1.5  # a page that is loaded anew asks for the same again: what would be ready by then is not ended
 
 
 async def in_worker(request: Request, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
@@ -46,7 +49,7 @@ async def at_bench(request: Request, function: Callable[P, T], *args: P.args, **
 async def in_lab(
     request: Request, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
 ) -> T:
-    """What a function of `bench.study` returns.
+    """What a function of `bench.study` returns. It is ended when the one who asked breaks the connection.
 
     Args:
         request: the request that asked for it; its application has the lab.
@@ -55,7 +58,19 @@ async def in_lab(
         **kwargs: passed on.
     """
     lab: Lab = request.app.state.lab
-    return await in_worker(request, lab.call, function, *args, **kwargs)
+    asker = Asker()
+    watch = asyncio.create_task(_give_up_when_gone(request, asker))
+    try:
+        return await in_worker(request, lab.call_for, asker, function, *args, **kwargs)
+    finally:
+        watch.cancel()
+
+
+async def _give_up_when_gone(request: Request, asker: Asker) -> None:
+    while not await request.is_disconnected():
+        await asyncio.sleep(LOOK_EVERY_S)
+    await asyncio.sleep(RELOADED_S)
+    await anyio.to_thread.run_sync(asker.give_up)
 
 
 def install(app: FastAPI) -> None:

@@ -7,8 +7,8 @@ behind all other programs, it takes what they leave: the control loop, STOP and 
 import os
 import signal
 import threading
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -27,11 +27,56 @@ class LabEndedError(BenchError, ConnectionError):
     """Raised when the process that computed was killed, or ran out of memory."""
 
 
+class Asker:
+    """Whoever asked for a call. Once they have given it up, its process ends: nobody waits for the answer."""
+
+    def __init__(self) -> None:
+        self.has_given_up = False
+        self._lock = threading.Lock()
+        self._end: Callable[[], None] | None = None
+
+    def give_up(self) -> None:
+        """End what is computed, or keep it from beginning. From any thread."""
+        with self._lock:
+            self.has_given_up = True
+            if self._end is not None:
+                self._end()
+
+    @contextmanager
+    def waiting(self, end: Callable[[], None]) -> Iterator[None]:
+        """While it is computed.
+
+        Args:
+            end: ends it.
+
+        Raises:
+            LabEndedError: it has been given up already.
+        """
+        with self._lock:
+            if self.has_given_up:
+                raise LabEndedError("whoever asked has gone")
+            self._end = end
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._end = None
+
+
 class Lab(Protocol):
     """Calls functions that take the store first; each waits for its result."""
 
     def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
         """The function's result. `args` and `kwargs` are those after the store."""
+
+    def call_for(
+        self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
+    ) -> T:
+        """The same for somebody who may give it up.
+
+        Raises:
+            LabEndedError: they have.
+        """
 
     def close(self) -> None:
         """End whatever is under way."""
@@ -50,6 +95,13 @@ class LabHere:
     def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
         """See `Lab`."""
         return function(self._store, *args, **kwargs)
+
+    def call_for(
+        self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
+    ) -> T:
+        """See `Lab`; what has begun in this thread goes on to its end."""
+        with asker.waiting(lambda: None):
+            return function(self._store, *args, **kwargs)
 
     def close(self) -> None:
         """Nothing to do."""
@@ -75,16 +127,26 @@ class LabProcesses:
         Raises:
             LabEndedError: its process ended meanwhile; the next call starts another one.
         """
+        return self.call_for(Asker(), function, *args, **kwargs)
+
+    def call_for(
+        self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
+    ) -> T:
+        """See `Lab`."""
         worker = self._take()
         try:
-            result: T = worker.call(_Call(function, args, kwargs))
+            with asker.waiting(worker.end):
+                result: T = worker.call(_Call(function, args, kwargs))
         except LabEndedError:
             self._drop(worker)
             raise
         except BaseException:
             self._give_back(worker)
             raise
-        self._give_back(worker)
+        if asker.has_given_up:  # its process may be ending
+            self._drop(worker)
+        else:
+            self._give_back(worker)
         return result
 
     def close(self) -> None:

@@ -6,7 +6,7 @@ from bench.config.channels import known_to_lab
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
 from bench.store.records import Condition, Event, Trial
-from bench.store.tables import samples, trial_search, trials
+from bench.store.tables import days, samples, trial_search, trials
 from bench.store.tables.conditions import Wanted
 from bench.store.tables.reduction import MIN_POINTS
 from bench.store.tables.trial_search import TrialQuery
@@ -82,6 +82,16 @@ class TrialStore:
             ids, count = trial_search.search(connection, wanted, limit, offset)
             found = trials.of_ids(connection, ids)
         return list(map(self.custody.as_ended, found)), count
+
+    def days(self, offset_min: int = 0, limit: int = 60) -> list[days.Day]:
+        """The newest days on which something was begun, newest first.
+
+        Args:
+            offset_min: of the local time that days are counted in, ahead of UTC [min].
+            limit: days at most.
+        """
+        with self._database.reading() as connection:
+            return days.days(connection, offset_min, limit)
 
     def events(self, trial_id: int) -> list[Event]:
         """The events of a trial, in order of time, or `NotFoundError`."""

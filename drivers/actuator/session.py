@@ -1,13 +1,13 @@
 """A connected actuator and the state that it is in: told, asked, or left in silence so that its watchdog stops it."""
 
 from collections.abc import Callable
-from math import isnan
 from time import perf_counter
 from typing import Generic, TypeVar
 
 from drivers.actuator.actuator import Actuator
 from drivers.actuator.reading import Reading
-from drivers.contract import Ages, Inspection, Mode, Sample, Status
+from drivers.actuator.sample import sample_of
+from drivers.contract import Inspection, Mode, Sample, Status
 from drivers.errors import DriveConnectionError, DriveError
 from drivers.joint import JointScale, Standstill
 from drivers.refusal import not_to_be_enabled
@@ -128,7 +128,7 @@ class ActuatorSession(Generic[ActuatorT]):
         elif self.told is Status.ENABLED and not reading.is_on and not self._fault:
             self._fault = "its power stage is off, and nobody here has told it so"
             self.switch_off()
-        sample = self._sample(reading)
+        sample = sample_of(reading, self._joint, self.state)
         if self.told is Status.QUICK_STOP:
             stands = self._braking.stands(round(reading.counts))
             if stands or perf_counter() > self._brakes_until_s:
@@ -175,16 +175,3 @@ class ActuatorSession(Generic[ActuatorT]):
             self.give_up()
             raise
         return self.take(reading)
-
-    def _sample(self, reading: Reading) -> Sample:
-        joint, now_s = self._joint, perf_counter()
-        age_s = now_s - reading.asked_s
-        slow_s = age_s if isnan(reading.slow_s) else now_s - reading.slow_s
-        return Sample(
-            reading.asked_s if isnan(reading.time_s) else reading.time_s, age_s,
-            joint.position_rad(reading.counts), joint.velocity_rad_s(reading.counts_s),
-            joint.motor_sign * reading.duty, joint.motor_sign * reading.current_a,
-            reading.supply_v, reading.temperature_c, self.state,
-            Ages(age_s, age_s, age_s, age_s, slow_s, slow_s, age_s),
-            torque_n_m=joint.motor_sign * reading.torque_n_m,
-        )  # fmt: skip

@@ -13,21 +13,30 @@ from drivers.errors import DriveConnectionError
 
 _SEND_S = 0.02  # longest wait for room in the transmit buffer
 _RETRY_S = 0.0005
+EXTENDED = 1 << 31  # in an identifier: it has 29 bits, as of SocketCAN
 _MOST_WAITING = 2000  # frames taken in at once: a babbling node must not hold the loop
 
 
 class Heard(NamedTuple):
-    """The last frame of an identifier, and how many there were."""
+    """The last frame of an identifier, and how many there were.
+
+    Attributes:
+        data: of the frame.
+        at_s: when it came, of `perf_counter` [s].
+        number: how many have come.
+        can_id: its identifier with the bits that say a state.
+    """
 
     data: bytes
     at_s: float
     number: int
+    can_id: int
 
 
-def prepare(can_id: int, data: bytes = b"", remote: bool = False, is_extended: bool = False) -> can.Message:
-    """A frame, which may be sent often."""
+def prepare(can_id: int, data: bytes = b"", remote: bool = False) -> can.Message:
+    """A frame, which may be sent often; its identifier has 29 bits where `EXTENDED` is in it."""
     return can.Message(
-        arbitration_id=can_id, data=data, is_extended_id=is_extended, is_remote_frame=remote,
+        arbitration_id=can_id & ~EXTENDED, data=data, is_extended_id=bool(can_id & EXTENDED), is_remote_frame=remote,
         dlc=8 if remote else len(data),
     )  # fmt: skip
 
@@ -40,6 +49,7 @@ class CanPort:
 
     Attributes:
         garbled: frames that could not be read.
+        state_bits: of identifiers of 29 bits: those that say a state, and by which frames are not told apart.
 
     Raises:
         DriveConnectionError: it is not there, or does not open in time.
@@ -47,7 +57,7 @@ class CanPort:
 
     def __init__(self, settings: BusSettings) -> None:
         self._name = str(settings)
-        self.garbled = 0
+        self.garbled = self.state_bits = 0
         self._heard: dict[int, Heard] = {}
         self._bus = open_bus(settings, self._name)
 
@@ -55,13 +65,13 @@ class CanPort:
         """Close the bus, also a broken one. Never raises."""
         close_bus(self._bus)
 
-    def send(self, can_id: int, data: bytes = b"", remote: bool = False, is_extended: bool = False) -> None:
-        """Send a frame, and wait for room where there is none.
+    def send(self, can_id: int, data: bytes = b"", remote: bool = False) -> None:
+        """Send a frame as of `prepare`, and wait for room where there is none.
 
         Raises:
             DriveConnectionError: there is none in time, or the adapter is gone.
         """
-        self.send_prepared(prepare(can_id, data, remote, is_extended))
+        self.send_prepared(prepare(can_id, data, remote))
 
     def send_prepared(self, message: can.Message) -> None:
         """The same of a frame that was made before.
@@ -69,12 +79,13 @@ class CanPort:
         Raises:
             DriveConnectionError: as `send`.
         """
-        end_s = time.perf_counter() + _SEND_S
+        end_s = 0.0  # a clock is asked only where there was no room
         while True:
             try:
                 self._bus.send(message)
                 return
             except (can.CanError, OSError) as error:
+                end_s = end_s or time.perf_counter() + _SEND_S
                 if "buffer full" not in str(error).lower() or time.perf_counter() > end_s:
                     raise self._lost("sending", error) from error
                 time.sleep(_RETRY_S)
@@ -109,14 +120,16 @@ class CanPort:
 
     def wait_beyond(self, before: dict[int, int], limit_s: float) -> list[int]:
         """The same, counted from numbers that were taken before something was asked for."""
-        end_s = time.perf_counter() + limit_s
         missing = {can_id for can_id, number in before.items() if self.number(can_id) == number}
+        left_s, end_s = limit_s, time.perf_counter() + limit_s
         while missing:
-            left_s = end_s - time.perf_counter()
             taken = self._take(max(left_s, 0.0))
-            if taken is None and left_s <= 0.0:
+            if taken is not None:
+                missing.discard(taken)
+            elif left_s <= 0.0:
                 break
-            missing.discard(-1 if taken is None else taken)
+            if missing:
+                left_s = end_s - time.perf_counter()
         return sorted(missing)
 
     def heard_ids(self) -> list[int]:
@@ -138,8 +151,14 @@ class CanPort:
             self.garbled += message.is_error_frame
             return -1
         can_id: int = message.arbitration_id
-        self._heard[can_id] = Heard(bytes(message.data), time.perf_counter(), self.number(can_id) + 1)
-        return can_id
+        key = can_id
+        if message.is_extended_id:
+            can_id |= EXTENDED
+            key = can_id & ~self.state_bits
+        before = self._heard.get(key)
+        number = 1 if before is None else before.number + 1
+        self._heard[key] = Heard(bytes(message.data), time.perf_counter(), number, can_id)
+        return key
 
     def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
         return DriveConnectionError(

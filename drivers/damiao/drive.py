@@ -3,9 +3,10 @@
 from drivers.actuator.drive import ActuatorDrive, Family
 from drivers.can_bus.port import on_bus
 from drivers.contract import Mode
-from drivers.damiao.actuator import DamiaoActuator, exchange_all
+from drivers.damiao.actuator import DamiaoActuator
 from drivers.damiao.settings import DamiaoSettings
 from drivers.joint import JointScale
+from drivers.mit.actuator import exchange_all
 
 _MODES = frozenset({Mode.TORQUE})
 _OPENING_QUESTIONS = 16

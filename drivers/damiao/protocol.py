@@ -1,9 +1,7 @@
-"""Frames of the MIT protocol as Damiao has it, and its registers: pure functions.
+"""Damiao's part of the MIT protocol: answers with a state, and registers. Pure functions.
 
-A command has five numbers in eight bytes, high bits first: position (16 bits), speed, stiffness, damping, torque (12
-each). Each is a whole number over a range, of which the actuator has its own: what a torque means depends on it. The
-answer has state and id, position (16), speed and torque (12 each), and two temperatures. Registers are read and written
-at identifier 0x7FF.
+The answer has state and id, position, speed and torque, and two temperatures. Registers are read and written at
+identifier 0x7FF.
 
 Source: Damiao, "DM-J series" manuals; codes and register numbers compared with `damiao-motor` 1.0.
 """
@@ -12,10 +10,10 @@ from enum import IntEnum
 from struct import Struct
 from typing import NamedTuple
 
-ENABLE, DISABLE, CLEAR_ERRORS = (b"\xff" * 7 + bytes((last,)) for last in (0xFC, 0xFD, 0xFB))
+from drivers.mit.frames import Motion, Ranges, motion
+
 REGISTERS_ID = 0x7FF
 READ, WRITE, ASK = 0x33, 0x55, 0xCC
-DAMPING_FULL = 5.0  # [N m s/rad]; stiffness and damping have the same range in every model
 ENABLED = 1
 TIMEOUT_STEP_S = 50e-6
 MIT_MODE = 1
@@ -38,14 +36,6 @@ class Register(IntEnum):
     TORQUE_RANGE = 23  # [N m], float
 
 
-class Ranges(NamedTuple):
-    """What the largest number of a frame means, either way."""
-
-    position_rad: float
-    speed_rad_s: float
-    torque_n_m: float
-
-
 MODELS: dict[str, Ranges] = {
     "DM3507": Ranges(12.566, 50, 5), "DM4310": Ranges(12.5, 30, 10), "DM4310P": Ranges(12.5, 50, 10),
     "DM4340": Ranges(12.5, 10, 28), "DM4340P": Ranges(12.5, 10, 28), "DM6006": Ranges(12.5, 45, 20),
@@ -60,31 +50,13 @@ class Feedback(NamedTuple):
     """What an actuator answers."""
 
     state: int
-    position_rad: float
-    speed_rad_s: float
-    torque_n_m: float
+    motion: Motion
     temperature_c: float
-
-
-def command(ranges: Ranges, torque_n_m: float, damping: float = 0.0) -> bytes:
-    """The frame of a torque, with both gains zero unless it shall damp [N m s/rad]."""
-    centre_16, centre_12 = _word(0.0, 1.0, 16), _word(0.0, 1.0, 12)
-    torque = _word(torque_n_m, ranges.torque_n_m, 12)
-    damping_word = round(damping / DAMPING_FULL * 0xFFF)
-    word = centre_16 << 48 | centre_12 << 36 | damping_word << 12 | torque
-    return word.to_bytes(8, "big")
 
 
 def feedback(data: bytes, ranges: Ranges) -> Feedback:
     """Take an answer of eight bytes apart."""
-    word = int.from_bytes(data, "big")
-    return Feedback(
-        data[0] >> 4,
-        _value(word >> 40 & 0xFFFF, ranges.position_rad, 16),
-        _value(word >> 28 & 0xFFF, ranges.speed_rad_s, 12),
-        _value(word >> 16 & 0xFFF, ranges.torque_n_m, 12),
-        max(data[6], data[7]),
-    )
+    return Feedback(data[0] >> 4, motion(int.from_bytes(data[1:6], "big"), ranges), max(data[6], data[7]))
 
 
 def register_frame(motor_id: int, what: int, register: int = 0, data: bytes = bytes(4)) -> bytes:
@@ -101,12 +73,3 @@ def is_register(data: bytes, motor_id: int, register: int) -> bool:
 def error_name(state: int) -> str:
     """The error by name; "" where the state is none."""
     return _ERRORS.get(state, "" if state in (0, ENABLED) else f"state {state:#x}")
-
-
-def _word(value: float, full: float, bits: int) -> int:
-    top = (1 << bits) - 1
-    return round((min(max(value, -full), full) + full) / (2.0 * full) * top)
-
-
-def _value(word: int, full: float, bits: int) -> float:
-    return word * 2.0 * full / ((1 << bits) - 1) - full

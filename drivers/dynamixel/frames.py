@@ -14,7 +14,8 @@ HEADER = b"\xff\xff\xfd\x00"
 HEAD_BYTES = 7  # header, id, length
 STATUS_BYTES = 11  # of a status packet without parameters
 BROADCAST = 0xFE
-PING, READ, WRITE, REBOOT, STATUS, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x08, 0x55, 0x82, 0x83
+PING, READ, WRITE, ACTION, REBOOT, STATUS, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x05, 0x08, 0x55, 0x82, 0x83
+BULK_WRITE = 0x93
 ALERT = 0x80  # in the error byte: there is a hardware error
 _CRC_BYTES = 2
 _STUFFED, _STUFFING = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
@@ -85,6 +86,13 @@ def status(reply: bytes) -> StatusPacket | None:
     return StatusPacket(reply[4], body[0], body[1:])
 
 
+def nobody_answers(request: bytes) -> bool:
+    """Whether the last packet is one to everybody that asks for nothing."""
+    last = request[max(request.rfind(HEADER), 0) :]
+    to_all = len(last) > HEAD_BYTES and last[4] == BROADCAST
+    return to_all and last[HEAD_BYTES] in (ACTION, SYNC_WRITE, BULK_WRITE)
+
+
 _REFUSALS = {
     1: "it failed to do it", 2: "it does not know the instruction", 3: "the CRC was wrong", 4: "out of range",
     5: "of another length", 6: "beyond its limit", 7: "not to be written now",
@@ -99,5 +107,5 @@ def refusal(error: int) -> str:
 
 PROTOCOL_2 = Frames(
     STATUS_BYTES, read_packet, write_packet, sync_read_packet, sync_write_packet, packet_bytes, status, refusal,
-    lambda servo_id: packet(servo_id, PING), BROADCAST,
+    lambda servo_id: packet(servo_id, PING), BROADCAST, nobody_answers,
 )  # fmt: skip

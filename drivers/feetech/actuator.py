@@ -1,13 +1,13 @@
 """One STS servo on its bus: open loop and position, and the one piece that each exchange reads."""
 
 from collections.abc import Callable
-from math import nan
 
 from drivers.actuator.reading import Identity, Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, WatchdogError
 from drivers.feetech import memory
-from drivers.feetech.frames import signed, with_sign
+from drivers.feetech.frames import with_sign
+from drivers.feetech.measured import reading_of
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
 from drivers.serial_latency import latency_note
@@ -90,14 +90,7 @@ class FeetechActuator(ServoActuator):
 
     def reading(self, data: bytes, asked_s: float) -> Reading:
         """The piece in SI."""
-        is_on, position, speed, load, supply, temperature, status, current = memory.LAYOUT.unpack(data)
-        counts_s = signed(speed, memory.SPEED_SIGN)
-        return Reading(
-            asked_s, self._turns.follow(position, counts_s, asked_s), counts_s,
-            signed(load, memory.LOAD_SIGN) / memory.DUTY_FULL,
-            signed(current, memory.CURRENT_SIGN) * memory.CURRENT_A, nan,
-            supply * memory.SUPPLY_V, temperature, bool(is_on), memory.servo_errors(status),
-        )  # fmt: skip
+        return reading_of(data, asked_s, self._turns)
 
     def clear_fault(self) -> None:
         """Power off: a servo forgets its errors where their cause is gone."""

@@ -11,7 +11,7 @@ from drivers.servos.frames import Frames, StatusPacket
 HEADER = b"\xff\xff"
 STATUS_BYTES = 6
 BROADCAST = 0xFE
-PING, READ, WRITE, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x82, 0x83
+PING, READ, WRITE, ACTION, SYNC_READ, SYNC_WRITE = 0x01, 0x02, 0x03, 0x05, 0x82, 0x83
 _HEAD_BYTES = 4  # header, id, length
 
 
@@ -62,6 +62,12 @@ def status(reply: bytes) -> StatusPacket | None:
     return StatusPacket(reply[2], reply[4], reply[5:-1])
 
 
+def nobody_answers(request: bytes) -> bool:
+    """Whether the last packet is one to everybody that asks for nothing."""
+    last = request[max(request.rfind(HEADER), 0) :]
+    return len(last) > _HEAD_BYTES and last[2] == BROADCAST and last[4] in (ACTION, SYNC_WRITE)
+
+
 def signed(word: int, sign_bit: int) -> int:
     """A number whose sign is a bit of its own."""
     magnitude = word & (1 << sign_bit) - 1
@@ -76,5 +82,5 @@ def with_sign(value: int, sign_bit: int) -> int:
 SCS = Frames(
     STATUS_BYTES, read_packet, write_packet, sync_read_packet, sync_write_packet, packet_bytes, status,
     lambda _error: "",  # its error byte tells of the servo's state; nothing is refused
-    lambda servo_id: packet(servo_id, PING), BROADCAST,
+    lambda servo_id: packet(servo_id, PING), BROADCAST, nobody_answers,
 )  # fmt: skip

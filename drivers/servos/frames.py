@@ -42,6 +42,7 @@ class Frames:
         refusal: what an error byte refuses, in words; "" for nothing.
         ping: asks whether a servo is there; with the broadcast id, everybody.
         broadcast: the id of everybody.
+        nobody_answers: whether the last packet of some bytes is one that no servo answers.
     """
 
     status_bytes: int
@@ -54,3 +55,4 @@ class Frames:
     refusal: Callable[[int], str]
     ping: Callable[[int], bytes]
     broadcast: int
+    nobody_answers: Callable[[bytes], bool]

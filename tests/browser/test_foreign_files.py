@@ -12,13 +12,15 @@ def chosen(name: str) -> dict[str, object]:
 
 
 def test_a_german_spreadsheet_comes_in_once_its_columns_are_confirmed(service, open_page):
+    before = service.client.get("/experiments").json()["items"]
     page = open_page("#trials")
     page.get_by_text("Import a recording set, or files of any bench").click()
     page.get_by_label("Recording set (.zip), or files").set_input_files([chosen("german excel, windows-1252")])
     page.get_by_role("button", name="Import", exact=True).click()
-    page.get_by_role("region", name="Columns").get_by_text("position_rad").wait_for()
-    before = service.client.get("/experiments").json()["items"]
-    assert not any(one["kind"] == "import" for one in before)  # nothing comes in before somebody has looked
+    columns = page.get_by_role("region", name="Columns")
+    columns.get_by_role("option", name="position_rad").first.wait_for(state="attached")
+    # nothing comes in before somebody has looked
+    assert service.client.get("/experiments").json()["items"] == before
     page.get_by_role("button", name="These columns are right").click()
     page.get_by_text("Imported 1 trials").wait_for()
     made = next(one for one in service.client.get("/experiments").json()["items"] if one["kind"] == "import")
@@ -31,8 +33,23 @@ def test_a_question_is_asked_and_answered(service, open_page):
     page.get_by_text("Import a recording set, or files of any bench").click()
     page.get_by_label("Recording set (.zip), or files").set_input_files([chosen("counts, not told")])
     page.get_by_role("button", name="Import", exact=True).click()
-    page.get_by_role("alert").get_by_text("--counts-per-turn").wait_for()
+    page.get_by_role("alert").get_by_text("counts per turn N (of the joint), or choose position [deg] for '").wait_for()
     page.get_by_label("Counts per turn of the joint").fill("16384")
     page.get_by_role("button", name="Answer").click()
     page.get_by_role("button", name="These columns are right").click()
     page.get_by_text("Imported 1 trials").wait_for()
+
+
+def test_what_a_column_is_taken_for_is_chosen_in_the_table(service, open_page):
+    page = open_page("#trials")
+    page.get_by_text("Import a recording set, or files of any bench").click()
+    page.get_by_label("Recording set (.zip), or files").set_input_files([chosen("counts, not told")])
+    page.get_by_role("button", name="Import", exact=True).click()
+    page.get_by_role("alert").get_by_text("is in counts").wait_for()
+    column = page.locator("main").get_by_role("alert").inner_text().split("'")[1]
+    page.get_by_label(f"What {column} is").select_option("position[deg]")
+    page.get_by_role("button", name="These columns are right").wait_for()
+    page.get_by_label(f"What {column} is").select_option("ignore")
+    page.get_by_role("alert").get_by_text("no column is a position").wait_for()
+    page.get_by_label(f"What {column} is").select_option("")
+    page.get_by_role("alert").get_by_text("is in counts").wait_for()

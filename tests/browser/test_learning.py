@@ -6,6 +6,7 @@ import pytest
 
 from bench.evaluation.challenge import difficulty
 from bench.evaluation.challenge.difficulty import Difficulty
+from tests.service.running_service import TOKEN
 
 pytestmark = pytest.mark.browser
 QUICK = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 2.0, 1, 1)
@@ -40,9 +41,44 @@ def test_a_challenge_is_made_guessed_at_and_revealed(open_page, monkeypatch):
     page.locator("fieldset input:checked").first.wait_for()
     page.get_by_role("link", name="Learn").click()
     page.get_by_role("button", name="Guess at challenge").first.click()
+    assert page.get_by_label("or what a study").input_value() == ""  # none was made of it
     page.get_by_label("I say").select_option("nothing")
     page.get_by_role("button", name="Reveal").click()
     page.get_by_text("One mechanism was hidden").wait_for()
     assert page.locator("[aria-label='What was hidden'] tbody tr").count() == 1
     # what is drawn may be one that no recording of motion can tell: then nothing was missed, and that is said
     page.get_by_text(re.compile("^(Missed|Hidden, but no recording of motion can tell)")).first.wait_for()
+
+
+def test_what_takes_long_is_cancelled_and_says_so(open_page):
+    page = open_page("#learn")
+    page.set_default_timeout(60_000)
+    page.route("**/api/v1/challenges", lambda route: None if route.request.method == "POST" else route.fallback())
+    page.get_by_role("button", name="New challenge").click()
+    page.get_by_role("progressbar", name="Drawing a joint").wait_for()
+    page.get_by_text("s left").wait_for()
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_text("Cancelled: nothing of it is kept.").wait_for()
+    assert page.get_by_role("button", name="New challenge").is_enabled()
+
+
+def test_what_lacks_a_token_goes_on_once_there_is_one(open_page):
+    page = open_page("#learn", token=False)
+    posts = []
+
+    def answer(route) -> None:
+        if route.request.method != "POST":
+            route.fallback()
+            return
+        posts.append(route.request.headers.get("authorization"))
+        if len(posts) == 1:
+            route.fulfill(status=401, json={"detail": "send 'Authorization: Bearer <token>'"})
+
+    page.route("**/api/v1/challenges", answer)
+    page.get_by_role("button", name="New challenge").click()
+    page.get_by_text("This needs the token").wait_for()
+    page.get_by_label("Token: to start").fill(TOKEN)
+    page.get_by_role("button", name="Use token").click()
+    page.get_by_role("progressbar", name="Drawing a joint").wait_for()
+    assert posts == [None, f"Bearer {TOKEN}"]
+    open_page.complaints.clear()  # the browser tells of the 401

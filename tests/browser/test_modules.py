@@ -39,6 +39,28 @@ def test_a_ring_keeps_the_newest_rows_and_never_grows(call):
     assert kept[4] is True
 
 
+def test_rows_of_a_block_are_handed_on_evenly_and_all_of_them(call):
+    block = "{rows: Array(100), from: 0, begin_ms: 1000, until_ms: 1060}"
+    assert [call("app/pour", f"m.dueOf({block}, {at})") for at in (900, 1000, 1030, 1060, 9000)] == [0, 0, 50, 100, 100]
+
+
+def test_words_of_the_service_begin_with_a_capital_and_names_stay(call):
+    assert call("ui/format", "m.capital('the bench is busy')") == "The bench is busy"
+    assert call("ui/format", "m.capital('load_kg is 5 kg')") == "load_kg is 5 kg"
+
+
+def test_sentences_of_the_lab_have_the_words_and_signs_of_the_page(call):
+    said = "it varies with velocity; 1.69% to 0.49% (gain 71%, 90 % interval 69% .. 73%; p <= 0.001)"
+    assert call("ui/format", f"m.spoken('{said}')") == (
+        "it varies with speed; 1.69 % to 0.49 % (gain 71 %, 90 % interval 69 % to 73 %; p ≤ 0.001)"
+    )
+
+
+def test_a_small_effort_is_shown_in_thousandths(call):
+    assert call("ui/units", "m.milli(0.002, 'N m')") == {"unit": "mN m", "factor": 1000}
+    assert call("ui/units", "m.milli(2, 'A')") == {"unit": "A", "factor": 1}
+
+
 def test_a_copy_of_a_ring_stays_as_it_was(call):
     assert call(
         "bench/ring",

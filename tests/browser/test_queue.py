@@ -30,7 +30,7 @@ def waiting(service) -> list[dict]:
 
 def test_an_experiment_waits_in_the_queue_and_is_removed(service, open_page):
     page = open_page()
-    page.get_by_label("repeats").fill("20")
+    page.get_by_label("repeats").fill("1000")
     page.get_by_role("button", name="Start", exact=True).click()
     page.locator(".badge.running").wait_for()
     page.get_by_role("button", name="Queue", exact=True).click()
@@ -49,7 +49,7 @@ def test_the_queue_is_paused_after_a_trial_gone_on_with_moved_and_cleared(servic
     service.client.post("/queue", json={"items": [long, *others]}).raise_for_status()
     page = open_page("#queue")
     page.get_by_role("button", name="Pause after this trial").click()
-    page.get_by_text("It is paused: paused by environment.").wait_for()
+    page.get_by_text("The queue is paused: paused by environment.").wait_for()
     assert service.runner.status().pausing == "paused"
     page.get_by_role("button", name="Run chirp at place 2 earlier").click()
     page.get_by_role("button", name="Run reversals at place 2 earlier").wait_for()

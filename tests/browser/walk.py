@@ -86,7 +86,8 @@ def explain_a_challenge(walker: Walker) -> str:
     shot("result")
     walker.link("Learn")
     walker.button("Guess at challenge")
-    page.get_by_label("I say").select_option(label=named)
+    page.get_by_label("or what a study").get_by_role("option").first.wait_for(state="attached")
+    assert page.get_by_label("or what a study").input_value() != ""  # the study of the challenge is offered
     walker.button("Reveal")
     page.locator("main [role=status]").get_by_text("hidden").last.wait_for()
     page.locator("main [role=status]").last.scroll_into_view_if_needed()

@@ -29,3 +29,11 @@ def test_a_zero_needs_a_drive_on_a_wire(command):
     found = command("doctor", "--set-zero")
     assert found.exit_code == 3
     assert "needs a drive on a wire" in found.output
+
+
+def test_it_says_what_can_be_compensated_and_what_cannot(command):
+    found = command("doctor")
+    assert "What can be compensated here, and what cannot" in found.output
+    scope = json.loads(command("doctor", "--json").stdout)["scope"]
+    assert {one["answer"] for one in scope} <= {"yes", "in part", "no"}
+    assert all(one["what"] and one["why"] for one in scope)

@@ -132,7 +132,8 @@ class CanWire:
     def send(self, message: can.Message, _timeout_s: float | None = None) -> None:
         TIME.advance(_FRAME_S)
         now_s = self._wire.catch_up()
-        self._wire.device.receive(Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame), now_s)
+        frame = Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame, message.is_extended_id)
+        self._wire.device.receive(frame, now_s)
 
     def recv(self, timeout_s: float | None = None) -> can.Message | None:
         left_s = timeout_s or 0.0
@@ -142,8 +143,8 @@ class CanWire:
                 TIME.advance(_FRAME_S)
                 frame = self._waiting.popleft()
                 return can.Message(
-                    arbitration_id=frame.can_id, data=frame.data, is_remote_frame=frame.remote, is_extended_id=False,
-                    is_rx=True, timestamp=TIME.now(),
+                    arbitration_id=frame.can_id, data=frame.data, is_remote_frame=frame.remote,
+                    is_extended_id=frame.extended, is_rx=True, timestamp=TIME.now(),
                 )  # fmt: skip
             if left_s <= 0.0:
                 return None

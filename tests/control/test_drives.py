@@ -1,13 +1,23 @@
 """The [drive] section of bench.toml, and the drive that comes of it."""
 
+from math import isnan, nan
+
 import pytest
 
+from bench.config.channels import RECORDED
 from bench.config.configuration import default_configuration, parse_configuration
+from bench.config.sections import Limits
+from bench.control.cycle import row_of
 from bench.control.drive_factory import has_hardware, is_simulated, make_equipment, seed_of
+from bench.control.joint import ControlledJoint
+from bench.control.limits import Guard
+from bench.control.servo import current_servo
 from bench.control.technician import PersonTechnician
 from bench.errors import ConfigurationError, ExperimentError
+from drivers.contract import Mode
 from drivers.errors import DriveConnectionError
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
+from tests.control.fake_drive import RIG, FakeDrive
 
 CANOPEN = {"kind": "canopen", "interface": "slcan", "channel": "/dev/absent", "node_id": 5, "watchdog_s": 0.2}
 ROBOCLAW = {"kind": "roboclaw", "port": "/dev/absent", "motor_sign": -1, "watchdog_s": 0.3}
@@ -104,3 +114,17 @@ def test_loads_of_a_simulated_device_are_hung_over_its_side_channel():
 def test_a_drive_without_side_channel_is_hardware():
     assert has_hardware(configured(ROBOCLAW))
     assert not has_hardware(default_configuration())
+
+
+def test_a_drive_that_tells_a_torque_and_no_current_has_an_effort_in_its_record():
+    """Else the lab finds none in its trials, and no study can be made of them."""
+    told = FakeDrive(
+        alter=lambda _cycle, sample: sample._replace(duty=nan, torque_n_m=0.01), modes=frozenset({Mode.TORQUE})
+    )
+    told.open(0.005)
+    joint = ControlledJoint(told, Guard(Limits()), current_servo(RIG), torque_constant_n_m_a=0.02)
+    joint.begin()
+    row = dict(zip(RECORDED, row_of(joint.action, joint.reading), strict=True))
+    assert row["current_a"] == pytest.approx(0.5)
+    assert isnan(row["current_estimate_a"])
+    assert joint.reading.current_a == pytest.approx(0.5)

@@ -45,3 +45,25 @@ def _scheduled(policy: int, priority: int) -> Iterator[None]:
         yield
     finally:
         os.sched_setscheduler(0, before, parameters)
+
+
+@contextmanager
+def own_processors(pid: int) -> Iterator[None]:
+    """Keep a device and this thread on processors of their own for a while, as a drive and its host are.
+
+    Where the system puts both on one, each cycle waits for two changes of the program: which of two ways to drive it
+    meets that is chance, and what is compared is no longer the ways. A machine with one processor is left as it is.
+    """
+    before = os.sched_getaffinity(0)
+    if len(before) < 2:
+        yield
+        return
+    device, host = sorted(before)[-1], before - {sorted(before)[-1]}
+    for thread in os.listdir(f"/proc/{pid}/task"):
+        with suppress(OSError):
+            os.sched_setaffinity(int(thread), {device})
+    os.sched_setaffinity(0, host)
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)

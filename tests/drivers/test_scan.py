@@ -11,7 +11,11 @@ from tests.devices.device_process import device_process
 from tests.devices.turns import no_turns
 from tests.drivers.conformance.benches import configured
 
-ACCEPTED = {"feetech": {"accept_no_watchdog": True}, "odrive": {"watchdog_is_set_in_drive": True}}
+ACCEPTED = {
+    "feetech": {"accept_no_watchdog": True},
+    "odrive": {"watchdog_is_set_in_drive": True},
+    "robstride": {"position_range_rad": 100.0, "speed_range_rad_s": 200.0, "torque_range_n_m": 0.5},
+}
 
 
 def scan(*options):
@@ -28,6 +32,9 @@ def scan(*options):
         ("roboclaw", ("--address", "130", "--baud", "0"), "address", [130]),
         ("odrive", ("--node", "12"), "node_id", [12]),
         ("damiao", ("--motor", "5", "--feedback", "37"), "motor_id", [5]),
+        ("robstride", ("--motor", "9"), "motor_id", [9]),
+        ("moteus", ("--id", "7", "--joints", "2"), "servo_id", [7, 8]),
+        ("moteus", ("--id", "7", "--uart"), "servo_id", [7]),
     ],
 )
 def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):

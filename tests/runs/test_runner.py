@@ -2,6 +2,7 @@
 
 import threading
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from bench.config.configuration import default_configuration
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.errors import BusyError, ConfigurationError, LimitError, ParameterError, UnknownKindError
-from bench.runs.runner import Runner
+from bench.runs.runner import HostProcess, Runner
 from bench.store import Store
 from bench.store.errors import StoreFullError
 from bench.store.sqlite import Sqlite
@@ -36,6 +37,21 @@ def runner(store):
 def finished(runner, timeout_s=60.0):
     assert runner.wait(timeout_s), f"still running: {runner.status()}"
     return runner.status()
+
+
+def test_the_next_experiment_starts_as_soon_as_the_one_before_is_over(store):
+    @contextmanager
+    def slowly_left(_real_time):
+        yield
+        time.sleep(0.5)
+
+    runner = Runner(default_configuration(), store, HostProcess(during_run=slowly_left))
+    first = runner.start("steps", {"repeats": 1})
+    while runner.status().outcome == "running":
+        time.sleep(0.01)
+    assert not runner.wait(0.0)  # its thread is still there
+    assert runner.start("steps", {"repeats": 1}) == first + 1
+    runner.close()
 
 
 def test_an_experiment_from_start_to_record(runner, store):

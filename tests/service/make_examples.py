@@ -79,6 +79,7 @@ def bench(asking: Asking, service: RunningService) -> None:
     ask("GET /experiments/{number}", number=finished)
     ask("GET /experiments", query={"limit": LISTED})
     ask("GET /trials", query={"limit": 1, "experiment_id": finished})
+    ask("GET /trials/days", query={"limit": 1})
     ask("GET /trials/search", query={"limit": 1, "words": "step-001"})
     trial_id = service.store.trials(finished)[0].id
     ask("GET /trials/{number}", number=trial_id)

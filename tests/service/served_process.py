@@ -18,11 +18,17 @@ UP_WITHIN_S = 60.0
 
 
 @contextmanager
-def served_process(folder: Path) -> Iterator[str]:
-    """Its address; `TOKEN` may all. The store is `bench.sqlite` in the folder, and may be there already."""
+def served_process(folder: Path, *options: str) -> Iterator[str]:
+    """Its address; `TOKEN` may all. The store is `bench.sqlite` in the folder, and may be there already.
+
+    Args:
+        folder: where it runs.
+        *options: before `serve`, such as "--config", "bench.toml".
+    """
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "bench.cli", "--store", str(folder / "bench.sqlite"), "serve", "--port", str(port)]
+    store = ["--store", str(folder / "bench.sqlite")]
+    command = [sys.executable, "-m", "bench.cli", *store, *options, "serve", "--port", str(port)]
     environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN, "PYTHONPATH": os.pathsep.join(sys.path)}
     process = subprocess.Popen(command, env=environment, cwd=folder, stdout=subprocess.DEVNULL)
     url = f"http://127.0.0.1:{port}"

@@ -3,13 +3,20 @@
 import os
 import signal
 import threading
+import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+import httpx
 import pytest
+import uvicorn
+from fastapi import FastAPI, Request
 
 from bench.recording_set import import_recording_set, read_recording_set
-from bench.service.lab import NICENESS, LabEndedError, LabHere, LabProcesses
+from bench.service import compute
+from bench.service.lab import NICENESS, Asker, LabEndedError, LabHere, LabProcesses
+from bench.service.server import Address, listen
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study.compare import compare
@@ -110,3 +117,62 @@ def test_the_end_of_the_service_does_not_wait_for_a_search(lab, store, experimen
     assert not lab_processes() - before
     with pytest.raises(LabEndedError, match="ending"):
         lab.call(list_studies)
+
+
+def test_what_is_given_up_is_ended_and_the_next_call_is_answered(lab):
+    before = lab_processes()
+    asker, failures = Asker(), []
+
+    def wait_long() -> None:
+        try:
+            lab.call_for(asker, sleeping, 600.0)
+        except LabEndedError as error:
+            failures.append(error)
+
+    thread = threading.Thread(target=wait_long)
+    thread.start()
+    wait_for(lambda: asker._end is not None)
+    asker.give_up()
+    thread.join(20.0)
+    assert not thread.is_alive()
+    assert len(failures) == 1
+    assert lab_processes() <= before
+    assert lab.call(list_studies) is not None
+    with pytest.raises(LabEndedError, match="has gone"):
+        lab.call_for(asker, list_studies)  # nor does it begin
+    assert lab.call(list_studies) is not None
+
+
+def sleeping(_store: Store, time_s: float) -> None:
+    """A long fit."""
+    time.sleep(time_s)
+
+
+def test_a_broken_connection_ends_what_was_computed_for_it(store, url):
+    """Through the service: the process of the lab is gone soon after the one who asked."""
+    lab = LabProcesses(url)
+    app = FastAPI()
+    app.state.lab = lab
+    compute.install(app)
+
+    @app.get("/long")
+    async def long(request: Request) -> None:
+        await compute.in_lab(request, sleeping, 600.0)
+
+    before = lab_processes()
+    with served(app) as address:
+        with pytest.raises(httpx.ReadTimeout):
+            httpx.get(f"{address}/long", timeout=httpx.Timeout(5.0, read=2.0))
+        wait_for(lambda: lab_processes() <= before)
+    lab.close()
+
+
+@contextmanager
+def served(app: FastAPI) -> Iterator[str]:
+    with listen(Address("127.0.0.1", 0)) as listener:
+        server = uvicorn.Server(uvicorn.Config(app, log_level="error"))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        yield f"http://127.0.0.1:{listener.getsockname()[1]}"
+        server.should_exit = True
+        thread.join()

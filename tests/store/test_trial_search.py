@@ -1,8 +1,12 @@
 """A list of trials that a person looks through: words, order, pages."""
 
+from datetime import UTC, date, datetime, timedelta
+
 import pytest
 
 from bench.store.errors import StoreValueError
+from bench.store.tables import experiments
+from bench.store.tables.days import begin_and_end
 from bench.store.tables.trial_search import TrialQuery
 from tests.store.rates import fill
 
@@ -63,3 +67,23 @@ def test_what_cannot_be_looked_for_is_said(filled):
         filled.search_trials(TrialQuery(sort="colour"), limit=1)
     with pytest.raises(StoreValueError, match="at most 8"):
         filled.search_trials(TrialQuery(words=("a",) * 9), limit=1)
+
+
+def test_days_are_those_of_the_local_time_and_find_their_trials(store, monkeypatch):
+    begun = datetime(2026, 3, 1, 23, 30, tzinfo=UTC)
+    for at, count in ((begun, 2), (begun + timedelta(hours=2), 3)):
+        monkeypatch.setattr(experiments, "now", lambda at=at: at)
+        experiment = store.begin_experiment("steps", {}, "simulated", {}, {"name": "paper"})
+        for number in range(count):
+            writer = store.begin_trial(experiment, f"{at.hour}-{number}", "steps", {}, ["time_s"])
+            writer.finish("completed" if number else "tripped", "", {})
+    assert [(one.day, one.experiments, one.trials, one.not_completed) for one in store.days()] == [
+        (date(2026, 3, 2), 1, 3, 1),
+        (date(2026, 3, 1), 1, 2, 1),
+    ]
+    assert [(one.day, one.trials) for one in store.days(offset_min=60)] == [(date(2026, 3, 2), 5)]
+    wanted = TrialQuery(begun=begin_and_end(date(2026, 3, 2), 0))
+    assert names(store.search_trials(wanted, 10)) == ["1-0", "1-1", "1-2"]
+    assert len(store.search_trials(TrialQuery(begun=begin_and_end(date(2026, 3, 2), 60)), 10)[0]) == 5
+    with pytest.raises(StoreValueError, match="1900 to 2999"):
+        begin_and_end(date.min, 60)

@@ -13,6 +13,7 @@ from bench.config.quantities import unit_of
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.runs.connection import Connection
+    from bench.runs.scope import Scope
     from bench.store import Experiment
     from drivers.contract import Description
 
@@ -38,6 +39,7 @@ def doctor(
     of bench.toml or of gear, sensor or motor of the rig. A new zero is no such change.
     """
     from bench.runs.connection import connect
+    from bench.runs.scope import scope_of
 
     session = session_of(context)
     found = connect(session.configuration())
@@ -48,7 +50,12 @@ def doctor(
         say(doubt)
     if set_zero:
         _set_zero(session, found.sample.position_rad - radians(at_deg), as_json)
-    answer: dict[str, object] = {"connection": _represent(found), "count_doubt": doubt}
+    scope = scope_of(session.configuration(), found.description)
+    if not as_json:
+        _show_scope(scope)
+    answer: dict[str, object] = {
+        "connection": _represent(found), "count_doubt": doubt, "scope": [one._asdict() for one in scope],
+    }  # fmt: skip
     passed = True
     if move:
         passed = _move(session, operator, answer, as_json)
@@ -125,6 +132,11 @@ def _show(found: "Connection") -> None:
         f"The joint stands at {degrees(found.sample.position_rad):.2f} degrees. Where the arm hangs straight down now, "
         "'friction-bench doctor --set-zero' makes that 0."
     )
+
+
+def _show_scope(scope: "tuple[Scope, ...]") -> None:
+    rows = [(one.what, one.answer.value, one.why) for one in scope]
+    table("What can be compensated here, and what cannot", ["what", "", "why"], rows)
 
 
 def _watchdog(description: "Description") -> str:

@@ -1,7 +1,7 @@
 """Ctrl-C, SIGTERM and SIGHUP during a run: the joint is stopped, the record is closed, then the program ends."""
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -22,6 +22,19 @@ _NAMES = {
     signal.SIGTERM: "SIGTERM at the terminal",
     signal.SIGHUP: "the terminal was closed",
 }
+
+
+@contextmanager
+def until_interrupted() -> Iterator[Callable[[], bool]]:
+    """While it lasts a signal ends nothing by itself: whoever asks is told that one has come."""
+    came: list[int] = []
+    wanted = [number for number in _CODES if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, lambda number, _frame: came.append(number)) for number in wanted}
+    try:
+        yield lambda: bool(came)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @dataclass

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig, Section
 from drivers.contract import Drive, Mode
+from drivers.follower import Follower
 
 
 class DriveSettings(Section):
@@ -35,6 +37,7 @@ class ConformanceBench:
         knows_counts: whether it knows its encoder, and refuses a rig that says otherwise; None: its position needs
             no counts, for it is told in turns.
         has_watchdog: whether it stops by itself when its host falls silent.
+        tells_firmware: whether it says which version runs in it.
     """
 
     name: str
@@ -46,6 +49,7 @@ class ConformanceBench:
     is_checked: bool | None = True
     knows_counts: bool | None = False
     has_watchdog: bool = True
+    tells_firmware: bool = True
 
 
 SettingsT = TypeVar("SettingsT", bound=DriveSettings)
@@ -64,6 +68,8 @@ class DriveKind(Generic[SettingsT]):
         scan_serial, scan_can: say which drives of the kind answer on a port or a bus.
         share: lets drives of one bench that are on one line use it together, before they are opened; raises
             `ConfigurationError`. None: each has a line of its own.
+        follow: looks at one that another program moves: of the section, the rig, the name of the port that it offers,
+            and the time from one look to the next [s]. None: that cannot be done.
     """
 
     title: str
@@ -74,6 +80,7 @@ class DriveKind(Generic[SettingsT]):
     scan_serial: SerialScan | None = None
     scan_can: CanScan | None = None
     share: Callable[[Sequence[Any]], None] | None = None
+    follow: Callable[[SettingsT, Rig, Path, float], Follower] | None = None
 
     @property
     def name(self) -> str:

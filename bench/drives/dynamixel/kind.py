@@ -1,6 +1,7 @@
 """The Dynamixel as a kind of drive."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -10,6 +11,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 _BAUD_RATES = (57600, 1_000_000, 2_000_000, 4_000_000, 115200)
 
@@ -40,6 +42,14 @@ def make(settings: DynamixelDriveSettings, rig: Rig) -> Drive:
     return DynamixelDrive(DynamixelSettings(**driver_values(settings)), joint_scale(settings, rig))
 
 
+def follow(settings: DynamixelDriveSettings, rig: Rig, link: Path, period_s: float) -> Follower:
+    """Stand between another program and the servo."""
+    from drivers.dynamixel.follow import follow as followed
+    from drivers.dynamixel.settings import DynamixelSettings
+
+    return followed(DynamixelSettings(**driver_values(settings)), joint_scale(settings, rig), link, period_s)
+
+
 def simulate() -> Simulate:
     """The command that simulates one."""
     from bench.drives.dynamixel.device import simulate
@@ -68,6 +78,7 @@ KIND = DriveKind(
     make=make,
     simulate=simulate,
     scan_serial=scan,
+    follow=follow,
     conformance=(
         ConformanceBench(
             "dynamixel",

@@ -1,6 +1,7 @@
 """The Feetech STS servo as a kind of drive."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -10,6 +11,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 _BAUD_RATES = (1_000_000, 115200)
 _IDS = range(254)
@@ -39,6 +41,14 @@ def make(settings: FeetechDriveSettings, rig: Rig) -> Drive:
     return FeetechDrive(FeetechSettings(**driver_values(settings)), joint_scale(settings, rig))
 
 
+def follow(settings: FeetechDriveSettings, rig: Rig, link: Path, period_s: float) -> Follower:
+    """Stand between another program and the servo."""
+    from drivers.feetech.follow import follow as followed
+    from drivers.feetech.settings import FeetechSettings
+
+    return followed(FeetechSettings(**driver_values(settings)), joint_scale(settings, rig), link, period_s)
+
+
 def simulate() -> Simulate:
     """The command that simulates one."""
     from bench.drives.feetech.device import simulate
@@ -65,6 +75,7 @@ KIND = DriveKind(
     make=make,
     simulate=simulate,
     scan_serial=scan,
+    follow=follow,
     conformance=(
         ConformanceBench(
             "feetech",

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.errors import ParameterError
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
-from bench.service.compute import in_worker
+from bench.service.compute import in_lab, in_worker
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
@@ -97,21 +97,19 @@ class Revealed(BaseModel):
     dependencies=[Depends(require_token)],
     responses=problems(401, 403, 409, 422),
 )
-async def create(request: Request, response: Response, store: StoreOf, body: NewChallenge) -> Challenge:
+async def create(request: Request, response: Response, body: NewChallenge) -> Challenge:
     """Draws a joint at random, hides nothing, one or two mechanisms in it, and records it. Takes half a minute."""
-
-    def call() -> Challenge:
-        from bench.evaluation.challenge.kept import (
-            keep_challenge,  # the plant and the lab are imported when first needed
-        )
-
-        seed = secrets.randbits(64) if body.seed is None else body.seed
-        return _represent(keep_challenge(store, seed, body.difficulty))
-
-    made = await in_worker(request, call)
+    seed = secrets.randbits(64) if body.seed is None else body.seed
+    made = await in_lab(request, _made, seed, body.difficulty)
     note(request, f"made challenge {made.challenge_id} ({made.difficulty})")
     response.headers["Location"] = f"{request.url.path}/{made.challenge_id}"
     return made
+
+
+def _made(store: Store, seed: int, difficulty: Level) -> Challenge:
+    from bench.evaluation.challenge.kept import keep_challenge  # the plant and the lab are imported when first needed
+
+    return _represent(keep_challenge(store, seed, difficulty))
 
 
 @router.get("", summary="The challenges there are", responses=problems(422))

@@ -12,6 +12,8 @@ from pydantic import BaseModel, Field
 
 from bench.recording_set import import_recording_set, read_recording_set
 from bench.recording_set.guess import Known, guess_of, mapping_text, read_said, rig_text
+from bench.recording_set.guess.names import UNITS_OF
+from bench.recording_set.units import units_of
 from bench.service.auth.access import require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_worker
@@ -71,6 +73,9 @@ class GuessedColumns(BaseModel):
 
     joint: Literal["rotary", "linear"] = Field(examples=["rotary"])
     columns: list[GuessedColumn] = Field(examples=[[EXAMPLE_COLUMN]])
+    quantities: dict[str, list[str]] = Field(
+        description="what a column may be, each with its units; for `take`", examples=[{"position": ["rad", "deg"]}]
+    )
     questions: list[str] = Field(
         description="what has to be said first; empty where nothing is left open",
         examples=[["'enc' is in counts: say --counts-per-turn N (of the joint), or --take 'enc=position[deg]'"]],
@@ -147,6 +152,7 @@ def _guess(path: Path, known: Known) -> GuessedColumns:
     return GuessedColumns(
         joint=guess.joint,
         columns=[GuessedColumn(**{**asdict(one), "outline": list(one.outline)}) for one in guess.taken],
+        quantities={one: [name for si in units for name in units_of(si)] for one, units in UNITS_OF.items()},
         questions=list(guess.questions),
         notes=[*notes, *guess.notes],
         mapping=mapping_text(guess.mapping),

@@ -1,6 +1,8 @@
 """/trials: what was recorded, down-sampled for a plot or whole as CSV."""
 
 import math
+from dataclasses import asdict
+from datetime import date
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
@@ -16,6 +18,7 @@ from bench.service.http.problems import problems
 from bench.service.records import Trial, trial_record
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
+from bench.store.tables.days import begin_and_end
 from bench.store.tables.trial_search import TrialQuery
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
@@ -81,6 +84,32 @@ class FoundTrials(Page):
     items: list[Trial]
 
 
+class RecordedDay(BaseModel):
+    """A day on which something was begun."""
+
+    day: date
+    experiments: int
+    trials: int = Field(description="of the experiments that were begun on that day")
+    not_completed: int = Field(description="trials that ended otherwise, or still run")
+
+
+class Days(BaseModel):
+    """The newest days on which something was begun, newest first."""
+
+    items: list[RecordedDay]
+
+
+OffsetMin = Annotated[
+    int, Query(ge=-24 * 60 + 1, le=24 * 60 - 1, description="of the local time of a day, ahead of UTC [min]")
+]
+
+
+@router.get("/days", summary="On which days something was recorded", responses=problems(422))
+def recorded_days(store: StoreOf, offset_min: OffsetMin = 0, limit: Annotated[int, Query(ge=1, le=1000)] = 60) -> Days:
+    """For a strip of sessions; `day` of /trials/search gives the trials of one."""
+    return Days(items=[RecordedDay(**asdict(one)) for one in store.days(offset_min, limit)])
+
+
 @router.get("/search", summary="Trials by words, sorted, page by page", responses=problems(422))
 def search(
     store: StoreOf,
@@ -88,14 +117,23 @@ def search(
     experiment_id: Annotated[int | None, Query(ge=1)] = None,
     kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
     outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    day: Annotated[date | None, Query(description="on which the experiment was begun")] = None,
+    offset_min: OffsetMin = 0,
     sort: Annotated[Sorting, Query(description="what they are sorted by")] = "trial",
     descending: Annotated[bool, Query(description="the highest, or newest, first")] = True,
     limit: Limit = 50,
     offset: Offset = 0,
 ) -> FoundTrials:
     """For a list that a person looks through; a page of 100 000 trials comes as quickly as one of ten."""
+    begun = None if day is None else begin_and_end(day, offset_min)
     wanted = TrialQuery(
-        experiment_id, kind or None, outcome or None, tuple(words.split()), sort=sort, descending=descending
+        experiment_id,
+        kind or None,
+        outcome or None,
+        tuple(words.split()),
+        begun,
+        sort=sort,
+        descending=descending,
     )
     found, total = store.search_trials(wanted, limit, offset)
     more = offset + limit if offset + limit < total else None

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 
 from sqlalchemy import Column, ColumnElement, Connection, and_, func, not_, or_, select
 
@@ -29,6 +30,7 @@ class TrialQuery:
         experiment_id, kind, outcome: exact; None: any.
         words: each has to be in the name, kind, outcome, reason, a condition's name or text, or be the number of the
             trial or the value of a condition.
+        begun: first moment, and the one after the last, in which the trial's experiment was begun; None: ever.
         conditions: value, or lowest and highest number, by condition.
         sort: a key of `SORTED_BY`; trials that are alike come in the order in which they were made.
         descending: the highest, or newest, first.
@@ -38,6 +40,7 @@ class TrialQuery:
     kind: str | None = None
     outcome: str | None = None
     words: tuple[str, ...] = ()
+    begun: tuple[datetime, datetime] | None = None
     conditions: Mapping[str, Wanted] = field(default_factory=dict)
     sort: str = "trial"
     descending: bool = False
@@ -72,6 +75,10 @@ def _filters(connection: Connection, wanted: TrialQuery) -> list[ColumnElement[b
     for column, value in (("experiment_id", wanted.experiment_id), ("kind", wanted.kind), ("outcome", wanted.outcome)):
         if value is not None:
             filters.append(TRIAL.c[column] == value)
+    if wanted.begun is not None:
+        first, end = wanted.begun
+        begun = select(EXPERIMENT.c.id).where(EXPERIMENT.c.started_utc >= first, EXPERIMENT.c.started_utc < end)
+        filters.append(TRIAL.c.experiment_id.in_(begun))
     if not wanted.words:
         return filters
     keys = _keys(connection)

@@ -48,7 +48,7 @@ class BusPort(threading.Thread):
         try:
             while not self._closing.is_set():
                 message = self._bus.recv(_LOOK_UP_S)
-                if message is not None and not message.is_extended_id and not message.is_error_frame:
+                if message is not None and not message.is_error_frame:
                     self._receive(message)
         except BaseException as error:
             self.error = error
@@ -64,7 +64,9 @@ class BusPort(threading.Thread):
         self._bus.shutdown()
 
     def _receive(self, message: can.Message) -> None:
-        frame = Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
+        frame = Frame(
+            message.arbitration_id, bytes(message.data), message.is_remote_frame, message.is_extended_id, message.is_fd
+        )
         self._clock.hear()
         with self._device.lock:
             now_s = self._clock.now_s()
@@ -73,7 +75,12 @@ class BusPort(threading.Thread):
 
     def _send(self, frame: Frame) -> None:
         message = can.Message(
-            arbitration_id=frame.can_id, data=frame.data, is_remote_frame=frame.remote, is_extended_id=False
+            arbitration_id=frame.can_id,
+            data=frame.data,
+            is_remote_frame=frame.remote,
+            is_extended_id=frame.extended,
+            is_fd=frame.fd,
+            bitrate_switch=frame.fd,
         )
         try:
             self._bus.send(message)

@@ -1,4 +1,4 @@
-"""A CAN frame with an 11-bit identifier."""
+"""A CAN frame."""
 
 from typing import NamedTuple
 
@@ -7,11 +7,15 @@ class Frame(NamedTuple):
     """One frame.
 
     Attributes:
-        can_id: identifier, 0 .. 0x7FF.
+        can_id: identifier.
         data: at most eight bytes.
         remote: a remote request.
+        extended: its identifier has 29 bits, else 11.
+        fd: a frame of CAN-FD, of up to 64 bytes.
     """
 
     can_id: int
     data: bytes = b""
     remote: bool = False
+    extended: bool = False
+    fd: bool = False

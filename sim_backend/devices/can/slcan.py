@@ -2,6 +2,7 @@
 
 Sn  bit rate        O  open     L  open, listen only     C  close     V  version   N  serial number   F  status
 tiiildd..  frame with 11-bit identifier, answered by z CR       riiil  remote request
+Tiiiiiiiildd..  frame with 29-bit identifier, answered by Z CR  Riiiiiiiil  remote request
 """
 
 from sim_backend.devices.can.frame import Frame
@@ -46,7 +47,8 @@ class SlcanAdapter:
             return b""
         letter = "r" if frame.remote else "t"
         data = "" if frame.remote else frame.data.hex().upper()
-        return f"{letter}{frame.can_id:03X}{len(frame.data)}{data}\r".encode("ascii")
+        head = f"{letter.upper()}{frame.can_id:08X}" if frame.extended else f"{letter}{frame.can_id:03X}"
+        return f"{head}{len(frame.data)}{data}\r".encode("ascii")
 
     def _obey(self, line: str) -> tuple[bytes, Frame | None]:
         if not line:
@@ -54,7 +56,7 @@ class SlcanAdapter:
         command, rest = line[0], line[1:]
         if command in _FIXED and not rest:
             return _FIXED[command], None
-        if command in "tr":
+        if command in "trTR":
             return self._transmit(command, rest)
         return (OK if self._configure(command, rest) else REFUSED) if command != "F" else self._flags(), None
 
@@ -81,11 +83,12 @@ class SlcanAdapter:
         return True
 
     def _transmit(self, command: str, rest: str) -> tuple[bytes, Frame | None]:
-        if not self._open or self._listens_only or len(rest) < 4 or not set(rest) <= _HEX:
+        extended, remote = command in "TR", command in "rR"
+        digits, highest = (8, 0x1FFF_FFFF) if extended else (3, 0x7FF)
+        if not self._open or self._listens_only or len(rest) <= digits or not set(rest) <= _HEX:
             return REFUSED, None
-        can_id, length = int(rest[:3], 16), int(rest[3], 16)
-        digits = 2 * length if command == "t" else 0
-        if can_id > 0x7FF or length > 8 or len(rest) != 4 + digits:
+        can_id, length, data = int(rest[:digits], 16), int(rest[digits], 16), rest[digits + 1 :]
+        if can_id > highest or length > 8 or len(data) != (0 if remote else 2 * length):
             return REFUSED, None
-        data = bytes.fromhex(rest[4:]) if command == "t" else bytes(length)
-        return b"z\r", Frame(can_id, data, remote=command == "r")
+        frame = Frame(can_id, bytes(length) if remote else bytes.fromhex(data), remote, extended)
+        return (b"Z\r" if extended else b"z\r"), frame

@@ -10,6 +10,7 @@ from sim_backend.devices.can.frame import Frame
 
 _OK = b"< ok >"
 _LONGEST = 256
+_SHORT = 3  # digits of an identifier of 11 bits
 BUS = "can0"
 
 
@@ -49,9 +50,10 @@ class SocketcandSession:
         if not self._raw:
             return b""
         now_s = time.time()
+        name = f"{frame.can_id:08X}" if frame.extended else f"{frame.can_id:03X}"
         if frame.remote:
-            return f"< rtr {frame.can_id:03X} {now_s:.6f} {len(frame.data)} >".encode("ascii")
-        return f"< frame {frame.can_id:03X} {now_s:.6f} {frame.data.hex().upper()} >".encode("ascii")
+            return f"< rtr {name} {now_s:.6f} {len(frame.data)} >".encode("ascii")
+        return f"< frame {name} {now_s:.6f} {frame.data.hex().upper()} >".encode("ascii")
 
     def _obey(self, words: list[str]) -> tuple[bytes, Frame | None]:
         command = self._commands.get(words[0]) if words else None
@@ -77,12 +79,13 @@ class SocketcandSession:
     def _send(self, words: list[str]) -> tuple[bytes, Frame | None]:
         can_id, length = int(words[0], 16), int(words[1])
         data = bytes(int(byte, 16) for byte in words[2:])
-        return self._frame(Frame(can_id, data), length == len(data) <= 8)
+        return self._frame(Frame(can_id, data, extended=len(words[0]) > _SHORT), length == len(data) <= 8)
 
     def _send_remote(self, words: list[str]) -> tuple[bytes, Frame | None]:
-        return self._frame(Frame(int(words[0], 16), bytes(int(words[1])), remote=True), int(words[1]) <= 8)
+        frame = Frame(int(words[0], 16), bytes(int(words[1])), remote=True, extended=len(words[0]) > _SHORT)
+        return self._frame(frame, int(words[1]) <= 8)
 
     def _frame(self, frame: Frame, is_valid: bool) -> tuple[bytes, Frame | None]:
-        if not self._raw or not is_valid or frame.can_id > 0x7FF:
+        if not self._raw or not is_valid or frame.can_id > (0x1FFF_FFFF if frame.extended else 0x7FF):
             return b"< error frame refused >", None
         return b"", frame

@@ -86,6 +86,8 @@ class Node:
 
     def receive(self, frame: Frame, time_s: float) -> None:
         """Take a frame from the bus."""
+        if frame.extended:
+            return
         if frame.remote:
             self._answer_guard(frame.can_id, time_s)
             return

@@ -79,7 +79,7 @@ class OdriveAxis:
 
     def receive(self, frame: Frame, time_s: float) -> None:  # noqa: ARG002
         """Take a frame from the bus."""
-        if frame.can_id >> 5 != self._node_id:
+        if frame.extended or frame.can_id >> 5 != self._node_id:
             return
         command = frame.can_id & 31
         if frame.remote:

@@ -13,6 +13,7 @@ from drivers.dynamixel.frames import STATUS_BYTES, sync_read_packet, sync_write_
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.joint import JointScale
 from tests.devices.device_process import device_process
+from tests.devices.turns import own_processors
 from tests.drivers.rate_rows import Cycle, quickest, ratio_row, row, seconds_a_cycle
 
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
@@ -27,7 +28,10 @@ PUSH = Command(Mode.DUTY, 0.0)
 def rows() -> Iterator[str]:
     """The rows."""
     for joints in (1, 4):
-        with device_process("dynamixel", "--joints", str(joints), "--baud", "0") as device:
+        with (
+            device_process("dynamixel", "--joints", str(joints), "--baud", "0") as device,
+            own_processors(device.process.pid),
+        ):
             bare, driver = quickest(partial(_library, device.port, joints), partial(_driver, device.port, joints))
         yield ratio_row(f"Dynamixel, {joints} on a pty / dynamixel-sdk", bare, driver)
     for joints in JOINTS:

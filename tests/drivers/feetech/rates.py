@@ -11,23 +11,27 @@ from drivers.feetech.drive import FeetechDrive
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
 from tests.devices.device_process import device_process
+from tests.devices.turns import own_processors
 from tests.drivers.rate_rows import Cycle, quickest, ratio_row
 
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
-GOAL_TIME, PIECE = 44, 40
+GOAL_TIME, PIECE, TORQUE_ENABLE = 44, 40, 40
 
 
 def rows() -> Iterator[str]:
     """The rows."""
     for joints in (1, 4):
-        with device_process("feetech", "--joints", str(joints), "--baud", "0") as device:
+        with (
+            device_process("feetech", "--joints", str(joints), "--baud", "0") as device,
+            own_processors(device.process.pid),
+        ):
             bare, driven = quickest(partial(library, device.port, joints), partial(driver, device.port, joints))
         yield ratio_row(f"Feetech, {joints} on a pty / ftservo-python-sdk", bare, driven)
 
 
 @contextmanager
 def library(path: str, joints: int) -> Iterator[Cycle]:
-    """One sync write and one sync read of what the driver reads, too."""
+    """One sync write and one sync read of what the driver reads, too; the servos are on, as with the driver."""
     port = PortHandler(path)
     port.openPort()
     port.ser.timeout = 0.001  # it polls without a pause otherwise, and keeps the kernel from the pty
@@ -36,6 +40,7 @@ def library(path: str, joints: int) -> Iterator[Cycle]:
     for servo in range(1, joints + 1):
         goals.addParam(servo, [0, 0])
         found.addParam(servo)
+        assert host.write1ByteTxRx(servo, TORQUE_ENABLE, 1)[0] == COMM_SUCCESS
 
     def cycle() -> None:
         goals.txPacket()
@@ -45,6 +50,8 @@ def library(path: str, joints: int) -> Iterator[Cycle]:
                 found.getData(servo, address, size)
 
     yield cycle
+    for servo in range(1, joints + 1):
+        host.write1ByteTxRx(servo, TORQUE_ENABLE, 0)
     port.closePort()
 
 

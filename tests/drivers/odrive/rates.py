@@ -14,6 +14,7 @@ from drivers.joint import JointScale
 from drivers.odrive.drive import OdriveDrive
 from drivers.odrive.settings import OdriveSettings
 from tests.devices.device_process import device_process
+from tests.devices.turns import own_processors
 from tests.drivers.rate_rows import Cycle, quickest, ratio_row
 
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
@@ -23,7 +24,7 @@ ANSWERS = (0x09, 0x14, 0x03)
 
 def rows() -> Iterator[str]:
     """The rows: an adapter (slcan) on a pty, two processes."""
-    with device_process("odrive", "--watchdog", "2.0") as device:
+    with device_process("odrive", "--watchdog", "2.0") as device, own_processors(device.process.pid):
         bus = BusSettings("slcan", device.drive["channel"])
         bare, driven = quickest(partial(barely, bus), partial(driver, bus), rounds=15)
     yield ratio_row("ODrive, slcan on a pty / python-can", bare, driven)

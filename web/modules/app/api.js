@@ -1,5 +1,7 @@
 // The REST interface: one function per verb. Problems of the service become `Problem` errors in its own words.
 
+import { save } from "../ui/save.js";
+
 const BASE = "/api/v1";
 const KEY = "friction-bench-token";
 
@@ -82,11 +84,7 @@ export async function remove(path) {
 // the file is fetched with the token and handed over as a blob: the token never stands in an address
 export async function download(path, name) {
   const response = await request(path, { headers: headers() });
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(await response.blob());
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  save(name, await response.blob());
 }
 
 // server-sent events over fetch (EventSource cannot send the token); yields {event, data}

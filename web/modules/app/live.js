@@ -2,6 +2,7 @@
 
 import { events } from "./api.js";
 import { Ring } from "../bench/ring.js";
+import { Pour } from "./pour.js";
 
 const WINDOW_ROWS = 20_000; // as many as the service keeps: a page that is opened late sees what went before
 const RETRY_MS = 1000; // doubled with each try that fails,
@@ -15,6 +16,10 @@ export class Live extends EventTarget {
   #after = -1;
   #wait_ms = RETRY_MS;
   #connection = null;
+  #pour = new Pour((rows) => {
+    this.rows.append(rows);
+    this.#tell("rows");
+  });
 
   async run() {
     setInterval(() => this.#tell("tick"), 500);
@@ -48,13 +53,15 @@ export class Live extends EventTarget {
     this.#wait_ms = RETRY_MS;
     if (event === "status") this.status = data;
     if (event === "rows") this.#append(data);
-    this.#tell(event);
+    else this.#tell(event);
   }
 
   #append(data) {
-    if (data.channels.join() !== this.rows.channels.join()) this.rows = new Ring(data.channels, WINDOW_ROWS);
+    const others = data.channels.join() !== this.rows.channels.join();
+    if (others || data.restarted) this.#pour.empty();
+    if (others) this.rows = new Ring(data.channels, WINDOW_ROWS);
     if (data.restarted) this.rows.clear();
-    this.rows.append(data.rows);
+    this.#pour.add(data.rows);
     this.#after = data.last_row;
   }
 

@@ -4,8 +4,11 @@ import { benchView } from "../bench/bench.js";
 import { commissionView } from "../commission/commission.js";
 import { homeView } from "../home/home.js";
 import { learnView } from "../learn/learn.js";
+import { numbersView } from "../numbers/numbers.js";
 import { queueView } from "../queue/view.js";
 import { studiesView } from "../studies/studies.js";
+import { versusView } from "../studies/versus.js";
+import { beginTour, tour } from "../tour/tour.js";
 import { trialsView } from "../trials/trials.js";
 import { h, panel, replace } from "../ui/dom.js";
 import { unitSwitch } from "../ui/units.js";
@@ -26,7 +29,10 @@ const VIEWS = {
   queue: { open: queueView, tab: "Queue" },
   trials: { open: trialsView, tab: "Trials" },
   study: { open: studiesView, tab: "Study" },
+  numbers: { open: numbersView },
+  compare: { open: versusView },
   learn: { open: learnView, tab: "Learn" },
+  tour: { open: beginTour },
 };
 const live = new Live();
 const state = new BenchState(live);
@@ -57,6 +63,7 @@ stopButton(document.getElementById("stop"), document.getElementById("stop-answer
 statusBar(document.getElementById("status"), state);
 promptBar(document.getElementById("prompt"), live);
 tokenForm(document.getElementById("token"));
+tour(document.getElementById("tour"), live);
 unitSwitch(document.getElementById("units"), show);
 tabs(document.getElementById("tabs"));
 addEventListener("hashchange", show);

@@ -1,4 +1,4 @@
-// Live: what the joint does, drawn whenever rows arrive (more than twenty times a second); frozen, zoomed, channel by channel.
+// Live: what the joint does, drawn with each frame while rows arrive; frozen, zoomed, channel by channel.
 
 import { readingNote } from "../app/state.js";
 import { liveJoint } from "../joint/livejoint.js";
@@ -52,6 +52,7 @@ export function livePlot(place, { live, state }) {
     if (!frozen && live.rows.length < shownLength) chart.showAll(); // another trial has begun
     shownLength = live.rows.length;
     chart.show(content);
+    picture.hidden = !content.lines.length;
     note.textContent = content.lines.length ? markLegend(content.marks) || "\u00a0" : "No rows yet: they appear here while an experiment runs.";
   };
   const status = () => {

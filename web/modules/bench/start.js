@@ -1,12 +1,13 @@
 // Starting an experiment: choose a kind, fill in the form that its schema gives, see what would move, start. Only the
 // Start button moves the joint; Enter in a field does not.
 
-import { here, note } from "../app/address.js";
+import { here, note, written } from "../app/address.js";
 import { get, post, token } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
 import { Form } from "../ui/form.js";
 import { duration } from "../ui/format.js";
+import { presets } from "../ui/presets.js";
 import { withShownUnit } from "../ui/units.js";
 
 const PLAN_AFTER_MS = 300; // of quiet in the fields
@@ -55,13 +56,19 @@ export async function startForm(place, live, queued) {
     replace(parameters, form.element);
     soon();
   };
-  const send = async (path, body, pressed, told) => {
+  // one at a time: what is said of the second would be written over by the answer to the first
+  const alone = async (...order) => {
+    button.disabled = later.disabled = true;
+    await send(...order);
+    button.disabled = later.disabled = false;
+  };
+  const send = async (path, body, told) => {
     replace(answer);
     if ((await plan()) === null) {
       replace(answer, problemBox(new Error("Not started, nothing has moved, nothing is recorded. See what is marked.")));
       return;
     }
-    const done = await attempt(answer, () => post(path, body()), { button: pressed });
+    const done = await attempt(answer, () => post(path, body()));
     if (!done) return;
     started = done.experiment_id ?? null;
     replace(answer, h("div", { class: "good", role: "status" }, told(done)));
@@ -74,16 +81,18 @@ export async function startForm(place, live, queued) {
     started = null;
     replace(answer);
   });
-  button.addEventListener("click", () => send("/experiments", wanted, button, (done) => `Experiment ${done.experiment_id} has started.`));
-  later.addEventListener("click", () => send("/queue", () => ({ items: [wanted()] }), later, () => "It is in the queue; it starts when it is its turn."));
+  button.addEventListener("click", () => alone("/experiments", wanted, (done) => `Experiment ${done.experiment_id} has started.`));
+  later.addEventListener("click", () => alone("/queue", () => ({ items: [wanted()] }), () => "It is in the queue; it starts when it is its turn."));
   choice.addEventListener("change", () => {
     note({ view: "bench", query: { kind: choice.value } });
     choose();
   });
   document.addEventListener("token-set", soon);
   choose();
+  const kept = h("div");
+  presets(kept, "bench", () => written({ view: "bench", query: { kind: choice.value, ...form.values() } }), (hash) => { location.hash = hash; });
   replace(place, h("form", { class: "form", onsubmit: (event) => { event.preventDefault(); plan(); }, novalidate: true },
-    h("label", { for: "kind" }, "What to do", choice), summary, parameters, further.element,
+    h("label", { for: "kind" }, "What to do", choice), summary, kept, parameters, further.element,
     h("div", { class: "start" }, motion, h("div", { class: "row" }, button, later), answer)));
 }
 

@@ -3,7 +3,7 @@
 import { post } from "../app/api.js";
 import { h } from "../ui/dom.js";
 import { withFiles } from "../ui/files.js";
-import { number } from "../ui/format.js";
+import { capital, number } from "../ui/format.js";
 
 const NEEDED = [
   "The switch of the supply, where your hand can reach it.",
@@ -12,7 +12,7 @@ const NEEDED = [
 ];
 
 export function beginning({ obstacle, state }, act) {
-  if (obstacle) return h("p", { role: "status" }, obstacle);
+  if (obstacle) return h("p", { role: "status" }, capital(obstacle));
   const travel = h("input", { id: "travel", type: "number", min: 60, max: 360, step: "any", value: "120" });
   const name = h("input", { id: "bench-name", type: "text", maxLength: 100, autocomplete: "off", placeholder: "as now" });
   const begin = (event) => {

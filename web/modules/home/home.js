@@ -14,7 +14,8 @@ export function homeView(place, bench) {
   const joint = h("div", { class: "home-joint" });
   replace(place, h("section", { class: "home" },
     h("div", {}, h("p", { class: "home-sentence" }, "Run one geared joint, and find out which physical effect your model of it lacks."),
-      h("div", { class: "doors" }, DOORS.map(({ title, text, href }) => h("a", { class: "door", href }, h("strong", {}, title), h("span", {}, text))))),
+      h("div", { class: "doors" }, DOORS.map(({ title, text, href }) => h("a", { class: "door", href }, h("strong", {}, title), h("span", {}, text)))),
+      h("p", {}, h("a", { href: "#tour" }, "Guided tour, five minutes"))),
     joint));
   return liveJoint(joint, bench);
 }

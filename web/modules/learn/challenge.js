@@ -9,12 +9,13 @@ const LEVELS = { easy: "easy: at most one, large", medium: "medium: up to two", 
 
 // resolves when the list is there
 export function challengePanel(place) {
-  const [list, answer, revealed] = [h("div"), h("div"), h("div")];
+  const [list, answer, revealed] = [h("div"), h("div"), h("div", { class: "guess" })];
+  place.className = "challenge";
   const level = h("select", { id: "difficulty" }, Object.entries(LEVELS).map(([value, text]) => h("option", { value }, text)));
   const button = h("button", { type: "button", class: "primary" }, "New challenge");
   const refresh = () => attempt(list, async () => replace(list, challengeTable((await get("/challenges")).items, revealed)));
   button.addEventListener("click", async () => {
-    const made = await patiently(answer, `challenge ${level.value}`, "Drawing a joint at random, and recording it …", (signal) => post("/challenges", { difficulty: level.value }, 0, { signal }), { button });
+    const made = await patiently(answer, `challenge ${level.value}`, "Drawing a joint at random, and recording it …", (signal) => post("/challenges", { difficulty: level.value }, 0, { signal }), { button, again: () => button.click() });
     if (!made) return;
     replace(answer, h("div", { class: "good", role: "status" }, `Challenge ${made.challenge_id} is ready. Make a study of experiment ${made.experiment_id}, find what its model lacks, then come back and guess.`));
     await refresh();
@@ -32,7 +33,7 @@ function challengeTable(items, revealed) {
     { title: "Made", cell: (one) => when(one.created_utc) },
     { title: "", cell: (one) => h("div", { class: "actions" },
       h("a", { class: "button small", href: `#study/new/${one.experiment_id}`, "aria-label": `Study challenge ${one.challenge_id}` }, "Study it"),
-      h("button", { type: "button", class: "small", "aria-label": `Guess at challenge ${one.challenge_id}`, onclick: () => guessForm(revealed, one) }, "Guess and reveal")) },
+      h("button", { type: "button", class: "small reveal", "aria-label": `Guess at challenge ${one.challenge_id}`, onclick: () => guessForm(revealed, one) }, "Guess and reveal")) },
   ], items);
 }
 
@@ -41,27 +42,39 @@ async function guessForm(place, challenge) {
   if (!effects) return;
   const studies = await attempt(place, async () => (await get("/studies")).items);
   if (!studies) return;
+  const own = await attempt(place, () => studyOf(challenge.experiment_id, studies));
   const options = [["nothing", "nothing is hidden"], ["none-of-these", "something, but no effect of the catalogue"], ...effects.map((one) => [one.name, one.title])];
   const choices = [0, 1].map((number_) => h("select", { id: `guess-${number_}` }, [["", number_ ? "– nothing more –" : "– choose –"], ...options].map(([value, text]) => h("option", { value }, text))));
-  const study = h("select", { id: "guess-study" }, [h("option", { value: "" }, "– my own guess above –"), ...studies.map((one) => h("option", { value: String(one.study_id) }, `${one.study_id}: ${one.name}`))]);
+  const study = h("select", { id: "guess-study" }, [h("option", { value: "" }, "– my own guess above –"), ...studies.map((one) => h("option", { value: String(one.study_id), selected: one.study_id === own }, `${one.study_id}: ${one.name}`))]);
   const answer = h("div");
   const submit = async (event) => {
     event.preventDefault();
     const guess = choices.map((choice) => choice.value).filter(Boolean).join(",");
     const body = study.value ? { study_id: Number(study.value) } : { guess };
     const told = await attempt(answer, () => post(`/challenges/${challenge.challenge_id}/reveal`, body), { busy: "Opening …" });
-    if (told) replace(answer, verdict(told));
+    if (!told) return;
+    replace(answer, verdict(told));
+    answer.scrollIntoView({ block: "nearest" });
   };
   replace(place, h("h3", {}, `What is hidden in challenge ${challenge.challenge_id}?`), h("form", { class: "form", onsubmit: submit },
     h("div", { class: "row" }, h("label", { for: "guess-0" }, "I say", choices[0]), h("label", { for: "guess-1" }, "and", choices[1]),
       h("label", { for: "guess-study" }, "or what a study added and found", study)), h("div", { class: "row" }, h("button", { class: "primary" }, "Reveal")), answer));
   place.scrollIntoView({ block: "nearest" });
-  choices[0].focus();
+  (own ? study : choices[0]).focus();
+}
+
+const LOOKED_AT = 5; // of the newest studies
+
+// the newest study of a challenge's recordings, which is offered as the guess; undefined where there is none
+async function studyOf(experiment_id, studies) {
+  const [trial] = (await get("/trials", { experiment_id, limit: 1 })).items;
+  const found = await Promise.all(studies.slice(0, LOOKED_AT).map(({ study_id }) => get(`/studies/${study_id}`).catch(() => null)));
+  return found.find((study) => study?.trials.some((one) => one.trial_id === trial?.trial_id))?.study_id;
 }
 
 function verdict(told) {
   const line = (text, names) => names.length > 0 && h("p", {}, `${text}: ${names.join(", ").replaceAll("_", " ")}.`);
-  return [h("div", { class: told.perfect ? "good" : "problem", role: "status" }, told.sentence), line("Right", told.right), line("Missed", told.missed),
+  return [h("div", { class: told.perfect ? "revealed good" : "revealed problem", role: "status" }, told.sentence), line("Right", told.right), line("Missed", told.missed),
     line("In every recording, whatever is hidden", told.recorded), line("Not there", told.wrong), line("Hidden, but no recording of motion can tell it from what every model has", told.untold),
     told.hidden.length > 0 && table("What was hidden", [
       { title: "Mechanism", cell: (one) => one.title },

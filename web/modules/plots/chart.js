@@ -2,6 +2,7 @@
 
 import { moved, whole, within, zoomed } from "./axis.js";
 import { h, replace } from "../ui/dom.js";
+import { csv, fileName, save } from "../ui/save.js";
 import { number } from "../ui/format.js";
 import { gestures } from "./gestures.js";
 import { frame, paint, valueAt } from "./paint.js";
@@ -24,11 +25,13 @@ export class Chart extends EventTarget {
     this.canvas = h("canvas", { class: "chart", tabindex: "0", role: "img", "aria-label": `${label}. Arrow keys move, plus and minus zoom, 0 shows all.` });
     this.canvas.style.height = `${height}px`;
     this.height = height;
+    this.name = fileName(label);
     this.legend = h("div", { class: "legend" });
     this.values = h("div", { class: "values number" }, "\u00a0");
     const button = (text, name, act) => h("button", { type: "button", class: "small", title: name, "aria-label": name, onclick: act }, text);
     const tools = h("div", { class: "actions" }, button("−", "Zoom out", () => this.zoom(1 / 0.7)), button("+", "Zoom in", () => this.zoom(0.7)),
-      button("◂", "Earlier", () => this.move(-0.5)), button("▸", "Later", () => this.move(0.5)), button("all", "Show all", () => this.showAll()));
+      button("◂", "Earlier", () => this.move(-0.5)), button("▸", "Later", () => this.move(0.5)), button("all", "Show all", () => this.showAll()),
+      button("PNG", "Save the picture", () => this.savePicture()), button("CSV", "Save its numbers", () => this.saveNumbers()));
     this.element = h("div", { class: "chart-box" }, h("div", { class: "row centre between" }, this.legend, tools), this.canvas, this.values);
     place.append(this.element);
     gestures(this.canvas, this);
@@ -101,6 +104,23 @@ export class Chart extends EventTarget {
   set cursor(x) {
     this.#pointer = x;
     this.redraw();
+  }
+
+  // what is in view, on the colour of the panel
+  savePicture() {
+    const copy = Object.assign(document.createElement("canvas"), { width: this.canvas.width, height: this.canvas.height });
+    const context = copy.getContext("2d");
+    context.fillStyle = colour("panel");
+    context.fillRect(0, 0, copy.width, copy.height);
+    context.drawImage(this.canvas, 0, 0);
+    copy.toBlob((blob) => save(`${this.name}.png`, blob));
+  }
+
+  // of what is in view, a row for each point of each line
+  saveNumbers() {
+    const [from, to] = this.view;
+    const rows = this.#content.lines.flatMap((line) => Array.from(line.x, (x, at) => [line.name, x, line.y[at]]).filter(([, x]) => x >= from && x <= to));
+    save(`${this.name}.csv`, csv([["line", this.#content.xTitle, "value"], ...rows]), "text/csv");
   }
 
   redraw() {

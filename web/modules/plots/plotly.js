@@ -2,12 +2,26 @@
 
 import { colour, faded } from "../ui/colours.js";
 import { h } from "../ui/dom.js";
+import { csv, fileName, save } from "../ui/save.js";
 
 // nothing of a bench leaves it: no button that sends a chart to somebody else's server
 const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"], showSendToCloud: false, plotlyServerURL: "" };
 
+function config() {
+  const nameOf = (plot) => fileName((plot.getAttribute("aria-label") ?? "").split(";")[0]);
+  const picture = { name: "picture", title: "Save the picture (SVG)", icon: window.Plotly.Icons.camera, click: (plot) => window.Plotly.downloadImage(plot, { format: "svg", width: plot.clientWidth, height: plot.clientHeight, filename: nameOf(plot) }) };
+  const numbers = { name: "numbers", title: "Save its numbers (CSV)", icon: window.Plotly.Icons.disk, click: (plot) => save(`${nameOf(plot)}.csv`, numbersOf(plot), "text/csv") };
+  return { ...CONFIG, modeBarButtonsToAdd: [picture, numbers] };
+}
+
+// a row for each point of each trace
+function numbersOf({ data, layout: { xaxis, yaxis } }) {
+  const rows = data.flatMap((trace) => Array.from(trace.x ?? [], (x, at) => [trace.name, x, trace.y[at]]));
+  return csv([["line", xaxis?.title?.text ?? "x", yaxis?.title?.text ?? "y"], ...rows]);
+}
+
 function axis(extra) {
-  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, exponentformat: "power", ...extra };
+  return { gridcolor: colour("line"), zerolinecolor: colour("soft"), linecolor: colour("line"), automargin: true, exponentformat: "none", ...extra };
 }
 
 export function layout(extra = {}) {
@@ -25,7 +39,7 @@ export function layout(extra = {}) {
 export async function draw(place, traces, extra = {}) {
   place.classList.add("plot");
   const plotly = await library();
-  return plotly.react(place, traces, layout(extra), CONFIG);
+  return plotly.react(place, traces, layout(extra), config());
 }
 
 // STOP and the forms must not wait for a large file; and plotly must find its style sheet when it starts (see index.html)
@@ -66,5 +80,5 @@ export function band(x, low, high, name, colourName, extra = {}) {
 
 // plots follow the page when it changes between light and dark
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  for (const place of document.querySelectorAll(".plot.js-plotly-plot")) window.Plotly.react(place, place.data, layout(place.layout), CONFIG);
+  for (const place of document.querySelectorAll(".plot.js-plotly-plot")) window.Plotly.react(place, place.data, layout(place.layout), config());
 });

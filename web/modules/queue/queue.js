@@ -63,6 +63,6 @@ function described({ parameters, note, tags }) {
 export function queueWords({ state, reason, running, waiting }) {
   const what = running ? `${running.kind} runs from the queue` : "Nothing runs from the queue";
   const next = waiting.length ? `${waiting.length} waiting` : "nothing waits";
-  const still = state === "held" || state === "paused" ? ` It is ${state}${reason ? `: ${reason}` : ""}.` : "";
+  const still = state === "held" || state === "paused" ? ` The queue is paused${reason ? `: ${reason}` : ""}.` : "";
   return `${what}; ${next}.${still}`;
 }

@@ -1,13 +1,13 @@
 // What a change did: the held-out error before and after as bars, and undo; the plot beside it shows both.
 
 import { h, replace } from "../ui/dom.js";
-import { interval, percent } from "../ui/format.js";
+import { interval, percent, spoken } from "../ui/format.js";
 
 export function beforeAfter(place, result, { undo }) {
   const highest = Math.max(result.before.held_out ?? 0, result.after.held_out ?? 0, result.before.training ?? 0, result.after.training ?? 0) || 1;
   const rows = [["held-out error before", result.before.held_out, "purple"], ["held-out error after", result.after.held_out, "blue"],
     ["training error before", result.before.training, "purple"], ["training error after", result.after.training, "blue"]];
-  replace(place, h("div", { class: "good", role: "status" }, result.sentence),
+  replace(place, h("div", { class: "good", role: "status" }, spoken(result.sentence)),
     h("div", { class: "bars" }, rows.map(([text, value, colour]) => bar(text, value, highest, colour))),
     h("p", { class: "soft" }, `Gain ${interval(result.gain, result.gain_low, result.gain_high, (value) => percent(value, 1))} of the held-out error, 90 % interval.`),
     h("div", { class: "row" }, h("button", { type: "button", onclick: undo }, "Undo this change")));

@@ -1,7 +1,7 @@
 // A model in closed loop: does its joint go where the measured one went, under the servo of the trial; coefficients refined by that.
 
 import { get } from "../app/api.js";
-import { attempt } from "../ui/attempt.js";
+import { patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { number, percent } from "../ui/format.js";
 import { colour } from "../ui/colours.js";
@@ -12,7 +12,7 @@ const TOLD = { bench: "the bench", recording: "set point and effort", "stand-in"
 export function closedLoop(place, path, model_id) {
   const answer = h("div");
   const ask = async (button, refine, busy) => {
-    const found = await attempt(answer, () => get(`${path}/closed-loop`, { model_id, refine }), { button, busy });
+    const found = await patiently(answer, "closed-loop", busy, (signal) => get(`${path}/closed-loop`, { model_id, refine }, { signal }), { button });
     if (found) await show(answer, found);
   };
   const simulate = h("button", { type: "button" }, "Simulate");

@@ -6,6 +6,7 @@ import { closedLoop } from "./closedloop.js";
 import { facts, h, panel, replace, table } from "../ui/dom.js";
 import { errorMap, momentList } from "./errormap.js";
 import { conditions, nameOf, number, percent } from "../ui/format.js";
+import { milli, shownUnit } from "../ui/units.js";
 import { colour } from "../ui/colours.js";
 import { band, draw } from "../plots/plotly.js";
 
@@ -47,23 +48,25 @@ export function spotOf(driver, point) {
   const low = at > 0 ? (group.x[at - 1] + group.x[at]) / 2 : group.x[at] - 1e9;
   const high = at < group.x.length - 1 ? (group.x[at] + group.x[at + 1]) / 2 : group.x[at] + 1e9;
   const side = { forward: ["direction=0..1"], backward: ["direction=-1..0"] }[group.direction] ?? [];
-  return [[`${driver.driver}=${low}..${high}`, ...side], `${nameOf(driver.driver)} near ${number(group.x[at], 3)} ${driver.unit}, ${group.direction}`];
+  return [[`${driver.driver}=${low}..${high}`, ...side], `${nameOf(driver.driver)} near ${number(group.x[at] * shownUnit(driver.unit).factor, 3)} ${shownUnit(driver.unit).unit}, ${group.direction}`];
 }
 
 function errors({ error, effort }) {
-  const text = (one) => (one ? `${percent(one.relative)} (${number(one.rms, 3)} ${effort.unit} rms)` : "unknown: needs repeated trials");
-  const kinds = { "hold-out": "held-out trials", "leave-one-trial-out": "each trial left out in turn", "leave-one-block-out": "stretches left out in turn" };
-  return facts([["training error", text(error.training)], [kinds[error.held_out?.kind] ?? "held-out", text(error.held_out)], ["floor from repeats", text(error.floor)]]);
+  const { unit, factor } = milli(Math.max(error.training.rms, error.held_out?.rms ?? 0), effort.unit);
+  const text = (one) => (one ? `${percent(one.relative)} (${number(factor * one.rms, 3)} ${unit} rms)` : "unknown: needs repeated trials");
+  const kinds = { "hold-out": "held-out error", "leave-one-trial-out": "held-out error, each trial in turn", "leave-one-block-out": "held-out error, stretches in turn" };
+  return facts([["training error", text(error.training)], [kinds[error.held_out?.kind] ?? "held-out error", text(error.held_out)], ["floor from repeats", text(error.floor)]]);
 }
 
 function driverPlot(plot, driver, effort) {
   const traces = driver.groups.flatMap((group) => {
     const name = DIRECTIONS[group.direction] ?? "blue";
     const marker = { symbol: group.direction === "backward" ? "diamond" : "circle", size: 6 };
-    return [band(group.x, group.low, group.high, group.direction, name),
-      { x: group.x, y: group.mean, name: group.direction, mode: "lines+markers", marker, line: { color: colour(name) }, customdata: group.count, hovertemplate: "%{x:.4g}: %{y:.4g} (%{customdata} rows)" }];
+    const x = group.x.map((value) => value * shownUnit(driver.unit).factor);
+    return [band(x, group.low, group.high, group.direction, name),
+      { x, y: group.mean, name: group.direction, mode: "lines+markers", marker, line: { color: colour(name) }, customdata: group.count, hovertemplate: "%{x:.4g}: %{y:.4g} (%{customdata} rows)" }];
   });
-  return draw(plot, traces, { height: 270, xaxis: { title: { text: `${nameOf(driver.driver)}${driver.unit ? ` [${driver.unit}]` : ""}` } },
+  return draw(plot, traces, { height: 270, xaxis: { title: { text: `${nameOf(driver.driver)}${driver.unit ? ` [${shownUnit(driver.unit).unit}]` : ""}` } },
     yaxis: { title: { text: `residual [${effort.unit}]` } } });
 }
 

@@ -2,7 +2,8 @@
 
 import { bar } from "./beforeafter.js";
 import { h, replace } from "../ui/dom.js";
-import { chance as chanceIs, interval, nameOf, number, percent } from "../ui/format.js";
+import { capital, chance as chanceIs, interval, nameOf, number, percent, spoken } from "../ui/format.js";
+import { shownUnit } from "../ui/units.js";
 import { colour } from "../ui/colours.js";
 import { band, draw } from "../plots/plotly.js";
 
@@ -18,12 +19,12 @@ export async function diagnosis(place, found, add) {
   const notJudged = found.findings.filter(({ code }) => code === "not-judged");
   const notes = found.findings.filter((one) => !problems.includes(one) && !notJudged.includes(one));
   const first = found.ranking.slice(0, SHOWN);
-  replace(place, h("p", { class: "sentence", role: "status" }, found.sentence),
-    problems.map(({ text }) => h("div", { class: "problem" }, text)),
-    notes.map(({ text }) => h("p", { class: "soft" }, text)),
+  replace(place, h("p", { class: "sentence", role: "status" }, spoken(found.sentence)),
+    problems.map(({ text }) => h("div", { class: "problem" }, capital(spoken(text)))),
+    notes.map(({ text }) => h("p", { class: "soft" }, capital(spoken(text)))),
     found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
     found.ranking.length > SHOWN && more,
-    notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, text))));
+    notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, spoken(text)))));
   if (curve) await provisional(curve, found.provisional, add);
   for (const one of first) await card(one.in_class ? named : others, one, add);
   more.addEventListener("toggle", async () => {
@@ -49,7 +50,7 @@ async function card(parent, one, add) {
   const button = h("button", { type: "button", class: one.in_class ? "primary" : "", onclick: () => add(one.effect, answer) }, `Add ${one.title}`);
   parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ",
     one.in_class && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")),
-  h("div", { class: "bars" }, bar("held-out now", one.held_out_before, highest, "purple"), bar("with the effect", one.held_out_after, highest, "blue")),
+  h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar("with the effect", one.held_out_after, highest, "blue")),
   h("p", {}, evidence(one)), one.picture && plot, button, answer));
   if (one.picture) await picture(plot, one);
 }
@@ -61,8 +62,8 @@ async function provisional(parent, one, add) {
   const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
   const button = h("button", { type: "button", class: "primary", onclick: () => add(one.effect, answer) }, "Add as a provisional term");
   parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ", h("span", { class: "badge stale" }, "provisional")),
-    h("div", { class: "bars" }, bar("held-out now", one.held_out_before, highest, "purple"), bar("with the curve", one.held_out_after, highest, "blue")),
-    h("p", {}, one.sentence), plot, button, answer));
+    h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar("with the curve", one.held_out_after, highest, "blue")),
+    h("p", {}, spoken(one.sentence)), plot, button, answer));
   await picture(plot, one);
 }
 
@@ -83,9 +84,11 @@ function ends({ gain, gain_low: low, gain_high: high }) {
 }
 
 function picture(plot, { picture: shown, title }) {
+  const { unit, factor } = shownUnit(shown.unit);
+  const x = shown.x.map((value) => factor * value);
   return draw(plot, [
-    band(shown.x, shown.low, shown.high, "residual", "blue"),
-    { x: shown.x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
-    { x: shown.curve_x, y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
-  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${shown.unit ? ` [${shown.unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
+    band(x, shown.low, shown.high, "residual", "blue"),
+    { x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
+    { x: shown.curve_x.map((value) => factor * value), y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
+  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${unit ? ` [${unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
 }

@@ -2,30 +2,32 @@
 // The moments behind a bad spot: each leads to its place in the trial.
 
 import { h, replace, table } from "../ui/dom.js";
-import { number } from "../ui/format.js";
+import { nameOf, number } from "../ui/format.js";
+import { milli, shownUnit } from "../ui/units.js";
 
 const DARKEST_PERCENT = 45;
 
 // ask(criteria, words): a cell was chosen
 export function errorMap(place, map, ask) {
   const highest = Math.max(...map.rms.flat().filter((value) => value !== null), 0);
-  const head = h("tr", {}, h("th", { scope: "col" }, `${map.down.title} ${inUnit(map.down)} ↓, ${map.across.title} ${inUnit(map.across)} →`),
-    middles(map.across_edges).map((value) => h("th", { scope: "col", class: "number" }, number(value, 2))));
-  const rows = map.rms.map((cells, down) => h("tr", {}, h("th", { scope: "row", class: "number" }, number(middles(map.down_edges)[down], 3)),
-    cells.map((value, across) => cell(map, down, across, value, highest, ask))));
+  const effort = milli(highest, map.effort.unit);
+  const head = h("tr", {}, h("th", { scope: "col" }, `${titleOf(map.down)} ↓, ${titleOf(map.across)} →`),
+    middles(map.across_edges).map((value) => h("th", { scope: "col", class: "number" }, number(value * shownUnit(map.across.unit).factor, 2))));
+  const rows = map.rms.map((cells, down) => h("tr", {}, h("th", { scope: "row", class: "number" }, number(middles(map.down_edges)[down] * shownUnit(map.down.unit).factor, 3)),
+    cells.map((value, across) => cell(map, { down, across, value, highest, effort }, ask))));
   replace(place,
-    h("p", { class: "soft" }, `Root mean square of the residual [${map.effort.unit}]; the darker, the more. Choose a cell to see when that was.`),
+    h("p", { class: "soft" }, `Root mean square of the residual [${effort.unit}]; the darker, the more. Choose a cell to see when that was.`),
     h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Error over speed and load" },
       h("table", { class: "heat" }, h("thead", {}, head), h("tbody", {}, [...rows].reverse()))));
 }
 
-function cell(map, down, across, value, highest, ask) {
+function cell(map, { down, across, value, highest, effort }, ask) {
   if (value === null) return h("td", { class: "number soft" }, "");
   const [left, right] = [map.across_edges[across], map.across_edges[across + 1]];
   const [low, high] = [map.down_edges[down], map.down_edges[down + 1]];
-  const words = `${map.across.title} ${number(left, 2)} to ${number(right, 2)} ${map.across.unit}, ${map.down.title} ${number(low, 3)} to ${number(high, 3)} ${map.down.unit}`;
-  const button = h("button", { type: "button", class: "cell", "aria-label": `${words}: ${number(value, 2)} ${map.effort.unit}`,
-    title: `${words}: ${number(value, 3)} ${map.effort.unit} rms, mean ${number(map.mean[down][across], 2)}, ${map.count[down][across]} rows` }, number(value, 2));
+  const words = `${spanOf(map.across, left, right)}, ${spanOf(map.down, low, high)}`;
+  const button = h("button", { type: "button", class: value === highest ? "cell worst" : "cell", "aria-label": `${words}: ${number(effort.factor * value, 2)} ${effort.unit}`,
+    title: `${words}: ${number(effort.factor * value, 3)} ${effort.unit} rms, mean ${number(effort.factor * map.mean[down][across], 2)}, ${map.count[down][across]} rows` }, number(effort.factor * value, 2));
   button.style.background = `color-mix(in srgb, var(--heat) ${Math.round((DARKEST_PERCENT * value) / (highest || 1))}%, var(--panel))`;
   button.addEventListener("click", () => ask([`${map.across.driver}=${left}..${right}`, `${map.down.driver}=${low}..${high}`], words));
   return h("td", { class: "number" }, button);
@@ -35,20 +37,25 @@ function middles(edges) {
   return edges.slice(1).map((edge, index) => (edge + edges[index]) / 2);
 }
 
-function inUnit(axis) {
-  return axis.unit ? `[${axis.unit}]` : "";
+function titleOf({ title, unit }) {
+  return unit ? `${nameOf(title)} [${shownUnit(unit).unit}]` : nameOf(title);
+}
+
+function spanOf({ title, unit: si }, low, high) {
+  const { unit, factor } = shownUnit(si);
+  return `${nameOf(title)} ${number(factor * low, 3)} to ${number(factor * high, 3)} ${unit}`.trim();
 }
 
 // show(moment): look at it in time
 export function momentList(place, words, found, show) {
-  const unit = found.effort.unit;
+  const { unit, factor } = milli(Math.max(...found.items.map((one) => one.rms)), found.effort.unit);
   replace(place, h("h3", {}, `Moments at ${words}`), found.items.length
     ? table("Moments", [
       { title: "Trial", cell: (one) => one.name },
       { title: "From [s]", number: true, cell: (one) => one.from_s.toFixed(2) },
       { title: "To [s]", number: true, cell: (one) => one.to_s.toFixed(2) },
-      { title: `rms [${unit}]`, number: true, cell: (one) => number(one.rms, 3) },
-      { title: `mean [${unit}]`, number: true, cell: (one) => number(one.mean, 3) },
+      { title: `rms [${unit}]`, number: true, cell: (one) => number(factor * one.rms, 3) },
+      { title: `mean [${unit}]`, number: true, cell: (one) => number(factor * one.mean, 3) },
       { title: "", cell: (one) => h("button", { type: "button", class: "small", "aria-label": `Show ${one.name} at ${one.from_s.toFixed(2)} s`, onclick: () => show(one) }, "Show") },
     ], found.items)
     : h("p", { class: "soft" }, "No row lies there."));

@@ -3,7 +3,7 @@
 import { get, post, token } from "../app/api.js";
 import { attempt, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
-import { nameOf, quantity, when } from "../ui/format.js";
+import { capital, nameOf, quantity, when } from "../ui/format.js";
 import { heldOut, TrialChoice, used } from "./trialchoice.js";
 
 const MOST = 500;
@@ -18,7 +18,7 @@ export async function newStudy(place, wanted = null) {
     replace(place, h("p", { class: "soft" }, "There are no trials yet: start an experiment on the Bench, or import a recording set under Trials."));
     return;
   }
-  const name = h("input", { id: "study-name", required: true, value: `study ${new Date().toLocaleDateString()}` });
+  const name = h("input", { id: "study-name", required: true, value: `study ${when(new Date()).slice(0, 10)}` });
   const boxes = usable.map((one) => h("input", { type: "checkbox", value: String(one.experiment_id), checked: one.experiment_id === wanted }));
   const labels = usable.map((one, index) => h("label", { class: "inline" }, boxes[index], words(one)));
   const find = h("input", { type: "search", id: "study-find", placeholder: "kind, tag, note, outcome …", oninput: () => {
@@ -35,7 +35,7 @@ export async function newStudy(place, wanted = null) {
   const [choice, carries, answer] = [h("div", { class: "form" }), h("div"), h("div")];
   let timer = null;
   const [using, holding] = [new TrialChoice(used), new TrialChoice(heldOut)];
-  const button = h("button", { class: "primary" }, "Create study");
+  const button = h("button", { class: "primary", id: "study-create" }, "Create study");
   const chosen = () => boxes.filter((box) => box.checked).map((box) => Number(box.value));
   const change = () => attempt(choice, async () => {
     const trials = await trialsOf(chosen());
@@ -56,7 +56,7 @@ export async function newStudy(place, wanted = null) {
     button.textContent = found.carries ? "Create study" : "Create study all the same";
     button.className = found.carries ? "primary" : "";
     replace(carries, found.problem ? problemBox(found.problem) : h("div", { class: found.carries ? "good" : "problem", role: "status" }, found.sentence),
-      !found.problem && h("p", { class: "soft" }, found.hold_out ? `Worth holding out: ${criterion(found.hold_out)} (${found.advice}).` : `${found.advice[0].toUpperCase()}${found.advice.slice(1)}.`));
+      !found.problem && h("p", { class: "soft" }, found.hold_out ? `Worth holding out: ${criterion(found.hold_out)} (${found.advice}).` : `${capital(found.advice)}.`));
   };
   const checkSoon = () => {
     clearTimeout(timer);
@@ -67,7 +67,7 @@ export async function newStudy(place, wanted = null) {
   const submit = async (event) => {
     event.preventDefault();
     const body = { name: name.value, experiment_ids: chosen(), where: using.unlessAll(), hold_out: holding.chosen() };
-    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …" });
+    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …", again: () => button.click() });
     if (study) location.hash = `#study/${study.study_id}`;
   };
   replace(place, h("form", { class: "form", onsubmit: submit }, h("label", { for: "study-name" }, "Name", name),

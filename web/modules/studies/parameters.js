@@ -34,6 +34,6 @@ function parameterTable({ parameters }, title = "Parameters") {
 }
 
 // "N m s2/rad" -> "N m s²/rad"
-function unitText(unit) {
+export function unitText(unit) {
   return unit.replace(/(?<=[a-z])2/g, "²").replace(/^1$/, "");
 }

@@ -14,7 +14,7 @@ export function searchButton(place, path, model_id, done) {
     if (!found) return;
     await done(found.model_id, (target) => told(target, found));
   });
-  replace(place, button, h("span", { class: "soft" }, "adds, exchanges and drops effects until nothing is missing; every model on the way is kept"), answer);
+  replace(place, h("div", { class: "row centre" }, button, h("span", { class: "soft" }, "adds, exchanges and drops effects until nothing is missing; every model on the way is kept")), answer);
 }
 
 function told(place, found) {

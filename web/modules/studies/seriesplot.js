@@ -9,7 +9,7 @@ const numbers = (values) => Float64Array.from(values, (value) => value ?? NaN);
 export class SeriesPlot {
   // series: of the model that is shown; earlier: of the model before, or nothing
   constructor(place, { series, earlier = [], effort, label = "Measured and predicted effort over time, residual beneath" }) {
-    Object.assign(this, { series, earlier, effort });
+    Object.assign(this, { series, earlier, effort, names: { before: "before", now: "" } });
     this.choice = h("select", { id: `series-${label.length}` }, series.map((one) => h("option", { value: String(one.trial_id) }, one.name)));
     const picture = h("div");
     replace(place, h("label", { class: "inline" }, "Trial", this.choice), picture);
@@ -24,19 +24,27 @@ export class SeriesPlot {
     this.show(gained(before, after)[0].trial_id);
   }
 
+  // another model beside this one; names: {before, now}
+  between(other, names) {
+    Object.assign(this, { earlier: other.series, names });
+    this.show(this.series[0].trial_id);
+  }
+
   show(trial_id, shades = []) {
     const one = this.series.find((each) => each.trial_id === trial_id);
     if (!one) return;
     this.choice.value = String(trial_id);
     const before = this.earlier.find((each) => each.trial_id === trial_id);
     const unit = this.effort.unit;
+    const called = (what, which) => (which ? `${what} ${which}` : what);
+    const { before: then, now } = this.names;
     const line = (source, key, extra) => ({ x: numbers(source.time_s), y: numbers(source[key]), ...extra });
     const lines = [
       line(one, "measured", { row: 0, name: "measured", colour: "blue" }),
-      before && line(before, "predicted", { row: 0, name: "predicted before", colour: "purple", dash: [2, 3] }),
-      line(one, "predicted", { row: 0, name: "predicted", colour: "orange", dash: [6, 4], width: 2 }),
-      before && line(before, "residual", { row: 1, name: "residual before", colour: "purple", dash: [2, 3] }),
-      line(one, "residual", { row: 1, name: "residual", colour: "red" }),
+      before && line(before, "predicted", { row: 0, name: called("predicted", then), colour: "purple", dash: [2, 3] }),
+      line(one, "predicted", { row: 0, name: called("predicted", now), colour: "orange", dash: [6, 4], width: 2 }),
+      before && line(before, "residual", { row: 1, name: called("residual", then), colour: "purple", dash: [2, 3] }),
+      line(one, "residual", { row: 1, name: called("residual", now), colour: "red" }),
     ].filter(Boolean);
     this.chart.show({ rows: [{ title: `effort [${unit}]` }, { title: `residual [${unit}]` }], lines, shades, xTitle: "time in the trial [s]" });
     this.chart.showAll();

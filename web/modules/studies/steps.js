@@ -11,7 +11,7 @@ export class Steps {
   // place: of the links; parts: name -> element; address(step): what it is called
   constructor(place, parts, { address, first }) {
     Object.assign(this, { parts, address });
-    this.links = new Map(STEPS.map(([name, text], at) => [name, h("a", { href: "#", onclick: (event) => this.#chosen(event, name) }, `${at + 1} ${text}`)]));
+    this.links = new Map(STEPS.map(([name, text], at) => [name, h("a", { href: "#", "data-step": name, onclick: (event) => this.#chosen(event, name) }, `${at + 1} ${text}`)]));
     replace(place, h("nav", { class: "steps", "aria-label": "Steps of the study" }, [...this.links.values()]));
     this.show(this.parts[first] ? first : "compare", { step: false });
   }

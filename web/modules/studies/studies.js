@@ -22,9 +22,9 @@ export function studiesView(place, { rest, query }) {
 
 function studyTable(items) {
   if (!items.length) return h("p", { class: "soft" }, "No studies yet. Choose trials below.");
-  return table("Studies", [
+  return [table("Studies", [
     { title: "Study", number: true, cell: (study) => study.study_id },
     { title: "Name", cell: (study) => h("a", { href: `#study/${study.study_id}` }, study.name) },
     { title: "Created", cell: (study) => when(study.created_utc) },
-  ], items);
+  ], items), items.length > 1 && h("p", {}, h("a", { href: `#compare/${items[1].study_id}./${items[0].study_id}.` }, "Two studies beside each other"))];
 }

@@ -5,7 +5,7 @@ import { get, post, remove } from "../app/api.js";
 import { attempt, patiently, together } from "../ui/attempt.js";
 import { h, panel, replace, table } from "../ui/dom.js";
 import { withFiles } from "../ui/files.js";
-import { conditions } from "../ui/format.js";
+import { conditions, spoken } from "../ui/format.js";
 import { beforeAfter } from "./beforeafter.js";
 import { comparison } from "./comparison.js";
 import { diagnosis } from "./diagnosis.js";
@@ -13,11 +13,12 @@ import { ladderPlot, rungName } from "./ladder.js";
 import { parameterTables } from "./parameters.js";
 import { searchButton } from "./search.js";
 import { SeriesPlot } from "./seriesplot.js";
+import { modelButtons } from "./modelfile.js";
 import { Steps } from "./steps.js";
 import { suggestions } from "./suggestions.js";
 import { verdict } from "./verdict.js";
 
-const NAMES = ["head", "verdict", "steps", "record", "compare", "diagnose", "add", "result", "series", "model", "change", "ladder", "parameters", "search", "suggested", "diagnosed"];
+const NAMES = ["head", "undo", "verdict", "steps", "record", "compare", "diagnose", "add", "result", "series", "model", "change", "ladder", "parameters", "search", "suggested", "diagnosed"];
 
 export function studyView(place, [id, step], query) {
   const parts = Object.fromEntries(NAMES.map((name) => [name, h("div")]));
@@ -50,7 +51,7 @@ class Study {
     }
     this.study = study;
     if (place) this.#layOut(place);
-    replace(this.parts.head, heading(study, this.path));
+    replace(this.parts.head, heading(study, this.path, this.parts.undo));
     this.#record();
     told?.();
     const wanted = this.wanted.model;
@@ -73,6 +74,7 @@ class Study {
     const rung = ladder.rungs.find((one) => one.model_id === this.model);
     this.parts.verdict.textContent = verdict(ladder, this.model);
     replace(this.parts.model, this.modelChoice(ladder), this.chips(rung));
+    replace(this.parts.undo, this.undoButton(ladder, rung));
     await ladderPlot(this.parts.ladder, ladder, this.model);
   }
 
@@ -83,13 +85,13 @@ class Study {
     this.compared = compared;
     this.series?.close();
     this.series = new SeriesPlot(this.parts.series, compared);
-    replace(this.parts.parameters, parameterTables(compared));
+    replace(this.parts.parameters, parameterTables(compared), modelButtons(this.study, compared));
     await comparison(this.parts.compare, compared, { path: this.path, series: this.series });
   }
 
   askDiagnosis() {
     const { diagnosed, diagnose } = this.parts;
-    const button = h("button", { class: "primary", type: "button" }, "Diagnose");
+    const button = h("button", { class: "primary", type: "button", id: "diagnose-now" }, "Diagnose");
     replace(diagnosed);
     button.addEventListener("click", async () => {
       const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal }), { button });
@@ -116,17 +118,22 @@ class Study {
 
   add(effect, place) {
     const body = { effect, model_id: this.model };
-    return attempt(place, async () => this.changed(await post(`${this.path}/models`, body)), { busy: "Fitting …" });
+    return this.fitted(place, body);
+  }
+
+  async fitted(place, body) {
+    const result = await patiently(place, "fit", "Fitting …", (signal) => post(`${this.path}/models`, body, 0, { signal }));
+    if (result) await attempt(place, () => this.changed(result));
   }
 
   drop(effect) {
     const body = { effect, model_id: this.model, action: "drop" };
-    return attempt(this.parts.change, async () => this.changed(await post(`${this.path}/models`, body)), { busy: "Fitting …" });
+    return this.fitted(this.parts.change, body);
   }
 
   async changed(result) {
     const before = this.compared?.model_id === result.parent_id ? this.compared : await get(`${this.path}/compare`, { model_id: result.parent_id });
-    this.told(h("div", { class: "good", role: "status" }, result.sentence));
+    this.told(h("div", { class: "good", role: "status" }, spoken(result.sentence)));
     await this.select(result.model_id);
     if (this.compared?.model_id !== result.model_id) return;
     beforeAfter(this.parts.change, result, { undo: () => this.undo(result.parent_id) });
@@ -134,12 +141,27 @@ class Study {
   }
 
   // back to the model before; the one that is left was made by the last change, and nothing was made from it
-  undo(parent_id) {
+  undo(parent_id, rung = null) {
     return attempt(this.parts.change, async () => {
       await remove(`${this.path}/models/${this.model}`);
-      replace(this.parts.change);
+      replace(this.parts.change, rung && h("p", { role: "status" }, `Undone: model ${rungName(rung)}. `, this.redoButton(parent_id, rung)));
       await this.select(parent_id);
     });
+  }
+
+  redoButton(model_id, { added, removed }) {
+    const body = { effect: added ?? removed, model_id, action: added ? "add" : "drop" };
+    return h("button", { type: "button", class: "small", onclick: () => this.fitted(this.parts.change, body) }, "Redo");
+  }
+
+  // of the last change that made the shown model; null where another model was made from it, or it is the first
+  undoButton({ rungs }, rung) {
+    if (!rung?.parent_id || rungs.some((one) => one.parent_id === rung.model_id)) return null;
+    const undo = async () => {
+      this.steps.show("add");
+      await this.undo(rung.parent_id, rung.added || rung.removed ? rung : null);
+    };
+    return h("button", { type: "button", class: "small", onclick: undo }, `Undo ${rungName(rung).split(": ")[1]}`);
   }
 
   chips(rung) {
@@ -151,14 +173,14 @@ class Study {
   modelChoice(ladder) {
     const options = ladder.rungs.map((rung) => h("option", { value: String(rung.model_id), selected: rung.model_id === this.model }, rungName(rung)));
     const choice = h("select", { id: "model", onchange: (event) => this.select(Number(event.target.value)) }, options);
-    const removable = ladder.rungs.length > 1 && !ladder.rungs.some((rung) => rung.parent_id === this.model) && ladder.rungs[0].model_id !== this.model;
-    const take = () => this.undo(ladder.rungs.find((rung) => rung.model_id === this.model)?.parent_id ?? ladder.rungs[0].model_id);
     return h("div", { class: "row" }, h("label", { for: "model" }, "Shown model", choice),
-      removable && h("button", { type: "button", onclick: take }, "Remove this model"));
+      ladder.rungs.length > 1 && h("a", { class: "button", href: `#compare/${this.id}.${ladder.rungs[0].model_id}/${this.id}.${this.model}` }, "Beside another model or study"));
   }
 
   #layOut(place) {
     const { parts } = this;
+    parts.diagnosed.className = "diagnosed";
+    parts.change.className = "study-change";
     replace(parts.add, panel("Model", parts.model, parts.change, h("h3", {}, "Search by itself"), parts.search));
     replace(parts.result, panel("Ladder: the error from model to model", parts.ladder), panel("Parameters", parts.parameters));
     const shown = h("div", { class: "study-steps" }, parts.record, parts.compare, parts.diagnose, parts.add, parts.result);
@@ -193,10 +215,10 @@ function trialTable(study) {
   ], study.trials);
 }
 
-function heading(study, path) {
+function heading(study, path, undo) {
   const count = (role) => study.trials.filter((trial) => trial.role === role).length;
   const held = count("held_out") ? `${count("held_out")} held out` : "each left out in turn to judge";
   return h("div", { class: "row centre between" }, h("div", {}, h("h2", {}, `Study ${study.study_id}: ${study.name}`),
     h("p", { class: "soft" }, `${count("training")} training trials, ${held}. Effort: ${study.effort.name} [${study.effort.unit}]. `,
-      h("a", { href: "#study" }, "All studies"))), h("div", {}, withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`]])));
+      h("a", { href: "#study" }, "All studies"))), h("div", { class: "row centre" }, undo, withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`]])));
 }

@@ -16,7 +16,7 @@ export function suggestions(place, path, model_id, extended) {
   });
   const round = h("button", { type: "button", title: "The joint moves when it is the queue's turn" }, "Record the next round");
   round.addEventListener("click", async () => {
-    const made = await attempt(answer, () => post(`${path}/rounds`, {}), { button: round, busy: "Adding what was recorded, diagnosing, and simulating what each trial would tell …" });
+    const made = await patiently(answer, "round", "Adding what was recorded, diagnosing, and simulating what each trial would tell …", (signal) => post(`${path}/rounds`, {}, 0, { signal }), { button: round });
     if (!made) return;
     const told = `${made.suggested.diagnosis} ${made.suggested.sentence} ${queued(made.item_ids.length)}`;
     if (made.extended) await extended(`${made.extended.sentence} ${told}`);
@@ -45,7 +45,7 @@ function show(place, path, found, extended) {
     if (queued) replace(started, h("div", { class: "good", role: "status" }, `${queued.item_ids.length} in the queue. When they have ended, add what was recorded.`));
   } }, "Queue all of them");
   const add = h("button", { type: "button", onclick: async ({ currentTarget: button }) => {
-    const result = await attempt(added, () => post(`${path}/trials`, {}), { button, busy: "Fitting …" });
+    const result = await patiently(added, "fit", "Fitting …", (signal) => post(`${path}/trials`, {}, 0, { signal }), { button });
     if (result) await extended(result.sentence);
   } }, "Add the recorded trials to the study");
   replace(place, h("p", { class: "sentence", role: "status" }, found.sentence), found.trials.length > 0 && table("Suggested trials", [

@@ -3,6 +3,7 @@
 import { upload } from "../app/api.js";
 import { attempt } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
+import { capital, nameOf } from "../ui/format.js";
 import { zipOf } from "./zip.js";
 
 const OWN = ["rig.toml", "mapping.toml"];
@@ -56,21 +57,45 @@ async function show(answer, files, name, button, finish) {
   const ask = async () => {
     const pairs = [["name", name], ...said.take.map((one) => ["take", one]), ...Object.entries(said).filter(([key, value]) => key !== "take" && value)];
     const found = await attempt(answer, async () => upload("/recording-sets/guess", await asZip(files), pairs), { button });
-    if (found) replace(answer, columns(found), found.questions.length ? questions(found, said, ask) : confirm(found, files, name, answer, finish));
+    if (found) replace(answer, columns(found, said, ask), found.questions.length ? questions(found, said, ask) : confirm(found, files, name, answer, finish));
   };
   await ask();
 }
 
-function columns(found) {
+// said.take has what a person chose for a column; ask(): guess anew with it
+function columns(found, said, ask) {
+  const chosen = (column) => said.take.find((one) => one.startsWith(`${column}=`))?.slice(column.length + 1);
+  const choose = (column, wanted) => {
+    said.take = said.take.filter((one) => !one.startsWith(`${column}=`));
+    if (wanted) said.take.push(`${column}=${wanted}`);
+    ask();
+  };
+  const offered = Object.entries(found.quantities).flatMap(([quantity, units]) => units.map((unit) => `${quantity}[${unit}]`));
+  const choice = ({ column, channel }) => {
+    const now = chosen(column);
+    const select = h("select", { "aria-label": `What ${column} is`, onchange: () => choose(column, select.value) },
+      h("option", { value: "" }, now ? "as it was guessed" : channel || "not used"), ["ignore", ...offered].map((one) => h("option", { value: one, selected: one === now }, wordsOf(one))));
+    return select;
+  };
   return h("div", {}, found.notes.map((note) => h("p", { class: "hint" }, note)), table("Columns", [
     { title: "Column", cell: (one) => one.column },
-    { title: "Taken for", cell: (one) => one.channel || "not used" },
+    { title: "Taken for", cell: choice },
     { title: "In", cell: (one) => one.unit },
     { title: "From", number: true, cell: (one) => one.low?.toPrecision(4) },
     { title: "To", number: true, cell: (one) => one.high?.toPrecision(4) },
     { title: "Over time", cell: (one) => picture(one.outline) },
     { title: "Because", cell: (one) => one.why },
   ], found.columns));
+}
+
+// "position[deg]" -> "position [deg]"
+function wordsOf(quantity) {
+  return quantity === "ignore" ? "not used" : nameOf(quantity).replace("[1]", "").replace("[", " [");
+}
+
+// the options of the command line, as one does the same here
+export function asked(question) {
+  return question.replace(/say --take|--take/g, "choose").replace(/'(\w+)=(\w+)\[([^\]]+)\]'/g, "$2 [$3] for '$1'").replace(/--([a-z]+(?:-[a-z]+)*)/g, (_, name) => name.replaceAll("-", " "));
 }
 
 function picture(values) {
@@ -87,7 +112,6 @@ function picture(values) {
 
 function questions(found, said, ask) {
   const fields = {
-    take: h("textarea", { id: "guess-take", rows: "3", placeholder: "pos=position[deg]" }, said.take.join("\n")),
     counts_per_turn: h("input", { id: "guess-counts", type: "number", min: "0", step: "any", value: said.counts_per_turn }),
     rate_hz: h("input", { id: "guess-rate", type: "number", min: "0", step: "any", value: said.rate_hz }),
     supply_v: h("input", { id: "guess-supply", type: "number", step: "any", value: said.supply_v }),
@@ -95,11 +119,9 @@ function questions(found, said, ask) {
   const submit = (event) => {
     event.preventDefault();
     for (const [key, field] of Object.entries(fields)) said[key] = field.value.trim();
-    said.take = said.take.split("\n").map((one) => one.trim()).filter(Boolean);
     ask();
   };
-  return h("form", { onsubmit: submit }, h("div", { class: "problem", role: "alert" }, found.questions.map((one) => h("p", {}, one))),
-    h("label", { for: "guess-take" }, "Columns, one a line: NAME=QUANTITY[UNIT]", fields.take),
+  return h("form", { onsubmit: submit }, h("div", { class: "problem", role: "alert" }, found.questions.map((one) => h("p", {}, capital(asked(one)))), h("p", {}, "Choose in the table above, or fill in:")),
     h("label", { for: "guess-counts" }, "Counts per turn of the joint", fields.counts_per_turn),
     h("label", { for: "guess-rate" }, "Samples a second [Hz]", fields.rate_hz),
     h("label", { for: "guess-supply" }, "Supply [V]", fields.supply_v), h("button", {}, "Answer"));

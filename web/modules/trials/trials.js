@@ -1,14 +1,16 @@
 // Trials: experiments, their trials, plots, files; the paper's figures; recording sets in and out. What is looked for and
 // what is plotted stand in the address: #trials/17,18?experiment=3&words=load&sort=name&page=2
 
-import { note } from "../app/address.js";
+import { note, written } from "../app/address.js";
 import { get } from "../app/api.js";
 import { attempt, together } from "../ui/attempt.js";
 import { h, panel, replace } from "../ui/dom.js";
+import { presets } from "../ui/presets.js";
 import { calibrations } from "./calibrations.js";
 import { experimentList } from "./experimentlist.js";
 import { figureOf } from "./figures.js";
 import { importForm } from "./recordingsets.js";
+import { offsetMin, sessionStrip } from "./sessions.js";
 import { trialPlot } from "./trialplot.js";
 import { trialTable } from "./trialtable.js";
 
@@ -19,12 +21,13 @@ const OUTCOMES = ["", "completed", "stopped", "tripped", "failed", "interrupted"
 const UNITS = /^(g|kg|°|rad|rad\/s|°\/s|A|s)$/;
 
 export function trialsView(place, { rest, query }) {
-  const [experiments, list, detail, figure, curves] = ["div", "div", "div", "div", "div"].map((tag) => h(tag));
-  let asked = { experiment: query.experiment ?? "", outcome: query.outcome ?? "", words: query.words ?? "", sort: query.sort ?? "", page: Number(query.page) || 1 };
+  const [experiments, list, detail, figure, curves, strip, kept] = ["div", "div", "div", "div", "div", "div", "div"].map((tag) => h(tag));
+  let asked = { experiment: query.experiment ?? "", outcome: query.outcome ?? "", words: query.words ?? "", day: query.day ?? "", sort: query.sort ?? "", page: Number(query.page) || 1 };
   let ids = idsOf(rest);
-  let [plotted, figured, timer] = [null, null, null];
+  let [plotted, figured, timer, drawStrip] = [null, null, null, () => {}];
   const chosen = new Set();
-  const say = (step) => note({ view: "trials", rest: ids.length ? [ids.join(",")] : [], query: { ...asked, page: asked.page > 1 ? asked.page : "" } }, { step });
+  const address = () => ({ view: "trials", rest: ids.length ? [ids.join(",")] : [], query: { ...asked, page: asked.page > 1 ? asked.page : "" } });
+  const say = (step) => note(address(), { step });
   const plot = async (wanted) => {
     plotted?.close();
     ids = wanted;
@@ -39,6 +42,7 @@ export function trialsView(place, { rest, query }) {
   const show = () => attempt(list, async () => {
     const found = await get("/trials/search", wordsOf(asked));
     trialTable(list, found, { asked, chosen, plot, turn, each: EACH });
+    drawStrip();
     await showFigure();
   });
   const showFigure = async () => {
@@ -63,9 +67,11 @@ export function trialsView(place, { rest, query }) {
     await listAgain();
     await choose(made.experiment_id);
   }, rest[0] === "import");
-  replace(place, panel("Experiments", imported, experiments), panel("Trials", bar, h("div", { class: "gap" }), list), detail, figure, curves);
+  replace(place, panel("Experiments", imported, experiments), panel("Trials", strip, bar, kept, h("div", { class: "gap" }), list), detail, figure, curves);
   const friction = calibrations(curves);
-  together(place, [listAgain(), show(), friction.first]);
+  presets(kept, "trials", () => written({ ...address(), rest: [] }), (hash) => { location.hash = hash; });
+  const strips = attempt(strip, async () => { drawStrip = await sessionStrip(strip, () => asked.day, (day) => turn({ day })); });
+  together(place, [listAgain(), show(), friction.first, strips]);
   if (ids.length) trialPlot(detail, ids).then((made) => { plotted = made; });
   return () => {
     clearTimeout(timer);
@@ -80,10 +86,10 @@ export function idsOf([part = ""]) {
 }
 
 // an address's words -> what the service is asked for
-export function wordsOf({ experiment, outcome, words, sort, page }) {
+export function wordsOf({ experiment, outcome, words, day = "", sort, page }) {
   const [, down, name] = /^(-?)(\w*)$/.exec(sort) ?? [];
   const text = words.split(/\s+/).filter((word) => !UNITS.test(word)).map((word) => word.replace(/°$/, "")).join(" ");
-  return { experiment_id: experiment, outcome, words: text, sort: name || "trial", descending: !name || down === "-", limit: EACH, offset: EACH * (page - 1) };
+  return { experiment_id: experiment, outcome, words: text, ...(day ? { day, offset_min: offsetMin() } : {}), sort: name || "trial", descending: !name || down === "-", limit: EACH, offset: EACH * (page - 1) };
 }
 
 // of all of them, whatever they came in by

@@ -7,9 +7,9 @@ import { conditions, number } from "../ui/format.js";
 // found: as GET /trials/search answers; plot(ids): one trial, or those that were chosen; turn(change): asks otherwise
 export function trialTable(place, found, { asked, chosen, plot, turn, each }) {
   if (!found.items.length) {
-    const looked = asked.words || asked.experiment || asked.outcome;
+    const looked = asked.words || asked.experiment || asked.outcome || asked.day;
     replace(place, h("p", { class: "soft" }, looked ? "No trial is like that." : "No trials yet: start an experiment on the Bench, or import a recording set."),
-      looked && h("button", { type: "button", onclick: () => turn({ words: "", experiment: "", outcome: "" }) }, "Show all trials"));
+      looked && h("button", { type: "button", onclick: () => turn({ words: "", experiment: "", outcome: "", day: "" }) }, "Show all trials"));
     return;
   }
   const over = h("button", { type: "button", onclick: () => plot([...chosen]) });

@@ -2,13 +2,20 @@
 // A view shows itself when its first answers are there, all at once: nothing jumps while it fills.
 
 import { h } from "./dom.js";
+import { capital } from "./format.js";
 
 export function problemBox(error) {
-  return h("div", { class: "problem", role: "alert" }, error.message);
+  const words = error.status === 401 ? "This needs the token: paste it at the head of the page." : capital(error.message);
+  return h("div", { class: "problem", role: "alert" }, words);
+}
+
+// what moves nothing goes on by itself once there is a token; what moves something has to be pressed again
+function onceThereIsAToken(error, again) {
+  if (error.status === 401 && again) document.addEventListener("token-set", again, { once: true });
 }
 
 // runs an action; `place` says meanwhile that it is busy, and afterwards what went wrong
-export async function attempt(place, action, { button = null, busy = "" } = {}) {
+export async function attempt(place, action, { button = null, busy = "", again = null } = {}) {
   if (busy) place.replaceChildren(h("p", { class: "busy", role: "status" }, busy));
   else place.querySelector(":scope > .problem")?.remove();
   if (button) button.disabled = true;
@@ -18,27 +25,31 @@ export async function attempt(place, action, { button = null, busy = "" } = {}) 
     return result;
   } catch (error) {
     if (error.name !== "AbortError") place.replaceChildren(problemBox(error));
+    onceThereIsAToken(error, again);
     return undefined;
   } finally {
     if (button) button.disabled = false;
   }
 }
 
-// runs what takes a while: `place` says for how long it has run, how long it took the last time, and lets one stop waiting.
-// action(signal): the request; what was asked of the service is finished there, its answer is not waited for
-export async function patiently(place, key, words, action, { button = null } = {}) {
+// how long it usually takes [s], until this browser has seen it once
+const USUAL_S = { "challenge easy": 12, "challenge medium": 12, "challenge hard": 12, fit: 4, compare: 4, diagnose: 10, search: 30, suggest: 15, round: 30, "closed-loop": 10, report: 15, example: 2 };
+
+// runs what takes a while: `place` says for how long it has run and about how long it still takes, and cancels it.
+// action(signal): the request; the service ends what it computes when the request is broken off
+export async function patiently(place, key, words, action, { button = null, again = null } = {}) {
   const way = new AbortController();
-  const expected_s = Number(localStorage.getItem(`took ${key}`)) || null;
+  const expected_s = Number(localStorage.getItem(`took ${key}`)) || USUAL_S[key] || null;
   const begin_ms = performance.now();
   const [bar, told] = [h("progress", { "aria-label": words, ...(expected_s ? { max: expected_s } : {}) }), h("span", { class: "soft" })];
   const show = () => {
     const passed_s = (performance.now() - begin_ms) / 1000;
     if (expected_s) bar.value = Math.min(passed_s, 0.97 * expected_s);
-    const left = expected_s ? (passed_s < expected_s ? `, about ${Math.ceil(expected_s - passed_s)} s left` : ", longer than the last time") : "";
+    const left = expected_s ? (passed_s < expected_s ? `, about ${Math.ceil(expected_s - passed_s)} s left` : ", longer than usual") : "";
     told.textContent = `${Math.round(passed_s)} s${left}`;
   };
   place.replaceChildren(h("div", { class: "waiting" }, h("p", { class: "busy", role: "status" }, words), bar, told,
-    h("button", { type: "button", class: "small", onclick: () => way.abort() }, "Stop waiting")));
+    h("button", { type: "button", class: "small", onclick: () => way.abort() }, "Cancel")));
   show();
   const timer = setInterval(show, 1000);
   if (button) button.disabled = true;
@@ -48,7 +59,8 @@ export async function patiently(place, key, words, action, { button = null } = {
     place.replaceChildren();
     return result;
   } catch (error) {
-    place.replaceChildren(error.name === "AbortError" ? h("p", { class: "soft", role: "status" }, "Not waited for any more; the service still finishes what it began.") : problemBox(error));
+    place.replaceChildren(error.name === "AbortError" ? h("p", { class: "soft", role: "status" }, "Cancelled: nothing of it is kept.") : problemBox(error));
+    onceThereIsAToken(error, again);
     return undefined;
   } finally {
     clearInterval(timer);

@@ -56,6 +56,16 @@ export function interval(value, low, high, show = percent) {
   return low === null || low === undefined ? show(value) : `${show(value)} (${show(low)} to ${show(high)})`;
 }
 
+// the service's words as a sentence of its own; names such as load_kg stay as they are
+export function capital(text) {
+  return /^[a-z]+[ ,;:]/.test(text) ? text[0].toUpperCase() + text.slice(1) : text;
+}
+
+// a sentence of the lab in the words and signs of the page
+export function spoken(text) {
+  return text.replace(/\bvelocity\b/g, "speed").replace(/(\d)%/g, "$1 %").replace(/(\d(?: %)?) \.\. (?=[-−\d])/g, "$1 to ").replaceAll("<=", "≤");
+}
+
 // a time as people say it
 export function duration(time_s) {
   if (time_s < 90) return `${number(Math.round(time_s))} s`;

@@ -35,6 +35,11 @@ export function withShownUnit(value, si, digits = 4) {
   return unit === "°" || unit === "°/s" ? `${text}${unit}` : `${text}${unit ? ` ${unit}` : ""}`;
 }
 
+// an effort that is small: its unit, or a thousandth of it, so that no row of noughts stands before the digits
+export function milli(highest, unit) {
+  return highest > 0 && highest < 0.1 ? { unit: `m${unit}`, factor: 1000 } : { unit, factor: 1 };
+}
+
 // changed(): everything that is shown has to be drawn again
 export function unitSwitch(place, changed) {
   const button = h("button", { type: "button", class: "small", title: "Units: degrees and grams, or SI", "aria-label": "Units: degrees and grams, or SI", onclick: () => {

@@ -1,0 +1,1 @@
+"""CubeMars actuators on a CAN bus."""

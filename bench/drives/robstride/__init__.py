@@ -1,0 +1,1 @@
+"""RobStride actuators on a CAN bus."""

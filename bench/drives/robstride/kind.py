@@ -1,0 +1,89 @@
+"""The RobStride actuator as a kind of drive."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from bench.config.drives.kind import ConformanceBench, DriveKind
+from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
+from bench.config.drives.scanning import CanPlace, FoundDrive
+from bench.config.drives.simulated_device import Simulate
+from bench.config.quantities import quantity
+from bench.config.rig import Rig
+from drivers.contract import Drive
+
+_IDS = range(1, 128)
+_ANSWER_S = 0.3
+
+Model = Literal["", "RS00", "RS01", "RS02", "RS03", "RS04", "RS05", "RS06", "EL05"]
+
+
+class RobstrideDriveSettings(CanDriveSettings):
+    """One RobStride actuator, over its own protocol: torque."""
+
+    kind: Literal["robstride"]
+    motor_id: int = quantity(127, "", "CAN id of the actuator", ge=1, le=0x7F)
+    model: Model = quantity("", "", "Model on its plate, whose ranges its frames have")
+    position_range_rad: float = quantity(
+        0.0, "rad", "Range of another firmware, with the next two; 0: the model's", ge=0
+    )
+    speed_range_rad_s: float = quantity(0.0, "rad/s", "Range of another firmware; 0: the model's", ge=0)
+    torque_range_n_m: float = quantity(0.0, "N m", "Range of another firmware; 0: the model's", ge=0)
+    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops, set in its canTimeout", ge=0.01, le=2)
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
+
+
+def make(settings: RobstrideDriveSettings, rig: Rig) -> Drive:
+    """The driver."""
+    from drivers.robstride.drive import RobstrideDrive
+    from drivers.robstride.settings import RobstrideSettings
+
+    return RobstrideDrive(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
+def simulate() -> Simulate:
+    """The command that simulates one."""
+    from bench.drives.robstride.device import simulate
+
+    return simulate
+
+
+def scan(place: CanPlace) -> Iterator[FoundDrive]:
+    """Ask each id who it is, which moves nothing."""
+    from drivers.can_bus.port import CanPort
+    from drivers.can_bus.settings import BusSettings
+    from drivers.robstride import protocol
+
+    port = CanPort(BusSettings(place.interface, place.channel, place.bitrate))
+    try:
+        for motor_id in _IDS:
+            port.send(*protocol.frame(protocol.Kind.IDENTIFY, motor_id))
+            port.drain()
+        port.wait_for([-1], _ANSWER_S)  # which never comes
+        for motor_id in _IDS:
+            heard = port.last(protocol.identity_id(motor_id))
+            if heard is not None:
+                yield FoundDrive(f"RobStride actuator {heard.data.hex(' ', 2)}; add the model on its plate", {
+                    "kind": "robstride", "interface": place.interface, "channel": place.channel,
+                    "bitrate": place.bitrate, "motor_id": motor_id,
+                })  # fmt: skip
+    finally:
+        port.close()
+
+
+KIND = DriveKind(
+    title="RobStride actuator, its own protocol",
+    settings=RobstrideDriveSettings,
+    make=make,
+    simulate=simulate,
+    scan_can=scan,
+    conformance=(
+        ConformanceBench(
+            "robstride",
+            ("--position-range", "50.265"),  # 16 bits of it are steps of 1/4096 turn
+            {"watchdog_s": 1.0, "answer_timeout_s": 0.3},
+            wrong_address=("motor_id", 33),
+            is_checked=False,  # the serial leg of a CAN adapter (slcan)
+            knows_counts=None,
+        ),
+    ),
+)

@@ -1,0 +1,1 @@
+"""CubeMars AK actuators on a CAN bus, by the MIT protocol."""

@@ -1,0 +1,193 @@
+"""A serial line of servos between another program and us: what it says passes, and in its pauses one servo is asked.
+
+Only the other program commands. It is passed on byte for byte. A question of ours goes out when the line has been quiet
+for a moment and nothing is owed to the other program. Where that program falls silent we do, too: a question feeds a
+bus watchdog as well as a command does, and the silence of who commands has to stop the motor.
+"""
+
+import select
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+
+from drivers.actuator.reading import Reading
+from drivers.actuator.sample import sample_of
+from drivers.contract import Sample, Status
+from drivers.errors import DriveConfigurationError
+from drivers.joint import JointScale
+from drivers.serial_port import SerialPort
+from drivers.servos.bus import ServoBus
+from drivers.servos.frames import Frames, Item
+from drivers.servos.offered_port import OfferedPort
+
+_QUIET_S = 0.002  # of the line, before a question of ours
+_OWED_S = 0.1  # longest wait for an answer to the other program: an adapter, or a busy host, may hold one back
+_ALIVE_S = 0.2  # who says nothing for longer counts as silent
+
+
+class ServoRelay:
+    """The line, opened.
+
+    Args:
+        port: the real port.
+        baud_rate: of the line.
+        timeout_s: longest wait for one answer [s].
+        frames: of the protocol.
+        servo_id: who is looked at.
+        piece: what is read of it.
+        link: name of the port that is offered.
+        period_s: from one look to the next, at least [s].
+
+    Raises:
+        DriveConnectionError: the real port is not there, or in use.
+    """
+
+    def __init__(
+        self, port: str, baud_rate: int, timeout_s: float, frames: Frames, servo_id: int, piece: Item, link: Path,
+        period_s: float,
+    ) -> None:  # fmt: skip
+        self.place = str(link)
+        self._frames, self._servo_id, self._period_s = frames, servo_id, period_s
+        self._question = frames.read(servo_id, piece.address, piece.size)
+        self._piece_bytes, self._answer_bytes = piece.size, frames.status_bytes + piece.size
+        self._line = SerialPort(port, port, baud_rate, timeout_s)
+        try:
+            self._other = OfferedPort(link)
+        except BaseException:
+            self._line.close()
+            raise
+        self._owes = False
+        self._said_s = float("-inf")  # by the other program
+        self._line_s = self._looked_s = 0.0
+
+    @property
+    def silent_s(self) -> float:
+        """How long the other program has said nothing [s]."""
+        return perf_counter() - self._said_s
+
+    def look(self, timeout_s: float) -> tuple[bytes, float] | None:
+        """Pass bytes on for a while [s]; the piece and when it was asked for, as soon as it was read, else None.
+
+        Raises:
+            DriveConnectionError: the real port is gone.
+        """
+        end_s = perf_counter() + timeout_s
+        while (now_s := perf_counter()) < end_s:
+            self._pass_on(min(end_s, now_s + _QUIET_S) - now_s)
+            if self._is_due():
+                found = self._ask()
+                if found is not None:
+                    return found
+        return None
+
+    def close(self) -> None:
+        """Give both ports back. Never raises."""
+        self._other.close()
+        self._line.close()
+
+    def _pass_on(self, wait_s: float) -> None:
+        other, line = self._other.fileno(), self._line.fileno()
+        ready, _, _ = select.select([other, line], [], [], wait_s)
+        if other in ready:
+            said = self._other.take()
+            if said:
+                self._line.shout(said)
+                self._said_s = perf_counter()
+                self._owes = not self._frames.nobody_answers(said)
+        if line in ready:
+            self._hand_over(self._line.read(1) + self._line.arrived())
+
+    def _hand_over(self, heard: bytes) -> None:
+        if heard:
+            self._other.give(heard)
+            self._line_s, self._owes = perf_counter(), False
+
+    def _is_due(self) -> bool:
+        now_s = perf_counter()
+        silent_s = now_s - self._said_s
+        if silent_s > _ALIVE_S or now_s - self._looked_s < self._period_s:
+            return False
+        if self._owes and silent_s < _OWED_S:
+            return False
+        return silent_s >= _QUIET_S and now_s - self._line_s >= _QUIET_S
+
+    def _ask(self) -> tuple[bytes, float] | None:
+        """The piece; what is no answer to us is the other program's."""
+        asked_s = self._looked_s = perf_counter()
+        frames, heard = self._frames, self._line.ask(self._question, self._answer_bytes)
+        while length := frames.packet_bytes(heard[: frames.status_bytes]):
+            if length > len(heard):  # an answer is longer where it was stuffed
+                heard += self._line.read(length - len(heard))
+            packet, heard = heard[:length], heard[length:]
+            answer = frames.status(packet)
+            if answer and answer.servo_id == self._servo_id and len(answer.data) == self._piece_bytes:
+                self._hand_over(heard)
+                self._line_s = perf_counter()
+                return answer.data, asked_s
+            self._hand_over(packet)  # one that was late
+            heard += self._line.read(self._answer_bytes - len(heard))
+        self._hand_over(heard)
+        return None
+
+
+class ServoFollower:
+    """A servo that another program moves.
+
+    Args:
+        relay: the line.
+        product: what answers.
+        device: name used in messages.
+        reading: the piece in SI, of its bytes and when it was asked for.
+        joint: scales and signs.
+    """
+
+    def __init__(
+        self,
+        relay: ServoRelay,
+        product: str,
+        device: str,
+        reading: Callable[[bytes, float], Reading],
+        joint: JointScale,
+    ) -> None:
+        self._relay, self._reading, self._joint = relay, reading, joint
+        self.place, self.product, self.device = relay.place, product, device
+
+    @property
+    def silent_s(self) -> float:
+        """How long the other program has said nothing [s]."""
+        return self._relay.silent_s
+
+    def look(self, timeout_s: float) -> Sample | None:
+        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
+
+        Raises:
+            DriveConnectionError: the real port is gone.
+        """
+        found = self._relay.look(timeout_s)
+        if found is None:
+            return None
+        reading = self._reading(*found)
+        return sample_of(reading, self._joint, Status.ENABLED if reading.is_on else Status.DISABLED)
+
+    def close(self) -> None:
+        """Give both ports back. Never raises."""
+        self._relay.close()
+
+
+def number_of(port: str, baud_rate: int, timeout_s: float, frames: Frames, servo_id: int, item: Item) -> int:
+    """Ask a servo for one number, before the other program is there.
+
+    Raises:
+        DriveConnectionError: the port is not there or in use, or nobody answers.
+    """
+    bus = ServoBus(port, baud_rate, timeout_s, frames)
+    try:
+        bus.begin()
+        return bus.read(servo_id, item)
+    finally:
+        bus.close()
+
+
+def unknown_model(device: str, number: int) -> DriveConfigurationError:
+    """A servo whose numbers nobody here knows the meaning of."""
+    return DriveConfigurationError(device, f"its model number is {number}, which is not known; check servo_id")

@@ -1,0 +1,1 @@
+"""A RobStride actuator on a CAN bus, as RobStride's user manuals describe it."""

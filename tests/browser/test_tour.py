@@ -1,0 +1,56 @@
+"""The guided tour: followed by pressing what it points at, from its link to its end; it does the real thing."""
+
+import time
+
+import pytest
+
+from bench.service.routes import challenges
+from tests.service.running_service import TOKEN
+
+pytestmark = pytest.mark.browser
+SEED = 13  # of the challenge; see test_walk.py
+STEPS = 12
+MOST_S, MOST_CLICKS = 300, 20
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("width", [1440, 390])
+def test_the_tour_leads_to_an_explained_effect_by_what_it_points_at(open_page, monkeypatch, width, tmp_path):
+    monkeypatch.setattr(challenges.secrets, "randbits", lambda _bits: SEED)
+    page = open_page("#home", token=False, width=width)
+    page.set_default_timeout(120_000)
+    begun_s = time.monotonic()
+    page.get_by_role("link", name="Guided tour").click()
+    tour = page.get_by_role("region", name="Guided tour")
+    pressed = []
+    for step in range(1, STEPS):
+        tour.get_by_text(f"{step} of {STEPS}").wait_for()
+        while tour.get_by_text(f"{step} of {STEPS}").count():
+            target = page.locator(".tour-target")
+            if not target.count() or target.get_attribute("data-pressed") == str(step):
+                page.wait_for_timeout(100)
+                continue
+            page.screenshot(path=tmp_path / f"{width}-{step:02d}-{len(pressed):02d}.png")
+            target.evaluate("(one, step) => one.setAttribute('data-pressed', step)", str(step))
+            if step == 1:
+                target.fill(TOKEN)
+                page.keyboard.press("Enter")
+            else:
+                target.click(timeout=10_000)
+            pressed.append(step)
+    page.get_by_text("One mechanism was hidden, and the guess says just that.").wait_for()
+    tour.get_by_role("button", name="Done").click()
+    tour.wait_for(state="detached")
+    assert time.monotonic() - begun_s < MOST_S
+    assert len(pressed) + 2 <= MOST_CLICKS, pressed  # and the link of the tour, and Done
+
+
+def test_the_tour_is_left_and_taken_up_again_where_it_was(open_page):
+    page = open_page("#tour")
+    tour = page.get_by_role("region", name="Guided tour")
+    tour.get_by_text(f"2 of {STEPS}").wait_for()  # there is a token already
+    page.reload()
+    tour.get_by_text(f"2 of {STEPS}").wait_for()
+    tour.get_by_role("button", name="End the tour").click()
+    tour.wait_for(state="detached")
+    assert page.locator(".tour-target").count() == 0
