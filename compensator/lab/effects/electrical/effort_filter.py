@@ -17,6 +17,11 @@ def shapes(_: Motion) -> list[Shape]:
     return [(float(time_s),) for time_s in np.geomspace(SHORTEST_S, LONGEST_S, 6)]
 
 
+def is_none_shorter(shape: Shape) -> bool:
+    """Whether the time constant is none at the scan's short end, where a delay to second order would end as well."""
+    return shape[0] > 1.01 * SHORTEST_S
+
+
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """What a low-pass of first order, of shape (time constant [s],), adds to the predicted effort."""
     if len(motion.predicted) < 2:
@@ -49,4 +54,5 @@ EFFECT = Effect(
     pipeline=True,
     efforts=("current", "torque"),  # what a drive measures; a duty or a voltage is what it was told
     after=("measurement_delay",),
+    holds=is_none_shorter,
 )
