@@ -26,7 +26,7 @@ def smoothed(one: Recording, time_constant_s: float) -> Recording:
     return replace(one, channels={**one.channels, "torque_n_m": reported})
 
 
-@pytest.mark.parametrize("time_constant_s", [0.06, 0.15])
+@pytest.mark.parametrize("time_constant_s", [0.06, 0.2])
 def test_it_is_named_beside_a_delay_and_its_time_constant_is_found(time_constant_s):
     made = [smoothed(one, time_constant_s) for one in recordings(seed=3)]
     dataset = make_dataset(made, FACTS, Processing(8.0))
