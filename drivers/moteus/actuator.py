@@ -9,7 +9,7 @@ from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from drivers.joint import JointScale
 from drivers.moteus.frames import POSITION, POWERED, Frames, fault_name, registers, state, text_of
-from drivers.moteus.line import MoteusLine
+from drivers.moteus.opening import Line
 from drivers.moteus.settings import MoteusSettings
 
 _BEGIN_S = 1.0  # longest wait until it drives
@@ -38,9 +38,7 @@ class MoteusActuator:
     )
     notes: tuple[str, ...] = ()
 
-    def __init__(
-        self, line: MoteusLine, settings: MoteusSettings, joint: JointScale, leave: Callable[[], None]
-    ) -> None:
+    def __init__(self, line: Line, settings: MoteusSettings, joint: JointScale, leave: Callable[[], None]) -> None:
         self.bus = line
         self.servo_id, self._settings, self._leave = settings.servo_id, settings, leave
         self._frames = Frames(settings.servo_id, settings.watchdog_s)

@@ -6,7 +6,7 @@ from drivers.actuator.drive import ActuatorDrive, Family
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
-from drivers.moteus.line import on_line
+from drivers.moteus.opening import on_line
 from drivers.moteus.settings import MoteusSettings
 
 _MODES = frozenset({Mode.TORQUE})
@@ -40,11 +40,6 @@ class MoteusDrive(ActuatorDrive[Any]):  # of MoteusActuator, which is imported w
         super().__init__(
             family,
             joint,
-            lambda: on_line(
-                settings.port,
-                settings.over_uart,
-                settings.answer_timeout_s,
-                lambda line, leave: MoteusActuator(line, settings, joint, leave),
-            ),
+            lambda: on_line(settings, lambda line, leave: MoteusActuator(line, settings, joint, leave)),
             exchange_all,
         )

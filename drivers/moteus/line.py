@@ -1,10 +1,8 @@
 """A serial line to controllers: frames out, frames in, in bounded time; several controllers in one go."""
 
 import time
-from collections.abc import Callable, Mapping
-from typing import TypeVar
+from collections.abc import Mapping
 
-from drivers.actuator.open_buses import OpenBuses
 from drivers.errors import DriveConnectionError
 from drivers.host_time import host_was_away
 from drivers.moteus.text import LONGEST_LINE, received, send_line
@@ -113,23 +111,3 @@ class MoteusLine:
                 found[frame.can_id >> 8 & 0x7F] = frame.data
         self._heard = self._heard[-LONGEST_LINE:]
         return found
-
-
-MadeT = TypeVar("MadeT")
-_LINES: OpenBuses[MoteusLine] = OpenBuses()  # controllers of one line share its port
-
-
-def on_line(
-    port: str, over_uart: bool, timeout_s: float, make: Callable[[MoteusLine, Callable[[], None]], MadeT]
-) -> MadeT:
-    """A controller on a line, which is opened where no other controller has it open.
-
-    Raises:
-        DriveError: the port does not open, or the controller cannot be opened; the port is given back then.
-    """
-    line = _LINES.enter(port, lambda: MoteusLine(port, over_uart, timeout_s))
-    try:
-        return make(line, lambda: _LINES.leave(port))
-    except BaseException:
-        _LINES.leave(port)
-        raise

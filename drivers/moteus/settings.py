@@ -2,20 +2,24 @@
 
 from dataclasses import dataclass
 
+from drivers.can_bus.settings import BusSettings
+
 
 @dataclass(frozen=True, slots=True)
 class MoteusSettings:
     """How to reach one controller.
 
     Attributes:
-        port: serial port of the adapter, or of the UART.
+        port: serial port of the adapter, or of the UART; "" with a bus.
+        bus: CAN-FD bus of python-can; None with a port.
         servo_id: of the controller, 1 .. 126.
         over_uart: True where the port is the controller's own UART: lines have checksums there.
         watchdog_s: silence after which it stops [s]; goes out with every torque.
         answer_timeout_s: longest wait for the answers of a cycle [s].
     """
 
-    port: str
+    port: str = ""
+    bus: BusSettings | None = None
     servo_id: int = 1
     over_uart: bool = False
     watchdog_s: float = 0.2
@@ -24,4 +28,9 @@ class MoteusSettings:
     @property
     def device(self) -> str:
         """The name used in messages."""
-        return f"{self.port} servo {self.servo_id}"
+        return f"{self.place} servo {self.servo_id}"
+
+    @property
+    def place(self) -> str:
+        """What it is on."""
+        return self.port if self.bus is None else str(self.bus)

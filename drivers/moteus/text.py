@@ -31,10 +31,14 @@ def crc8(data: bytes) -> int:
     return crc
 
 
+def padded(data: bytes) -> bytes:
+    """Data as long as a frame of CAN-FD may be; what is added means nothing."""
+    return data.ljust(next(one for one in _LENGTHS if one >= len(data)), _PADDING)
+
+
 def send_line(can_id: int, data: bytes, has_checksum: bool) -> bytes:
     """The line that puts a frame on the bus, with the fast bit rate of CAN-FD."""
-    length = next(one for one in _LENGTHS if one >= len(data))
-    line = b"can send %04x %s BF" % (can_id, data.ljust(length, _PADDING).hex().encode("ascii"))
+    line = b"can send %04x %s BF" % (can_id, padded(data).hex().encode("ascii"))
     if has_checksum:
         line += b" "
         line += b"*%02X" % crc8(line)

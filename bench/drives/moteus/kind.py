@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import Literal
 
+from pydantic import model_validator
+
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, driver_values, joint_scale
 from bench.config.drives.scanning import FoundDrive, SerialPlace
@@ -20,19 +22,37 @@ class MoteusDriveSettings(RealDriveSettings):
     """One moteus controller, by its registers: torque."""
 
     kind: Literal["moteus"]
-    port: str = quantity(..., "", "Serial port of the fdcanusb, or of its UART", min_length=1)
+    port: str = quantity("", "", "Serial port of the fdcanusb, or of its UART; left out with a CAN-FD bus")
+    interface: str = quantity("", "", "Interface of python-can for a CAN-FD bus, in the place of a port")
+    channel: str = quantity("", "", "Of the interface: can0, PCAN_USBBUS1")
+    options: dict[str, str | int | float | bool] = quantity(
+        {}, "", "What else the interface takes, as python-can's documentation of it says: bit rates of CAN-FD"
+    )
     servo_id: int = quantity(1, "", "Id of the controller", ge=1, le=126)
     over_uart: bool = quantity(False, "", "true: the port is the controller's own UART, whose lines have checksums")
     watchdog_s: float = quantity(0.2, "s", "Silence after which it stops; goes out with every torque", ge=0.01, le=2)
     answer_timeout_s: float = quantity(0.05, "s", "Longest wait for the answers of a cycle", ge=0.002, le=1.0)
 
+    @model_validator(mode="after")
+    def _check_place(self) -> "MoteusDriveSettings":
+        if bool(self.port) == bool(self.interface and self.channel):
+            raise ValueError("either port, or interface and channel are wanted")
+        return self
+
 
 def make(settings: MoteusDriveSettings, rig: Rig) -> Drive:
     """The driver."""
+    from drivers.can_bus.settings import BusSettings
     from drivers.moteus.drive import MoteusDrive
     from drivers.moteus.settings import MoteusSettings
 
-    return MoteusDrive(MoteusSettings(**driver_values(settings)), joint_scale(settings, rig))
+    values = driver_values(settings)
+    place = {name: values.pop(name) for name in ("interface", "channel", "options")}
+    fd = {"fd": True} if settings.interface == "socketcan" else {}  # others have more to say, or nothing
+    bus = (
+        BusSettings(place["interface"], place["channel"], options=fd | place["options"]) if settings.interface else None
+    )
+    return MoteusDrive(MoteusSettings(bus=bus, **values), joint_scale(settings, rig))
 
 
 def simulate() -> Simulate:

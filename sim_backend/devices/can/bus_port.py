@@ -64,7 +64,9 @@ class BusPort(threading.Thread):
         self._bus.shutdown()
 
     def _receive(self, message: can.Message) -> None:
-        frame = Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame, message.is_extended_id)
+        frame = Frame(
+            message.arbitration_id, bytes(message.data), message.is_remote_frame, message.is_extended_id, message.is_fd
+        )
         self._clock.hear()
         with self._device.lock:
             now_s = self._clock.now_s()
@@ -77,6 +79,8 @@ class BusPort(threading.Thread):
             data=frame.data,
             is_remote_frame=frame.remote,
             is_extended_id=frame.extended,
+            is_fd=frame.fd,
+            bitrate_switch=frame.fd,
         )
         try:
             self._bus.send(message)

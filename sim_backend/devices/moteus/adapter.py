@@ -72,8 +72,7 @@ class FdcanusbAdapter:
                 continue
             answer = one.hear(data, bool(can_id & 0x8000))
             if answer:
-                length = next(size for size in _LENGTHS if size >= len(answer))
-                text = answer.ljust(length, b"\x50").hex().upper().encode("ascii")
+                text = padded(answer).hex().upper().encode("ascii")
                 out += self._line(b"rcv %X %s E B F" % (one.servo_id << 8 | source, text))
         return out
 
@@ -82,6 +81,11 @@ class FdcanusbAdapter:
             text += b" "
             text += b"*%02X" % _crc(text)
         return text + b"\r\n"
+
+
+def padded(data: bytes) -> bytes:
+    """Return data as long as a frame may be."""
+    return data.ljust(next(size for size in _LENGTHS if size >= len(data)), b"\x50")
 
 
 def _crc(data: bytes) -> int:

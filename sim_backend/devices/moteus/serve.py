@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.can.ports import port_of
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.serial_port import SerialPort
 from sim_backend.devices.moteus.adapter import FdcanusbAdapter
 from sim_backend.devices.moteus.controller import MoteusController
+from sim_backend.devices.moteus.node import MoteusOnBus
 from sim_backend.devices.process import RunningDevice
 
 
@@ -19,6 +21,7 @@ class MoteusBusSettings:
 
     Attributes:
         ids: of each.
+        interface, channel: a CAN-FD bus of python-can in the place of the adapter; "": the adapter.
         is_uart: whether it is a controller's own UART, whose lines have checksums.
         baud: pace of the line; None is as fast as the machine.
         link: symbolic link to put on the port; None: none.
@@ -29,6 +32,8 @@ class MoteusBusSettings:
     """
 
     ids: tuple[int, ...] = (1,)
+    interface: str = ""
+    channel: str = ""
     is_uart: bool = False
     baud: int | None = None
     link: Path | None = None
@@ -50,6 +55,9 @@ def serve_moteus(settings: MoteusBusSettings) -> RunningDevice:
     controllers = [
         MoteusController(parameters, servo_id, settings.seed + place) for place, servo_id in enumerate(settings.ids)
     ]
+    if settings.interface:
+        on_bus = MoteusOnBus(controllers)
+        return RunningDevice(on_bus, port_of(on_bus, settings), settings.side_port, settings.patience_s)
     device = FdcanusbAdapter(controllers, settings.is_uart)
     return RunningDevice(
         device,
