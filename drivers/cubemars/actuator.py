@@ -51,6 +51,11 @@ class CubemarsActuator(MitActuator):
             )
         name = settings.model or "AK series actuator"
         self.identity = Identity("CubeMars", name, "", "", settings.is_simulated)
+        if settings.is_simulated:
+            self.notes = (
+                *self.notes,
+                "it is simulated by what its section says (is_simulated): its frames do not tell",
+            )
         self._is_on = False
         self._last: Frame = self.disable_frame()
         self.switch_off()

@@ -1,6 +1,9 @@
+from types import SimpleNamespace
+
 import pytest
 
 from bench.errors import ParameterError
+from bench.evaluation.challenge import guess as guessing
 from bench.evaluation.challenge.guess import Guess, score
 from bench.evaluation.challenge.hidden_plant import MECHANISMS
 from bench.evaluation.challenge.names import ABSORBED, ACCEPTED, accepted
@@ -44,6 +47,18 @@ def test_score(
     assert (found.right, found.missed, found.wrong) == (right, missed, wrong)
     assert found.points == points
     assert found.perfect == (not missed and not wrong)
+
+
+@pytest.mark.parametrize(
+    ("conclusion", "unknown"),
+    [("unknown-effect", True), ("unexplained", True), ("nothing", False), ("not-confirmed", False)],
+)
+def test_what_a_study_leaves_unexplained_is_part_of_its_guess(monkeypatch, conclusion: str, unknown: bool) -> None:
+    rungs = [SimpleNamespace(effects=["inertia"]), SimpleNamespace(effects=["inertia", "spring"])]
+    last = SimpleNamespace(classes=[], conclusion=SimpleNamespace(code=conclusion))
+    monkeypatch.setattr(guessing, "ladder", lambda *_: SimpleNamespace(rungs=rungs))
+    monkeypatch.setattr(guessing, "diagnose", lambda *_: last)
+    assert guessing.guess_of_study(None, 1) == Guess((("spring",),), unknown)  # type: ignore[arg-type]
 
 
 def test_what_no_motion_can_tell_does_not_count() -> None:

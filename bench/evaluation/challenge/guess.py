@@ -13,6 +13,7 @@ from compensator.lab.errors import UnknownEffectError
 
 NOTHING = "nothing"
 UNKNOWN = "none-of-these"
+OUTSIDE = ("unknown-effect", "unexplained")  # what a diagnosis concludes where something is left that has no name
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +115,7 @@ def guess_of_study(store: Store, study_id: int) -> Guess:
     last = diagnose(store, study_id)
     added = [(name,) for name in rungs[-1].effects if name not in rungs[0].effects]
     named = [tuple(one.effects) for one in last.classes]
-    return Guess((*added, *named), last.verdict == "unknown-effect")
+    return Guess((*added, *named), last.conclusion.code in OUTSIDE)
 
 
 def _known(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -1,0 +1,211 @@
+"""Whether a hidden effect is found through a wire as it is in process: same name, error within 10 %. Not a test.
+
+    python -m tests.drivers.hidden [KIND ...]
+
+Each effect: the same joint once in process and once behind the simulated device of each kind, through its real driver
+and the bytes or frames of its protocol, in virtual time: how busy the machine is changes nothing. The same trials (3
+loads, 3 motions, 2 repeats), the same base model without the effect, the same cut-off. The lab names what is missing;
+it is added; the error on the trials held out (50 g) is what is compared.
+"""
+
+from tests.commission.virtual_time import TIME  # first: the drivers read its clock
+
+# isort: split
+import sys
+import tempfile
+from contextlib import ExitStack
+from typing import Any, NamedTuple
+from unittest import mock
+
+from bench.config.configuration import BenchConfiguration, default_configuration, parse_configuration
+from bench.evaluation.paper.measurements import Measurement, measure
+from bench.runs.runner import Runner
+from bench.store import Store
+from bench.study.compare import compare
+from bench.study.create import create_study
+from bench.study.diagnose import diagnose
+from sim_backend.devices.axis import TICK_S
+from sim_backend.devices.cubemars.motor import CubemarsMotor
+from sim_backend.devices.damiao.motor import DamiaoMotor
+from sim_backend.devices.dynamixel.memory import KINDS as MODELS
+from sim_backend.devices.dynamixel.packets import InstructionReader as DynamixelReader
+from sim_backend.devices.dynamixel.serve import _MEASURED as DYNAMIXEL
+from sim_backend.devices.dynamixel.servo import XServo
+from sim_backend.devices.feetech.packets import InstructionReader as FeetechReader
+from sim_backend.devices.feetech.serve import _MEASURED as FEETECH
+from sim_backend.devices.feetech.servo import StsServo
+from sim_backend.devices.joint_tables import behind_a_drive
+from sim_backend.devices.moteus.adapter import FdcanusbAdapter
+from sim_backend.devices.moteus.controller import MoteusController
+from sim_backend.devices.odrive.axis import OdriveAxis
+from sim_backend.devices.robstride.motor import RobstrideMotor
+from sim_backend.devices.servos.bus import ServoBus
+from sim_backend.plant.parameters import PlantParameters
+from tests.commission.wires import CanWire, SerialWire, VirtualWire, plugged_in
+
+SENSED = {"current_sensor": {"present": True}, "current_loop": {"present": True}, "heat": {"present": True}}
+KNOWN = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck")
+EXCITATION = Measurement("excitation", {"waveforms": ("slow-sine", "multisine", "triangles")})
+MOST_DIFFERENCE = 0.1
+CUTOFF_HZ = 10.0  # of both: else each recording chooses its own, by its noise, and what is smoothed more errs less
+RANGES = (50.265, 200.0, 0.5)  # 16 bits of the first are steps of 1/4096 turn
+WRITTEN = dict(zip(("position_range_rad", "speed_range_rad_s", "torque_range_n_m"), RANGES, strict=True))
+USB_BYTE_S = 10.0 / 3e6  # of a line at the pace of an adapter on USB
+ON_CAN = {"interface": "slcan", "channel": "virtual"}
+
+
+class Hidden(NamedTuple):
+    """What is done to the joint, what it is called, and what the model knows before."""
+
+    title: str
+    plant: dict[str, Any]
+    names: tuple[str, ...]
+    base: tuple[str, ...]
+
+
+WHOLE = (*KNOWN, "weight_friction", "load_friction")
+HIDDEN = (
+    Hidden("load-dependent friction", {}, ("load_friction",), (*KNOWN, "weight_friction")),
+    Hidden("backlash", {"gear": {"backlash_rad": 0.05}}, ("backlash",), WHOLE),
+    Hidden(
+        "thermal",
+        {
+            "lubricant": {"vogel_k": 1500.0},
+            "heat": {"present": True, "winding_j_k": 2.0, "housing_j_k": 4.0},
+            "friction": {"viscous_n_m_s_rad": 3e-4},
+        },
+        ("viscous_temperature",),
+        WHOLE,
+    ),
+)
+
+
+class Found(NamedTuple):
+    """What the lab made of one recording."""
+
+    name: str
+    before: float
+    after: float
+
+
+def device_of(kind: str, plant: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """A simulated device of a kind, and the section that reaches it."""
+
+    def joint(measured: dict[str, Any] | None = None) -> PlantParameters:
+        return behind_a_drive("paper", measured, plant)
+
+    match kind:
+        case "dynamixel":
+            return ServoBus([XServo(joint(DYNAMIXEL), MODELS["XM430-W350"], 1, seed=1)], DynamixelReader()), {
+                "port": "virtual"
+            }
+        case "feetech":
+            section = {"port": "virtual", "accept_no_watchdog": True}
+            return ServoBus([StsServo(joint(FEETECH), 1, 1)], FeetechReader()), section
+        case "moteus":
+            return FdcanusbAdapter([MoteusController(joint(), 1, 1)]), {"port": "virtual"}
+        case "odrive":
+            return OdriveAxis(joint(), 0, 1.0, 1), ON_CAN | {"watchdog_is_set_in_drive": True, "watchdog_s": 1.0}
+        case "damiao":
+            return DamiaoMotor(joint(), 1, 0x11, RANGES, 1), ON_CAN
+        case "cubemars":
+            return CubemarsMotor(joint(), 1, RANGES, 1), ON_CAN | WRITTEN | {"accept_no_watchdog": True}
+        case "robstride":
+            return RobstrideMotor(joint(), 127, RANGES, 1), ON_CAN | WRITTEN
+    raise SystemExit(f"kind '{kind}' is none of {', '.join(KINDS)}")
+
+
+KINDS = ("dynamixel", "feetech", "odrive", "damiao", "cubemars", "robstride", "moteus")
+
+
+def diagnosed(configuration: BenchConfiguration, hidden: Hidden, wire: VirtualWire | None = None) -> Found:
+    """Record, diagnose, add."""
+
+    def to_its_end(runner: Runner) -> None:
+        while not runner.wait(0.02):
+            prompt = runner.status().prompt
+            if prompt is not None and wire is not None:
+                hang(wire, prompt.sentence)
+                runner.answer(prompt.number)
+
+    with tempfile.TemporaryDirectory() as folder, Store.open(f"sqlite:///{folder}/bench.sqlite") as store:
+        if wire is not None:
+            measure(configuration, store, Measurement("commissioning", {}), to_its_end)
+        recorded = measure(configuration, store, EXCITATION, to_its_end)
+        without = _study(store, recorded.id, hidden.base)
+        name = diagnose(store, without).ranking[0].effect
+        added = _study(store, recorded.id, (*hidden.base, name))
+        before, after = (compare(store, study).error.held_out.relative for study in (without, added))
+        return Found(name, before, after)
+
+
+def hang(wire: VirtualWire, sentence: str) -> None:
+    """Do what a person is asked to do."""
+    TIME.advance(2.0 * TICK_S)  # a power stage that was told to be off takes a tick
+    wire.catch_up()
+    words = sentence.split()
+    wire.device.axis.hang_load(float(words[1]) / 1000.0 if words[0] == "Hang" else 0.0, "balanced," in words)
+
+
+def _study(store: Store, recorded: int, base: tuple[str, ...]) -> int:
+    made = create_study(
+        store, "hidden", [recorded], hold_out=["load_kg=0.05"], base=base, rows="moving", cutoff_hz=CUTOFF_HZ
+    )
+    return made.study_id
+
+
+def on_bench(drive: dict[str, Any]) -> BenchConfiguration:
+    """The bench of the package with a drive."""
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    values["control"]["period_s"] = 0.005
+    values["servo"] |= {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_rad": 0.3}
+    values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+    values["drive"] = drive
+    return parse_configuration(values, "bench.toml")
+
+
+def through_wire(kind: str, hidden: Hidden) -> Found:
+    """The same behind a simulated device."""
+    device, section = device_of(kind, hidden.plant)
+    wire = VirtualWire(device)
+    is_on_can = "interface" in section
+    port: Any = CanWire(wire) if is_on_can else SerialWire(wire, device.receive)
+    with ExitStack() as stack:
+        stack.enter_context(plugged_in(port))
+        stack.enter_context(mock.patch("tests.commission.wires._BYTE_S", USB_BYTE_S))
+        if is_on_can:
+            stack.enter_context(mock.patch("drivers.can_bus.port.open_bus", return_value=port))
+        return diagnosed(on_bench({"kind": kind, **section}), hidden, wire)
+
+
+def report(kinds: list[str]) -> bool:
+    """Print a row for each effect and kind; whether every one is as asked."""
+    met = True
+    print(f"{'hidden':<26}{'in process':<40}{'through':<12}{'':<40}difference", flush=True)
+    for hidden in HIDDEN:
+        near = diagnosed(on_bench({"kind": "sim", "plant": SENSED | hidden.plant}), hidden)
+        for kind in kinds:
+            met = _row(hidden, near, kind) and met
+    return met
+
+
+def _row(hidden: Hidden, near: Found, kind: str) -> bool:
+    """Print what one wire made of an effect; whether that is as asked."""
+    try:
+        far = through_wire(kind, hidden)
+    except Exception as error:  # the others are worth their time
+        print(f"{hidden.title:<26}{_words(near):<40}{kind:<12}NOT MET: {error}", flush=True)
+        return False
+    difference = far.after / near.after - 1.0
+    right = near.name == far.name and far.name in hidden.names and abs(difference) <= MOST_DIFFERENCE
+    ends = "" if right else "  NOT MET"
+    print(f"{hidden.title:<26}{_words(near):<40}{kind:<12}{_words(far):<40}{difference:+.1%}{ends}", flush=True)
+    return right
+
+
+def _words(found: Found) -> str:
+    return f"{found.name} ({found.before:.2%} -> {found.after:.2%})"
+
+
+if __name__ == "__main__":
+    sys.exit(0 if report(sys.argv[1:] or list(KINDS)) else 1)
