@@ -89,7 +89,7 @@ function control(kind, id) {
 
 function shownText(kind, value) {
   if (value === null || value === undefined) return "";
-  return [value].flat().map((one) => (typeof one === "number" ? number(upscaled(one, kind, 12), 4) : one)).join(", ");
+  return [value].flat().map((one) => (typeof one === "number" ? number(upscaled(one, kind, 12), kind.shown.factor === 1 ? 6 : 4) : one)).join(", ");
 }
 
 function write(kind, input, value) {
