@@ -133,9 +133,13 @@ def diagnosed(configuration: BenchConfiguration, hidden: Hidden, wire: VirtualWi
             measure(configuration, store, Measurement("commissioning", {}), to_its_end)
         recorded = measure(configuration, store, EXCITATION, to_its_end)
         without = _study(store, recorded.id, hidden.base)
-        name = diagnose(store, without).ranking[0].effect
+        ranking = diagnose(store, without).ranking
+        before = compare(store, without).error.held_out.relative
+        if not ranking:
+            return Found("nothing named", before, before)
+        name = ranking[0].effect
         added = _study(store, recorded.id, (*hidden.base, name))
-        before, after = (compare(store, study).error.held_out.relative for study in (without, added))
+        after = compare(store, added).error.held_out.relative
         return Found(name, before, after)
 
 
