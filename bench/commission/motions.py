@@ -8,9 +8,8 @@ from bench.commission.questions import CommissionError
 from bench.config.configuration import BenchConfiguration
 from bench.errors import PromptError
 from bench.json_types import Values
-from bench.runs.bench_control import BenchControl, Request
+from bench.runs.bench_control import BenchControl, Request, to_its_end
 from bench.runs.connection import Connection
-from bench.runs.to_its_end import to_its_end
 from bench.store import Experiment, Store
 
 NOTE = "friction-bench commission"

@@ -11,9 +11,8 @@ from bench.calibration import calibrate
 from bench.errors import BenchError, BusyError, ExperimentError
 from bench.json_types import Values
 from bench.runs import event_log
-from bench.runs.bench_control import BenchControl, Request
+from bench.runs.bench_control import BenchControl, Request, to_its_end
 from bench.runs.sequential_calibration import SequentialCalibration, Stand, Wish
-from bench.runs.to_its_end import to_its_end
 from bench.store import Experiment, Store
 from compensator.errors import CompensatorError
 from drivers.errors import DriveError

@@ -11,8 +11,7 @@ from drivers.cubemars import protocol
 from drivers.cubemars.settings import CubemarsSettings
 from drivers.errors import DriveConnectionError, WatchdogError
 from drivers.joint import JointScale
-from drivers.mit.actuator import NO_CURRENT, MitActuator
-from drivers.mit.chosen_ranges import chosen_ranges
+from drivers.mit.actuator import NO_CURRENT, MitActuator, chosen_ranges
 from drivers.mit.frames import DISABLE, ENABLE, Frame, command
 
 _NO_WATCHDOG = (

@@ -7,7 +7,7 @@ from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, WatchdogError
 from drivers.feetech import memory
 from drivers.feetech.frames import with_sign
-from drivers.feetech.measured import reading_of
+from drivers.feetech.memory import reading_of
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
 from drivers.serial_latency import latency_note

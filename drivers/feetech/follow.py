@@ -4,7 +4,7 @@ from pathlib import Path
 
 from drivers.feetech import memory
 from drivers.feetech.frames import SCS
-from drivers.feetech.measured import reading_of
+from drivers.feetech.memory import reading_of
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
 from drivers.servos.opening import check_counts

@@ -5,9 +5,13 @@ LeRobot keeps. Neither knows the open-loop mode (2) and its place at Goal Time w
 the manual, from memory.
 """
 
+from math import nan
 from struct import Struct
 
+from drivers.actuator.reading import Reading
+from drivers.feetech.frames import signed
 from drivers.servos.frames import Item
+from drivers.wraps import Turns
 
 FIRMWARE = Item(0, 2, "firmware version")
 MODEL_NUMBER = Item(3, 2, "model number")
@@ -37,3 +41,21 @@ _ERRORS = {0: "voltage", 1: "position sensor", 2: "overheating", 3: "over-curren
 def servo_errors(word: int) -> str:
     """What the status says, by the names of the manual; "" for nothing."""
     return ", ".join(f"{_ERRORS.get(bit, f'bit {bit}')} error" for bit in range(8) if word & 1 << bit)
+
+
+def reading_of(data: bytes, asked_s: float, turns: Turns) -> Reading:
+    """The piece `PIECE` in SI.
+
+    Args:
+        data: of it.
+        asked_s: when it was asked for [s].
+        turns: follows the position beyond one turn.
+    """
+    is_on, position, speed, load, supply, temperature, status, current = LAYOUT.unpack(data)
+    counts_s = signed(speed, SPEED_SIGN)
+    return Reading(
+        asked_s, turns.follow(position, counts_s, asked_s), counts_s,
+        signed(load, LOAD_SIGN) / DUTY_FULL,
+        signed(current, CURRENT_SIGN) * CURRENT_A, nan,
+        supply * SUPPLY_V, temperature, bool(is_on), servo_errors(status),
+    )  # fmt: skip

@@ -10,8 +10,7 @@ from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, WatchdogError
 from drivers.joint import JointScale
-from drivers.mit.actuator import ATTEMPTS, MitActuator
-from drivers.mit.chosen_ranges import chosen_ranges
+from drivers.mit.actuator import ATTEMPTS, MitActuator, chosen_ranges
 from drivers.mit.frames import Frame
 from drivers.robstride import protocol
 from drivers.robstride.protocol import Kind, Parameter

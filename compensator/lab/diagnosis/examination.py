@@ -1,23 +1,24 @@
 """Examine candidates: refit with each, measure the gain on held-out rows, find its rivals."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from compensator.lab.diagnosis.beside_chain import gain_beside_chain
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
-from compensator.lab.effects.effect import EffectRows, MotionRows, Shape
-from compensator.lab.model.fit import fit_model
+from compensator.lab.effects.effect import Effect, EffectRows, MotionRows, Shape
+from compensator.lab.model.fit import fit_model, with_columns
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
+from compensator.lab.screening.nuisance import smoothed_signs
 
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
@@ -56,6 +57,7 @@ LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however
 LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
 LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
+MEASURING_CHAIN = "measuring chain"
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
@@ -113,6 +115,22 @@ def _beside_chain(candidate: Candidate, fit: Fit, explained: Fit, show_in: Motio
         return candidate
     gain = gain_beside_chain(candidate.effect, fit, explained, partial(_held_out, show_in=show_in))
     return replace(candidate, beside_chain=gain)
+
+
+def gain_beside_chain(effect: Effect, fit: Fit, explained: Fit, held_out: Callable[[Fit], HeldOut]) -> Gain | None:
+    """What an effect gains beside the columns that it stands in for; None where it stands in for none.
+
+    Args:
+        effect: that may be missing.
+        fit: the model, on rows near reversals, too.
+        explained: the model with the effect.
+        held_out: error of a model on the rows that are judged.
+    """
+    if not effect.standing_in:
+        return None
+    columns = smoothed_signs(fit.dataset, effect.standing_in)
+    before, after = (held_out(with_columns(model, MEASURING_CHAIN, columns)) for model in (fit, explained))
+    return held_out_gain(before, after)
 
 
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:

@@ -5,8 +5,7 @@ from typing import Any
 
 import can
 
-from sim_backend.devices.can.can_device import CanDevice
-from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.frame import CanDevice, Frame
 from sim_backend.devices.wall_time import WallTime
 
 _LOOK_UP_S = 0.05  # how soon the thread notices that it shall end

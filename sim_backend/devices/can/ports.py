@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Protocol
 
 from sim_backend.devices.can.bus_port import BusPort
-from sim_backend.devices.can.can_device import CanDevice
+from sim_backend.devices.can.frame import CanDevice
 from sim_backend.devices.can.stream_port import SlcanPort, SocketcandPort
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.process import Port, Workplace

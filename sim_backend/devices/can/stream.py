@@ -5,8 +5,7 @@ import itertools
 import threading
 from collections.abc import Callable
 
-from sim_backend.devices.can.adapter import Adapter
-from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.frame import Adapter, Frame
 from sim_backend.devices.link.faults import Direction
 from sim_backend.devices.link.line import Line, pause_until
 from sim_backend.devices.wall_time import WallTime

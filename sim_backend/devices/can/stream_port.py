@@ -5,8 +5,7 @@ import socket
 from abc import abstractmethod
 from pathlib import Path
 
-from sim_backend.devices.can.can_device import CanDevice
-from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.frame import CanDevice, Frame
 from sim_backend.devices.can.slcan import SlcanAdapter
 from sim_backend.devices.can.socketcand import SocketcandSession
 from sim_backend.devices.can.stream import Stream

@@ -5,7 +5,7 @@ import pytest
 from drivers.cubemars import protocol as cubemars
 from drivers.damiao import protocol as damiao
 from drivers.errors import DriveConfigurationError
-from drivers.mit.chosen_ranges import chosen_ranges
+from drivers.mit.actuator import chosen_ranges
 from drivers.mit.frames import command
 from drivers.robstride import protocol as robstride
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination
-from compensator.lab.diagnosis.beside_chain import gain_beside_chain
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import LEAST_GAIN, is_confirmed
+from compensator.lab.diagnosis.examination import LEAST_GAIN, gain_beside_chain, is_confirmed
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.fitted import Fit

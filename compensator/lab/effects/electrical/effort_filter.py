@@ -6,8 +6,8 @@ from scipy.signal import lfilter
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
-# 1 is all of it; beside a model that was fitted to smoothed effort the first step is several times too long, and a small
-# share of a long time constant is what any chain leaves of a delay to second order
+# 1 is all of it; beside a model that was fitted to smoothed effort the first step is several times too long, and a
+# small share of a long time constant is what any chain leaves of a delay to second order
 LEAST_SHARE, MOST_SHARE = 0.5, 10.0
 SHORTEST_S, LONGEST_S = 0.03, 0.5  # a shorter one is a delay and no more; a longer one would show no motion
 
