@@ -15,6 +15,10 @@ class UnusableDataError(LabError, ValueError):
     """
 
 
+class NeverSlidesError(UnusableDataError):
+    """Raised when the joint is pushed in every trial and never slides; the message says what that tells."""
+
+
 class UnknownEffectError(LabError, KeyError):
     """Raised when an effect is not in the catalogue; the message lists near names."""
 

@@ -1,6 +1,7 @@
 """`friction-bench import --guess` and `explain` on files that nobody described."""
 
 import json
+from math import sin
 
 import pytest
 
@@ -52,3 +53,15 @@ def test_a_file_that_must_be_asked_about_is_not_explained(command, tmp_path):
     assert result.exit_code == 3
     assert "--counts-per-turn" in result.stderr
     assert json.loads(command("experiments", "--json").stdout) == []
+
+
+def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):
+    time_s = [0.01 * index for index in range(1200)]
+    rows = [f"{t:.2f},{0.3 + 0.002 * sin(t):.7f},{0.3 * sin(t):.6f}" for t in time_s]
+    (tmp_path / "push.csv").write_text("\n".join(["time_s,position_rad,torque_n_m", *rows]))
+    result = command("explain", "push.csv")
+    assert result.exit_code == 0, result.output
+    assert "springs back, with 150 N m/rad" in result.stdout
+    assert "breakaway lies beyond that" in result.stdout
+    assert "Effort over position" in (tmp_path / "explain-push.html").read_text()
+    assert json.loads(command("study", "list", "--json").stdout) == []

@@ -148,7 +148,8 @@ REFUSED = {
     "no effort in one trial": Bad(first(without("torque_n_m")), "'load-0g-0-1' has no effort channel"),
     "no position": Bad(every(without("position_rad")), "channel position_rad is missing"),
     "no motion": Bad(
-        every(put("position_rad", lambda x: 0.0 * x + 0.3)), "does not move in any trial; record trials with"
+        every(put("position_rad", lambda x: 0.0 * x + 0.3)),
+        "does not move in any trial, under .* breakaway lies beyond that on either side; record trials with",
     ),
     "a jitter for motion": Bad(
         every(put("position_rad", lambda x: 1e-4 * np.round(np.random.default_rng(0).random(len(x))))),

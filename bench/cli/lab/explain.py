@@ -41,6 +41,7 @@ def explain(
     from bench.recording_set.guess import read_unknown
     from bench.study.explanation.explain import STEPS
     from bench.study.explanation.explain import explain as explain_experiment
+    from bench.study.explanation.never_slid import NeverSlidError
     from bench.study.report.model_sections import change_of
 
     chosen_rig = None if rig is None else read_rig(rig)
@@ -60,7 +61,13 @@ def explain(
             bar.update(task, description=step, completed=number + 1)
 
         came_in = None if guess is None else _came_in(guess, recordings.notes)
-        found = explain_experiment(store, experiment_id, called, tell, hold_out or [], came_in)
+        try:
+            found = explain_experiment(store, experiment_id, called, tell, hold_out or [], came_in)
+        except NeverSlidError as told:
+            bar.stop()
+            write_whole(report, [told.html.encode()])
+            _say_what_holds(str(told), report, experiment_id, as_json)
+            return
         bar.update(task, description="done", completed=len(STEPS) + 1)
     write_whole(report, [found.html.encode()])
     if as_json:
@@ -83,6 +90,15 @@ def explain(
     for sentence in found.sentences:
         say(sentence)
     say(f"written: {report}; kept as study {found.study_id}")
+
+
+def _say_what_holds(sentence: str, report: Path, experiment_id: int, as_json: bool) -> None:
+    """Of a joint that never slid."""
+    if as_json:
+        print_json({"report": str(report), "study_id": None, "sentences": [sentence]})
+        return
+    say(f"{sentence[:1].upper()}{sentence[1:]}.")
+    say(f"written: {report}; the trials are kept as experiment {experiment_id}")
 
 
 def _interval(rung: "Rung") -> str:

@@ -9,7 +9,9 @@ from bench.study.changes import add_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
 from bench.study.diagnose import diagnose
+from bench.study.errors import StudyError
 from bench.study.explanation.coverage import coverage
+from bench.study.explanation.never_slid import NeverSlidError, never_slid_page
 from bench.study.ladder import ladder
 from bench.study.material import model_of
 from bench.study.models.change import SearchStep
@@ -23,8 +25,10 @@ from bench.study.report.head_section import head_section, summary
 from bench.study.report.model_sections import ladder_section, measured_section, model_section, residual_section
 from bench.study.search import search
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.errors import NeverSlidesError
 
 MOST_CURVES = 2  # without physics: more would be a table of the recordings, and no explanation
+LEAST_GAIN = 0.02  # of the held-out error: for less nobody would read six more numbers
 STEPS = ("base model", "what the data can tell", "comparison", "diagnosis", "search", "report")
 Tell = Callable[[str, int], None]
 
@@ -77,9 +81,16 @@ def explain(
 
     Raises:
         StudyError: the trials cannot be used.
+        NeverSlidError: the joint was pushed and never slid; it brings a report of what that tells.
     """
     tell(STEPS[0], 0)
-    study_id = create_study(store, name, [experiment_id], hold_out).study_id
+    try:
+        study_id = create_study(store, name, [experiment_id], hold_out).study_id
+    except StudyError as error:
+        if not isinstance(error.__cause__, NeverSlidesError):
+            raise
+        html = never_slid_page(store, experiment_id, name, str(error), came_in)
+        raise NeverSlidError(str(error), html) from error
     first = describe(store, study_id).model_id
     tell(STEPS[1], 1)
     told = coverage(store, study_id, first)
@@ -127,7 +138,7 @@ def _searched(store: Store, study_id: int, first: int) -> tuple[int, Diagnosis, 
     last = diagnose(store, study_id, found.model_id)
     for _ in range(MOST_CURVES):
         curve = last.provisional
-        if curve is None or curve.gain_low <= 0.0:
+        if curve is None or curve.gain_low <= 0.0 or curve.gain < LEAST_GAIN:
             break
         filled = add_effect(store, study_id, curve.effect, last.model_id)
         found = search(store, study_id, filled.model_id)

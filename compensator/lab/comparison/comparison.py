@@ -54,7 +54,7 @@ class Comparison:
     Attributes:
         training: error over the rows it was fitted to.
         held_out: on rows it was not fitted to.
-        floor: error that no model can beat: scatter between repeated trials; None without repeats.
+        floor: scatter between repeated trials, which the motion cannot explain; None without repeats.
         trials: error of each trial, in the dataset's order, over its counted rows.
         regimes: error of each regime over all rows. Of "stuck", what lies beyond the efforts between which friction
             holds, over stretches of 0.1 s; last, of breaking away, over the starts that were fitted.

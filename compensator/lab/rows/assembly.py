@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from compensator.lab.at_rest.pushed import pushed
 from compensator.lab.effects.effect import SESSION_START, Motion
-from compensator.lab.errors import UnusableDataError
+from compensator.lab.errors import NeverSlidesError, UnusableDataError
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.channel_checks import check_channels
 from compensator.lab.recordings.effort import Effort, choose_effort
@@ -49,9 +50,11 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     speed = np.abs(np.concatenate([s.velocity for s in signals]))[usable]
     position = np.concatenate([s.position for s in signals])[usable]
     fast, span = float(np.quantile(speed, 0.95)), float(np.ptp(position))
+    _check_effort(np.concatenate([s.effort for s in signals])[usable], effort)
+    if (found_stuck := pushed(recordings, effort, facts)) is not None:
+        raise NeverSlidesError(found_stuck.in_words())
     if not span > CONSTANT * float(np.abs(position).max()):
         raise UnusableDataError(f"the joint does not move in any trial; {WANTED_MOTION}")
-    _check_effort(np.concatenate([s.effort for s in signals])[usable], effort)
     noise = _velocity_noise(signals, facts, cutoff)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))

@@ -64,7 +64,7 @@ def jitter_of_the_encoder(old: np.ndarray) -> np.ndarray:
     ("made", "words"),
     [
         ([], "no recordings: choose at least one trial"),
-        (changed(put("position_rad", 0.3)), "the joint does not move in any trial; record trials with motion"),
+        (changed(put("position_rad", 0.3)), "the joint does not move in any trial, under .*; record trials with"),
         (changed(put("position_rad", jitter_of_the_encoder)), "0 rows where the joint moves faster than 0.000"),
         (steps_only(), "0 rows where the joint moves faster than"),
         (changed(put("torque_n_m", 0.3)), "torque_n_m is 0.3 N m all the time; check the channel's mapping"),
