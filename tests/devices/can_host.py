@@ -37,9 +37,9 @@ class CanHost:
 
     def sdo(self, request: str) -> str:
         """Return the answer to an SDO request, both in hex."""
-        ((can_id, data, _),) = self.send(0x600 + NODE, request)
-        assert can_id == 0x580 + NODE
-        return data.hex(" ")
+        (answer,) = self.send(0x600 + NODE, request)
+        assert answer.can_id == 0x580 + NODE
+        return answer.data.hex(" ")
 
     def write(self, index: int, subindex: int, value: int, length: int) -> int:
         """Write by expedited SDO; return the abort code, 0 for none."""

@@ -93,7 +93,7 @@ class RecordedDay(BaseModel):
     not_completed: int = Field(description="trials that ended otherwise, or still run")
 
 
-class Days(BaseModel):
+class Days(Page):
     """The newest days on which something was begun, newest first."""
 
     items: list[RecordedDay]
@@ -105,9 +105,10 @@ OffsetMin = Annotated[
 
 
 @router.get("/days", summary="On which days something was recorded", responses=problems(422))
-def recorded_days(store: StoreOf, offset_min: OffsetMin = 0, limit: Annotated[int, Query(ge=1, le=1000)] = 60) -> Days:
+def recorded_days(store: StoreOf, offset_min: OffsetMin = 0, limit: Limit = 60, offset: Offset = 0) -> Days:
     """For a strip of sessions; `day` of /trials/search gives the trials of one."""
-    return Days(items=[RecordedDay(**asdict(one)) for one in store.days(offset_min, limit)])
+    items, page = cut(store.days(offset_min, offset + limit + 1)[offset:], limit, offset)
+    return Days(items=[RecordedDay(**asdict(one)) for one in items], **page)
 
 
 @router.get("/search", summary="Trials by words, sorted, page by page", responses=problems(422))

@@ -40,7 +40,7 @@ EFFECT = Effect(
         "The drive smooths the current that it reports, or a logger the channel, and the position is not smoothed as "
         "much: what passes quickly comes out small and late. A delay alone makes it late, but not small."
     ),
-    equation=r"s\,\left(\frac{\hat\tau}{1 + T p} - \hat\tau\right)",
+    equation=r"-s\,\frac{T\,d/dt}{1 + T\,d/dt}\,\hat\tau",
     columns=columns,
     parameters=(Parameter("share of the effort that is filtered", "", LEAST_SHARE, MOST_SHARE),),
     driver="effort_rate",
