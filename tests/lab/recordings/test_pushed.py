@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from compensator.lab.at_rest.pushed import Pushed, pushed
 from compensator.lab.errors import NeverSlidesError
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.pushed import Pushed, pushed
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
