@@ -111,8 +111,8 @@ def test_the_one_goes_on_when_the_other_is_closed_and_opened_again(pair) -> None
     drives[0].close()
     assert cycles(drives[1:], (OFF,), 5)[-1][0].age_s < PERIOD_S
     drives[0].open(PERIOD_S)
-    first, second = cycles(drives, (OFF, OFF), 5)[-1]
-    assert first.time_s == second.time_s
+    seen = cycles(drives, (OFF, OFF), 50)  # a busy machine may take a quarter of a second for the first answers
+    assert all(first.time_s == second.time_s for first, second in seen[-5:])
 
 
 def test_a_host_that_is_no_joint_of_the_bench_is_named_all_the_same(pair) -> None:
