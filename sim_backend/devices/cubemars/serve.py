@@ -1,4 +1,4 @@
-"""Starts a Cubemars actuator on a CAN bus."""
+"""Starts a CubeMars actuator on a CAN bus."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

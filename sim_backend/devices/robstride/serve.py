@@ -1,4 +1,4 @@
-"""Starts a Robstride actuator on a CAN bus."""
+"""Starts a RobStride actuator on a CAN bus."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

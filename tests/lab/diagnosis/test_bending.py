@@ -19,6 +19,7 @@ from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.candidates import Candidates, gather
 from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Evidence, screen_against_noise
+from tests.lab.diagnosis.test_slow_turns import fitted as turns_one_way
 from tests.lab.synthetic import FACTS, Joint, Law, recordings
 
 DEFAULT = default_effects(FACTS)
@@ -141,3 +142,15 @@ def test_what_cannot_be_it_is_no_better_prediction():
     free = free_hysteresis(fit)
     assert not free.predicts_best(fit, candidates)
     assert free.predicts_best(fit, [replace(one, physical=False) for one in candidates])
+
+
+def test_nothing_bends_to_and_fro_along_with_a_shaft_that_turns_on(monkeypatch):
+    """It is not even asked: what is left where a motor speeds up would look like it."""
+    fit = turns_one_way(2, lead=0.06)
+    gathered = with_noise(gather(fit))
+
+    def never(*_arguments):
+        raise AssertionError("a hysteresis was looked for")
+
+    monkeypatch.setattr(own, "screen_against_noise", never)
+    assert bending(fit, gathered) is None
