@@ -17,7 +17,7 @@ from bench.study.models.comparison import (
     ResidualAgainst,
     TrialError,
 )
-from bench.study.series import series_of
+from bench.study.plots.series import series_of
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
 from compensator.lab.at_rest.rest_comparison import Side, at_rest_in_words
 from compensator.lab.chance import stated

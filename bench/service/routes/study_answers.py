@@ -10,8 +10,6 @@ from bench.service.http import conditional
 from bench.service.http.downloads import attachment
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
-from bench.study import error_map as study
-from bench.study import moments as at
 from bench.study.closed_loop import simulate
 from bench.study.compare import compare
 from bench.study.create import describe
@@ -22,8 +20,10 @@ from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
 from bench.study.models.study import Study
+from bench.study.plots import error_map as study
+from bench.study.plots import moments as at
+from bench.study.plots.series import DriversOverTime, drivers_over_time
 from bench.study.report.report import report_html
-from bench.study.series import DriversOverTime, drivers_over_time
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from pydantic import Field
 
@@ -12,7 +11,7 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load_model
 from bench.study.models.base import EffortName, StudyModel
 from bench.study.models.comparison import Series
-from bench.study.series import series_of
+from bench.study.plots.series import series_of
 from compensator.lab.comparison import moments as lab
 from compensator.lab.effects.catalogue import effect_named
 
@@ -73,7 +72,7 @@ def moments(store: Store, study_id: int, where: Sequence[str], model_id: int | N
     material, model = load_model(store, study_id, model_id)
     with lab_errors():
         found = lab.moments(material.fit_of(model), criteria)
-    items = [Moment(**_moment(material, one)) for one in found]
+    items = [_moment(material, one) for one in found]
     return Moments(study_id=study_id, model_id=model.id, effort=material.effort, items=items)
 
 
@@ -97,7 +96,7 @@ def action(store: Store, study_id: int, effect: str, model_id: int | None = None
     before = material.fit_of(model, beside=[effect])
     after = material.fit([*model.effects, effect], before.shapes, beside=model.effects)
     items = [
-        GainedMoment(**_moment(material, one.moment), rms_with=one.rms_after, share=one.share)
+        GainedMoment(**dict(_moment(material, one.moment)), rms_with=one.rms_after, share=one.share)
         for one in lab.gained(before, after)
     ]
     return Action(
@@ -111,12 +110,16 @@ def action(store: Store, study_id: int, effect: str, model_id: int | None = None
     )
 
 
-def _moment(material: Material, one: lab.Moment) -> dict[str, Any]:
-    trial = material.trials[one.trial]
-    return {
-        "trial_id": trial.id, "name": trial.name, "from_s": one.from_s, "to_s": one.to_s,
-        "rows": one.rows, "rms": one.rms, "mean": one.mean,
-    }  # fmt: skip
+def _moment(material: Material, one: lab.Moment) -> Moment:
+    return Moment(
+        trial_id=material.trials[one.trial].id,
+        name=material.trials[one.trial].name,
+        from_s=one.from_s,
+        to_s=one.to_s,
+        rows=one.rows,
+        rms=one.rms,
+        mean=one.mean,
+    )
 
 
 def _parse(text: str) -> tuple[str, tuple[float, float]]:
