@@ -1,5 +1,6 @@
 """Plots of a study that are read together: one cursor, and the moments behind a cell or a candidate."""
 
+import json
 import re
 
 import pytest
@@ -74,3 +75,39 @@ def test_a_candidate_shows_where_it_acts_and_what_it_would_take_away(page):
 def test_stretches_of_time_are_found_where_something_is_true(page):
     call = f"{imported('studies/linked')}.then((m) => m.stretches([0, 1, 2, 3, 4], [true, true, false, false, true]))"
     assert page.evaluate(call) == [{"from": 0, "to": 1}, {"from": 4, "to": 4}]
+
+
+def test_a_diagnosis_says_what_it_does_and_how_much_is_left_and_is_cancelled(page):
+    told = {"job": "b", "what": "diagnose", "state": "computing", "stage": "Judging the measuring chain", "share": 0.6,
+            "stages_done": 4, "stages": 8, "passed_s": 3.0, "left_s": 2.0}  # fmt: skip
+    body = f"event: progress\ndata: {json.dumps(told)}\n\n"
+    page.route("**/live/jobs/*/stream", lambda route: route.fulfill(content_type="text/event-stream", body=body))
+    page.route("**/diagnose?*", lambda route: None)
+    page.get_by_role("link", name="3 Diagnose").click()
+    page.get_by_role("button", name="Diagnose").click()
+    page.get_by_text(re.compile(r"Judging the measuring chain, 5 of 8\. \d+ s, about 2 s left")).wait_for()
+    assert page.get_by_role("progressbar").evaluate("(bar) => bar.value") == pytest.approx(0.6)
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_text("Cancelled: nothing of it is kept.").wait_for()
+
+
+def test_the_progress_of_a_diagnosis_comes_from_the_lab(page):
+    page.evaluate(
+        """() => {
+          window.told = new Set();
+          new MutationObserver(() => {
+            const words = document.querySelector(".diagnosed .waiting span")?.textContent ?? "";
+            if (/, \\d of 8\\./.test(words)) window.told.add(words.split(",")[0]);
+          }).observe(document.body, { subtree: true, childList: true, characterData: true });
+        }"""
+    )
+    page.get_by_role("link", name="3 Diagnose").click()
+    page.get_by_role("button", name="Diagnose").click()
+    page.locator(".diagnosed .sentence").wait_for()
+    # the diagnosis of this study may be known already, and then tells nothing: another model of it is not
+    page.locator("article", has_text="candidate").first.get_by_role("button", name="Add").click()
+    page.get_by_role("button", name="Undo this change").wait_for()
+    page.get_by_role("link", name="3 Diagnose").click()
+    page.locator("#diagnose-now").click()
+    page.locator(".diagnosed .sentence").wait_for()
+    assert page.evaluate("[...window.told]")

@@ -123,6 +123,8 @@ def studies(asking: Asking, service: RunningService) -> None:
     made = ask("POST /studies", new)
     number, trial_id = made["study_id"], made["trials"][0]["trial_id"]
     ask("GET /studies")
+    service.client.get(f"/studies/{number}/diagnose", headers={"X-Job": "b7"})
+    ask("GET /live/jobs/{job}", job="b7")
     for route in ("", "/compare", "/closed-loop", "/diagnose", "/error-map"):
         ask(f"GET /studies/{{number}}{route}", number=number)
     ask("GET /studies/{number}/moments", query={"where": "velocity=0.5..1"}, number=number)

@@ -7,7 +7,9 @@ and shapes), does it help (held-out error, resampled by whole trials).
 
 from math import nan
 
+from compensator.lab import progress
 from compensator.lab.at_rest.rest_comparison import compare_at_rest
+from compensator.lab.diagnosis import stages
 from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
@@ -41,6 +43,11 @@ def diagnose(fit: Fit) -> Diagnosis:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
+    with progress.stages(stages.ALL):
+        return _diagnosed(fit)
+
+
+def _diagnosed(fit: Fit) -> Diagnosis:
     if problems := fatal_problems(fit):
         return _data_problem(fit, problems[0])
     alien = alien_effort(fit)
@@ -50,6 +57,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         if alien is None:
             raise
         return _data_problem(fit, alien.text)
+    progress.enter(stages.LEFT)
     first = families.first()
     nothing = first.verdict == "nothing"
     too_short = nothing and least_p_value(families.stretches) > SIGNIFICANT

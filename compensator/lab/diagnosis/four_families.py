@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.diagnosis import stages
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
@@ -69,6 +71,7 @@ def judged(fit: Fit) -> FourFamilies:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
+    progress.enter(stages.COLUMNS)
     gathered = with_noise(gather(fit))
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
     pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
@@ -77,12 +80,17 @@ def judged(fit: Fit) -> FourFamilies:
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
     assert gathered.noise is not None
+    progress.enter(stages.SCREENING)
     stretch = fit.dataset.block_index[gathered.rows]
     generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
     sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
+    progress.enter(stages.STEADY)
     steady = answer_of(fit, gathered, sliding, generic)
+    progress.enter(stages.CHAIN)
     chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
+    progress.enter(stages.MEMORY)
     memory, wide, not_judged = _memory_of(fit)
+    progress.enter(stages.REST)
     rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
     left_out = {**gathered.left_out, **not_judged, **not_at_rest}
     return FourFamilies(steady, memory, rest, chain, gathered, wide, left_out)

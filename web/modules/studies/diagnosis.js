@@ -62,7 +62,7 @@ function provisional(parent, one, ways) {
 function article(parent, one, { badges, words, name, action, primary }, { add, look: lookAt, linked, effort }) {
   const [plot, answer] = [h("div"), h("div")];
   const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
-  const adding = h("button", { type: "button", class: primary ? "primary" : "", onclick: () => add(one.effect, answer) }, action);
+  const adding = h("button", { type: "button", class: primary ? "add primary" : "add", onclick: () => add(one.effect, answer) }, action);
   const looking = h("button", { type: "button", "aria-label": `Show where ${one.title} acts`, onclick: () => lookAt(one, answer, looking) }, "Show where it acts");
   parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ", badges),
     h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar(name, one.held_out_after, highest, "blue")),

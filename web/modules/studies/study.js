@@ -93,7 +93,7 @@ class Study {
     const button = h("button", { class: "primary", type: "button", id: "diagnose-now" }, "Diagnose");
     replace(diagnosed);
     button.addEventListener("click", async () => {
-      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal }), { button });
+      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal, job) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal, job }), { button, followed: true });
       await this.comparing; // its plots show where effects act
       if (found) diagnosis(diagnosed, found, { add: (effect, place) => this.add(effect, place), path: this.path, linked: this.linked, effort: this.study.effort });
     });
