@@ -1,8 +1,8 @@
 """How far a computation has come: told to whoever follows it, and to nobody else."""
 
 from compensator.lab import progress
-from compensator.lab.diagnosis import stages
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.four_families import STAGES
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
@@ -17,8 +17,8 @@ def test_a_diagnosis_tells_each_of_its_stages_in_order_and_that_it_has_ended():
     told: list[progress.Stage] = []
     with progress.followed(told.append):
         diagnose(fit)
-    assert list(dict.fromkeys(one.name for one in told)) == [*stages.ALL, ""]
-    assert told[-1].done == told[-1].of == len(stages.ALL)
+    assert list(dict.fromkeys(one.name for one in told)) == [*STAGES, ""]
+    assert told[-1].done == told[-1].of == len(STAGES)
     places = [one.done + one.part for one in told]
     assert places == sorted(places)
     assert any(0.0 < one.part < 1.0 for one in told), "the longest stage tells how much of it is done"

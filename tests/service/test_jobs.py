@@ -9,7 +9,7 @@ from bench.service.lab import Asker, LabProcesses
 from bench.service.live.jobs import Jobs
 from bench.store import Store
 from compensator.lab import progress
-from compensator.lab.diagnosis import stages
+from compensator.lab.diagnosis.four_families import STAGES
 from compensator.lab.progress import Stage
 from tests.service.recorded_joint import study_path
 
@@ -32,12 +32,12 @@ def test_a_diagnosis_is_followed_through_its_stages(service, path):
     listener.join(60)
     assert not listener.is_alive()
     assert told[-1]["state"] == "ended"
-    assert {one["stage"] for one in told} & set(stages.ALL)
+    assert {one["stage"] for one in told} & set(STAGES)
     shares = [one["share"] for one in told]
     assert shares[-1] == 1.0
     record = service.stranger.get("/live/jobs/b7").json()
     assert record["what"] == "diagnose"
-    assert record["stages_done"] == record["stages"] == len(stages.ALL)
+    assert record["stages_done"] == record["stages"] == len(STAGES)
 
 
 def test_a_job_that_is_none_is_said(service):
