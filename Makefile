@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: help demo paper serve test test-timed test-others check format docs report screenshots pictures benchmark kills schema test-vm dist \
+.PHONY: help demo paper serve test test-timed test-others check format docs report screenshots pictures benchmark kills fuzz test-vm dist \
         dist-test audit sbom hashes clean
 
 help:            ## this list
@@ -83,8 +83,8 @@ benchmark: $(STAMP) ## rates of plant, store, service, drivers, lab and command 
 kills: $(STAMP)  ## 200 runs ended at random moments in every way: what is left of each
 	$(BIN)/python -m tests.stopping.kills --kills 200
 
-schema: $(STAMP) ## every route asked with many requests that fit its description, and many that do not
-	SCHEMA_EXAMPLES=100 $(BIN)/pytest tests/service/test_schema.py --timeout=3600
+fuzz: $(STAMP)   ## what is drawn at random, for long: requests, files and bytes on every wire; says how many
+	FUZZ_TIMES=50 $(BIN)/pytest --numprocesses auto --timeout=7200 tests/fuzz
 
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)
