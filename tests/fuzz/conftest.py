@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from tests.fuzz.asking import ANSWERS
+from tests.fuzz.asking import ANSWERS, LONGEST_S
 from tests.service.running_service import RunningService, running_service
 
 COUNTED: Counter[str] = Counter()
@@ -14,7 +14,8 @@ COUNTED: Counter[str] = Counter()
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
     """A service with something to read: with it, small numbers in paths name what is there."""
     with running_service(tmp_path_factory.mktemp("fuzz")) as service:
-        service.run("steps", repeats=1)
+        service.start("steps", repeats=1)
+        assert service.runner.wait(LONGEST_S)
         yield service
 
 

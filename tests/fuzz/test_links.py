@@ -6,7 +6,7 @@ from typing import Any
 import hypothesis
 from hypothesis.errors import FlakyStrategyDefinition
 
-from tests.fuzz.asking import CHECKS, HEADERS, count, described, stand_still
+from tests.fuzz.asking import CHECKS, HEADERS, LONGEST_S, count, described, stand_still
 from tests.fuzz.effort import TIMES, effort
 
 WAYS, STEPS = 4, 12
@@ -21,7 +21,7 @@ def test_what_one_request_has_made_is_asked_for_by_the_next(recorded):
         """One request after the other."""
 
         def get_call_kwargs(self, case: Any) -> dict[str, Any]:
-            return {"headers": HEADERS, "timeout": 90}
+            return {"headers": HEADERS, "timeout": LONGEST_S}
 
         def validate_response(self, response: Any, case: Any, additional_checks: Any = None, **_words: Any) -> None:
             count(response)

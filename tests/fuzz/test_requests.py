@@ -11,13 +11,12 @@ import requests
 from hypothesis import given
 from schemathesis import GenerationMode
 
-from tests.fuzz.asking import ANSWERS, HEADERS, described, stand_still
+from tests.fuzz.asking import ANSWERS, HEADERS, LONGEST_S, described, stand_still
 from tests.fuzz.edits import spoilt_by
 from tests.fuzz.effort import TIMES, effort
 from tests.service.running_service import RunningService
 
 REQUESTS, OF_EACH = 1600, 4
-LONGEST_S = 90.0
 PARTS = 8  # of the run: each by itself, so that several processes share it
 
 
