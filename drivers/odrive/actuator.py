@@ -135,8 +135,6 @@ class OdriveActuator:
 
     def tell(self, mode: Mode, value: float) -> dict[int, int]:
         """Send a demand and the questions of a cycle. Returns how often each answer had come before."""
-        if mode is Mode.TORQUE:
-            self._send(Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(value))
         self._cycle += 1
         slow = _SLOW[self._cycle // self._settings.slow_every % len(_SLOW)]
         commands = (*_QUICK, slow) if self._cycle % self._settings.slow_every == 0 else _QUICK
@@ -145,6 +143,9 @@ class OdriveActuator:
             question = self._questions[command]
             before[question.arbitration_id] = self.bus.number(question.arbitration_id)
             self.bus.send_prepared(question)
+        # last: asked after it, the current would be now that of this cycle, now that of the one whose motion is told
+        if mode is Mode.TORQUE:
+            self._send(Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(value))
         self._has_asked_slow = slow in commands
         return before
 
