@@ -1,7 +1,7 @@
 """The RobStride actuator as a kind of drive."""
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
@@ -10,6 +10,9 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+
+if TYPE_CHECKING:
+    from sim_backend.devices.mit.serve import Make
 
 _IDS = range(1, 128)
 _ANSWER_S = 0.3
@@ -42,9 +45,16 @@ def make(settings: RobstrideDriveSettings, rig: Rig) -> Drive:
 
 def simulate() -> Simulate:
     """The command that simulates one."""
-    from bench.drives.robstride.device import simulate
+    from bench.drives.mit_device import simulates
 
-    return simulate
+    summary = "A RobStride actuator (its own protocol) on a CAN bus; its ranges fit the joint of the paper."
+    return simulates("robstride", "RobStride, its own protocol", summary, 127, _maker, {})
+
+
+def _maker() -> "Make":
+    from sim_backend.devices.robstride.motor import RobstrideMotor
+
+    return RobstrideMotor
 
 
 def scan(place: CanPlace) -> Iterator[FoundDrive]:
