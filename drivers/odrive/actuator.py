@@ -5,6 +5,7 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
+from drivers.actuator.alone import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, prepare
 from drivers.contract import Mode
@@ -59,6 +60,12 @@ class OdriveActuator:
                 "drive.watchdog_is_set_in_drive = true; `doctor --move` tries it",
             )
         self.identity = self._identify()
+        version = can_id(settings.node_id, Command.GET_VERSION)  # it says that only where it is asked
+        check_alone(
+            settings.device,
+            f"node_id ({settings.node_id})",
+            lambda: port.answers(lambda: port.send(version, remote=True), version, settings.answer_timeout_s),
+        )
         self.switch_off()
         self._forgive_lost_host()
         for command in _SLOW:

@@ -1,5 +1,6 @@
 """The CubeMars actuator as a kind of drive. It cannot be looked for: each frame that it answers is a command."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -8,6 +9,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 if TYPE_CHECKING:
     from sim_backend.devices.mit.serve import Make
@@ -46,6 +48,14 @@ def make(settings: CubemarsDriveSettings, rig: Rig) -> Drive:
     return CubemarsDrive(CubemarsSettings(**can_values(settings)), joint_scale(settings, rig))
 
 
+def follow(settings: CubemarsDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives: to every answer, on the same bus."""
+    from drivers.cubemars.follow import follow
+    from drivers.cubemars.settings import CubemarsSettings
+
+    return follow(CubemarsSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
 def simulate() -> Simulate:
     """The command that simulates one."""
     from bench.drives.mit_device import simulates
@@ -67,6 +77,7 @@ KIND = DriveKind(
     settings=CubemarsDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     conformance=(
         ConformanceBench(
             "cubemars",

@@ -1,6 +1,7 @@
 """The RobStride actuator as a kind of drive."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -10,6 +11,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 if TYPE_CHECKING:
     from sim_backend.devices.mit.serve import Make
@@ -41,6 +43,14 @@ def make(settings: RobstrideDriveSettings, rig: Rig) -> Drive:
     from drivers.robstride.settings import RobstrideSettings
 
     return RobstrideDrive(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
+def follow(settings: RobstrideDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives: to every answer, on the same bus."""
+    from drivers.robstride.follow import follow
+    from drivers.robstride.settings import RobstrideSettings
+
+    return follow(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
 
 
 def simulate() -> Simulate:
@@ -85,6 +95,7 @@ KIND = DriveKind(
     settings=RobstrideDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     scan_can=scan,
     conformance=(
         ConformanceBench(

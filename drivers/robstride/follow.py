@@ -1,0 +1,41 @@
+"""A RobStride actuator that another host drives, whatever that host's id."""
+
+from math import pi
+
+from drivers.actuator.reading import Reading
+from drivers.can_bus.follower import BusFollower
+from drivers.can_bus.port import CanPort, Heard
+from drivers.joint import JointScale
+from drivers.mit.actuator import chosen_ranges, reading_of
+from drivers.robstride import protocol
+from drivers.robstride.protocol import Kind
+from drivers.robstride.settings import RobstrideSettings
+
+_HOST_BITS = 0xFF
+
+
+def follow(settings: RobstrideSettings, joint: JointScale) -> BusFollower:
+    """Listen to it.
+
+    Raises:
+        DriveError: its ranges are not known, or the bus does not open.
+    """
+    written = settings.position_range_rad, settings.speed_range_rad_s, settings.torque_range_n_m
+    ranges = chosen_ranges(settings.device, settings.model, protocol.MODELS, written)
+    counts_rad = joint.counts_per_turn / (2.0 * pi)
+
+    def taken(_port: CanPort, heard: Heard) -> Reading | None:
+        if len(heard.data) != 8:
+            return None
+        found = protocol.feedback(heard.can_id, heard.data, ranges)
+        is_on = found.mode == protocol.RUNS and not found.fault
+        return reading_of(heard.at_s, found.motion, counts_rad, found.temperature_c, is_on, found.fault)
+
+    return BusFollower(
+        settings.bus,
+        protocol.answer_id(Kind.FEEDBACK, settings.motor_id),
+        (f"RobStride {settings.model or 'RS series actuator'}", settings.device),
+        taken,
+        joint,
+        protocol.STATE_BITS | _HOST_BITS,
+    )
