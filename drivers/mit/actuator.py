@@ -6,7 +6,7 @@ from math import nan, pi
 from time import perf_counter
 from typing import Protocol
 
-from drivers.actuator.alone import check_alone
+from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode

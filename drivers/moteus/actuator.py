@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from math import copysign, nan
 from time import perf_counter
 
-from drivers.actuator.alone import check_alone
+from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError

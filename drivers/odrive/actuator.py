@@ -5,7 +5,7 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
-from drivers.actuator.alone import check_alone
+from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, prepare
 from drivers.contract import Mode
@@ -19,7 +19,7 @@ from drivers.odrive.settings import OdriveSettings
 _QUICK = (Command.GET_ENCODER_ESTIMATES, Command.GET_IQ, Command.GET_ERROR)
 _SLOW = (Command.GET_BUS, Command.GET_TEMPERATURE)
 _ATTEMPTS = 2
-_STATE_S = 0.5  # a heartbeat comes every 0.1 s
+STATE_S = 1.0  # longest wait for a change of state, and for the heartbeat that shows it
 SIMULATED = 255  # "unreleased" of our own simulated device
 
 
@@ -90,7 +90,7 @@ class OdriveActuator:
         self._send(Command.SET_CONTROLLER_MODE, protocol.MODES.pack(protocol.TORQUE_CONTROL, protocol.PASSTHROUGH))
         self._send(Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(0.0))
         self._send(Command.SET_AXIS_STATE, protocol.WORD.pack(protocol.CLOSED_LOOP))
-        end_s = perf_counter() + _STATE_S
+        end_s = perf_counter() + STATE_S
         while self._state() != protocol.CLOSED_LOOP:
             reading = self.exchange(Mode.TORQUE, 0.0)  # keeps its watchdog fed
             if reading.fault or perf_counter() > end_s:
@@ -100,10 +100,10 @@ class OdriveActuator:
     def switch_off(self) -> None:
         """Idle, and wait for the heartbeat that says so."""
         self._send(Command.SET_AXIS_STATE, protocol.WORD.pack(protocol.IDLE))
-        end_s = perf_counter() + _STATE_S
+        end_s = perf_counter() + STATE_S
         heartbeat = can_id(self._settings.node_id, Command.HEARTBEAT)
         while True:
-            missing = self.bus.wait_for([heartbeat], _STATE_S)
+            missing = self.bus.wait_for([heartbeat], STATE_S)
             if self._state() != protocol.CLOSED_LOOP and not missing:
                 return
             if missing or perf_counter() > end_s:
@@ -127,7 +127,7 @@ class OdriveActuator:
     def clear_fault(self) -> None:
         """Clear its errors."""
         self._send(Command.CLEAR_ERRORS, bytes(1))
-        self.bus.wait_for([can_id(self._settings.node_id, Command.HEARTBEAT)], _STATE_S)
+        self.bus.wait_for([can_id(self._settings.node_id, Command.HEARTBEAT)], STATE_S)
 
     def shout_off(self) -> None:
         """Idle, and wait for nothing."""

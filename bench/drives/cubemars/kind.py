@@ -50,7 +50,7 @@ def make(settings: CubemarsDriveSettings, rig: Rig) -> Drive:
 
 def follow(settings: CubemarsDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
-    from drivers.cubemars.follow import follow
+    from drivers.cubemars.drive import follow
     from drivers.cubemars.settings import CubemarsSettings
 
     return follow(CubemarsSettings(**can_values(settings)), joint_scale(settings, rig))

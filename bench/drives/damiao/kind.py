@@ -43,7 +43,7 @@ def make(settings: DamiaoDriveSettings, rig: Rig) -> Drive:
 
 def follow(settings: DamiaoDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
-    from drivers.damiao.follow import follow
+    from drivers.damiao.drive import follow
     from drivers.damiao.settings import DamiaoSettings
 
     return follow(DamiaoSettings(**can_values(settings)), joint_scale(settings, rig))

@@ -43,7 +43,7 @@ def make(settings: OdriveDriveSettings, rig: Rig) -> Drive:
 
 def follow(settings: OdriveDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
-    from drivers.odrive.follow import follow
+    from drivers.odrive.drive import follow
     from drivers.odrive.settings import OdriveSettings
 
     return follow(OdriveSettings(**can_values(settings)), joint_scale(settings, rig))

@@ -47,7 +47,7 @@ def make(settings: RobstrideDriveSettings, rig: Rig) -> Drive:
 
 def follow(settings: RobstrideDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
-    from drivers.robstride.follow import follow
+    from drivers.robstride.drive import follow
     from drivers.robstride.settings import RobstrideSettings
 
     return follow(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))

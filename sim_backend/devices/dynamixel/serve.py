@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from sim_backend.devices.dynamixel.memory import KINDS
 from sim_backend.devices.dynamixel.packets import InstructionReader
 from sim_backend.devices.dynamixel.servo import SIMULATED_FIRMWARE, XServo
-from sim_backend.devices.link.served_line import ServedOnLine
+from sim_backend.devices.link.serial_port import ServedOnLine
 from sim_backend.devices.process import RunningDevice
 from sim_backend.devices.servos.bus import ServoBus
 from sim_backend.errors import ParameterError

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from sim_backend.devices.feetech.packets import InstructionReader
 from sim_backend.devices.feetech.servo import StsServo
-from sim_backend.devices.link.served_line import ServedOnLine
+from sim_backend.devices.link.serial_port import ServedOnLine
 from sim_backend.devices.process import RunningDevice
 from sim_backend.devices.servos.bus import ServoBus
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from sim_backend.devices.can.ports import port_of
-from sim_backend.devices.link.served_line import ServedOnLine
+from sim_backend.devices.link.serial_port import ServedOnLine
 from sim_backend.devices.moteus.adapter import FdcanusbAdapter
 from sim_backend.devices.moteus.controller import MoteusController
 from sim_backend.devices.moteus.node import MoteusOnBus

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sim_backend.devices.link.served_line import ServedOnLine
+from sim_backend.devices.link.serial_port import ServedOnLine
 from sim_backend.devices.process import RunningDevice
 from sim_backend.devices.roboclaw.device import MEASURED, RoboClaw
 
