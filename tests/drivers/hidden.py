@@ -35,8 +35,10 @@ AS_ON_A_WIRE = {"latency": {"delay_s": PERIOD_S}}
 # up and down: a joint that warms while loads only grow does not tell temperature from load
 LOADS_KG = (0.0, 0.05, 0.1, 0.1, 0.05, 0.0)
 EXCITATION = Measurement(
-    "excitation", {"waveforms": ("slow-sine", "multisine", "triangles"), "loads_kg": LOADS_KG, "repeats": 2}
+    "excitation", {"waveforms": ("slow-sine", "multisine", "triangles"), "loads_kg": LOADS_KG, "repeats": 1}
 )
+# does not swing in free play: the error of a recording differs by 1 % from seed to seed, with twice the gains by 5 %
+CALM = {"proportional_a_rad": 6.0, "integral_a_rad_s": 15.0, "derivative_a_s_rad": 0.3}
 MOST_DIFFERENCE = 0.1
 CUTOFF_HZ = 10.0  # of both: else each recording chooses its own, by its noise, and what is smoothed more errs less
 
@@ -119,7 +121,7 @@ def on_bench(drive: dict[str, Any]) -> BenchConfiguration:
     """The bench of the package with a drive."""
     values = default_configuration().model_dump(mode="json", exclude_none=True)
     values["control"]["period_s"] = PERIOD_S
-    values["servo"] |= {"proportional_a_rad": 12.0, "integral_a_rad_s": 40.0, "derivative_a_s_rad": 0.3}
+    values["servo"] |= CALM
     values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
     values["drive"] = drive
     return parse_configuration(values, "bench.toml")
