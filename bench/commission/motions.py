@@ -4,6 +4,8 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
+import numpy as np
+
 from bench.commission.questions import CommissionError
 from bench.config.configuration import BenchConfiguration
 from bench.control.late_cycles import moves_a_joint
@@ -46,7 +48,7 @@ class Motions:
         return self._runner.look(bench)
 
     def run(self, bench: BenchConfiguration, kind: str, parameters: Values, hung: tuple[float, bool]) -> Experiment:
-        """One experiment to its end; again where it was the host that was late, which says nothing of the joint.
+        """One experiment to its end; again where host or line was late, which says nothing of the joint.
 
         Args:
             bench: with what is known of the joint so far.
@@ -66,15 +68,19 @@ class Motions:
             found = self._store.experiment(number)
             if found.outcome == "completed":
                 return found
-            if not self._host_was_late(found, bench.control.period_s):
+            if not self._was_late(found, bench):
                 break
         raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")
 
-    def _host_was_late(self, ended: Experiment, period_s: float) -> bool:
-        """Whether a limit that tripped, or a drive that went off, may be put down to cycles that the host lost."""
+    def _was_late(self, ended: Experiment, bench: BenchConfiguration) -> bool:
+        """Whether a limit that tripped, or a drive that went off, may be put down to cycles lost or samples too old."""
         trials = self._store.trials(ended.id)
-        lost = trials[-1].results.get("overruns", 0) if trials else 0
-        return ended.outcome in ("tripped", "failed") and moves_a_joint(lost, period_s)
+        if ended.outcome not in ("tripped", "failed") or not trials:
+            return False
+        if moves_a_joint(trials[-1].results.get("overruns", 0), bench.control.period_s):
+            return True
+        ages_s = self._store.recording(trials[-1].id).channels.get("age_s", np.empty(0))
+        return bool((ages_s > bench.limits.sample_age_s).any())
 
     def _refuse_given_up(self) -> None:
         if reason := self._given_up():

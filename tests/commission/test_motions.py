@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from bench.commission import motions
@@ -10,6 +11,7 @@ from bench.config.configuration import default_configuration
 
 BENCH = default_configuration()
 LATE, NOT_LATE = {"overruns": 20}, {"overruns": 1}
+FRESH_S, OLD_S = 0.5 * BENCH.limits.sample_age_s, 2.0 * BENCH.limits.sample_age_s
 
 
 class Ended:
@@ -26,7 +28,10 @@ class Ended:
         return SimpleNamespace(id=number, outcome=self._endings[number - 1][0], reason="age of the sample")
 
     def trials(self, number):
-        return [SimpleNamespace(results=self._endings[number - 1][1])]
+        return [SimpleNamespace(id=number, results=self._endings[number - 1][1])]
+
+    def recording(self, number):
+        return SimpleNamespace(channels={"age_s": np.array([FRESH_S, self._endings[number - 1][1].get("age_s", 0.0)])})
 
 
 def run(monkeypatch, *endings):
@@ -36,9 +41,9 @@ def run(monkeypatch, *endings):
     return found, ended
 
 
-@pytest.mark.parametrize("outcome", ["tripped", "failed"])
-def test_a_late_host_is_no_reason_to_give_up(monkeypatch, outcome):
-    found, ended = run(monkeypatch, (outcome, LATE), ("completed", {}))
+@pytest.mark.parametrize("ending", [("tripped", LATE), ("failed", LATE), ("tripped", NOT_LATE | {"age_s": OLD_S})])
+def test_a_late_host_is_no_reason_to_give_up(monkeypatch, ending):
+    found, ended = run(monkeypatch, ending, ("completed", {}))
     assert (found.id, ended.ran) == (2, 2)
 
 
