@@ -61,3 +61,11 @@ def test_what_the_joint_or_a_person_has_ended_is_over(monkeypatch, endings, runs
     with pytest.raises(CommissionError, match="identification"):
         motions.Motions(None, ended).run(BENCH, "identification", {}, (0.0, False))
     assert ended.ran == runs
+
+
+def test_cycles_that_move_no_joint_are_not_counted(monkeypatch):
+    _, few = run(monkeypatch, ("completed", NOT_LATE))
+    _, many = run(monkeypatch, ("completed", LATE))
+    ran = few.experiment(1)
+    assert motions.Motions(None, few).lost_cycles(ran, BENCH) == 0
+    assert motions.Motions(None, many).lost_cycles(ran, BENCH) == 20
