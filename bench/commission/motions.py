@@ -80,7 +80,9 @@ class Motions:
     def _was_late(self, ended: Experiment, bench: BenchConfiguration) -> bool:
         """Whether a limit that tripped, or a drive that went off, may be put down to cycles lost or samples too old."""
         trials = self._store.trials(ended.id)
-        if ended.outcome not in ("tripped", "failed") or not trials:
+        if not trials:  # the trial of the watchdog, which is on no record: its demand is small, and may be made again
+            return ended.outcome == "tripped"
+        if ended.outcome not in ("tripped", "failed"):
             return False
         if moves_a_joint(trials[-1].results.get("overruns", 0), bench.control.period_s):
             return True
