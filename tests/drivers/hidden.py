@@ -7,6 +7,9 @@ and the bytes or frames of its protocol, in virtual time: how busy the machine i
 loads up and down, 3 motions), the same base model without the effect, the same cut-off, the same control loop: what a
 drive on a wire says is as old as the demand that it has just got, so that the one in process tells it a cycle later.
 The lab names what is missing; it is added; the error on the trials held out (50 g) is what is compared.
+
+Not the same is the phase: a simulated device looks at its joint and its demand once a millisecond, and the cycles of the
+host drift through that. In process they do not. With free play trials of one wire differ by a tenth from each other.
 """
 
 from tests.drivers.virtual_devices import KINDS, TIME, device_of, reached  # first: the drivers read its clock
