@@ -1,11 +1,13 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
 from bench.store import Store
+from bench.study.diagnose import answer_of
 from bench.study.errors import lab_errors
 from bench.study.judged import diagnosis_of_model
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep
+from bench.study.models.diagnosis import Diagnosis
 from compensator.lab.diagnosis.search import MOST_EFFECTS, Step
 from compensator.lab.diagnosis.search import search as search_from
 
@@ -22,6 +24,13 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
     Raises:
         StudyError: no such model, or no effect can be judged on these trials.
     """
+    return search_and_diagnose(store, study_id, model_id, most)[0]
+
+
+def search_and_diagnose(
+    store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS
+) -> tuple[Searched, Diagnosis]:
+    """As `search`, and what its last model lacks beside the effects that other trials did not bear out."""
     material = load(store, study_id)
     first = model_of(store, study_id, model_id)
     fit = material.fit_of(first)
@@ -45,7 +54,7 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
             )
         )
         parent, before = child, step.held_out.relative
-    return Searched(
+    searched = Searched(
         study_id=study_id,
         model_id=parent,
         added=list(found.added),
@@ -53,6 +62,7 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
         verdict=found.last.verdict,
         sentence=found.last.sentence,
     )
+    return searched, answer_of(found.fit, found.last, study_id, parent)
 
 
 _DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}

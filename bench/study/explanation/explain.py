@@ -23,7 +23,7 @@ from bench.study.report.coverage_section import advice_section, coverage_section
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section
 from bench.study.report.head_section import head_section, summary
 from bench.study.report.model_sections import ladder_section, measured_section, model_section, residual_section
-from bench.study.search import search
+from bench.study.search import search_and_diagnose
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
 
@@ -133,17 +133,15 @@ def _searched(store: Store, study_id: int, first: int) -> tuple[int, Diagnosis, 
     Where no formula follows what is missing, a free curve fills the gap, if it predicts other trials better for sure;
     then the search goes on beside it: what the curve cannot be, as what differs by direction, shows only then.
     """
-    found = search(store, study_id, first)
+    found, last = search_and_diagnose(store, study_id, first)
     steps = [*found.steps]
-    last = diagnose(store, study_id, found.model_id)
     for _ in range(MOST_CURVES):
         curve = last.provisional
         if curve is None or curve.gain_low <= 0.0 or curve.gain < LEAST_GAIN:
             break
         filled = add_effect(store, study_id, curve.effect, last.model_id)
-        found = search(store, study_id, filled.model_id)
+        found, last = search_and_diagnose(store, study_id, filled.model_id)
         steps += found.steps
-        last = diagnose(store, study_id, found.model_id)
     kept = model_of(store, study_id, found.model_id).effects
     added = {one.effect: one for one in steps if one.rivals and one.effect in kept}
     return found.model_id, last, [_confused(one) for one in added.values()]

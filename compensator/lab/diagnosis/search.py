@@ -100,8 +100,9 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
         added = _step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training))
         steps.append(replace(added, rivals=tuple(rivals)))
         swapped = _swaps(start, steps[-1].fit)
-        steps += swapped
-        steps += _drops(start, steps[-1].fit, last_too=bool(swapped))
+        dropped = _drops(start, (swapped or steps)[-1].fit, last_too=bool(swapped))
+        steps += [*swapped, *dropped]
+        undecided |= {step.effect for step in dropped}  # other trials are not predicted better with it: not added again
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
             undecided.add(name)  # the same model again: the trials do not decide, and the search goes on without it
         fit = steps[-1].fit
