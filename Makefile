@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: help demo paper serve test check format docs report screenshots pictures benchmark kills schema test-vm dist \
+.PHONY: help demo paper serve test test-timed test-others check format docs report screenshots pictures benchmark kills schema test-vm dist \
         dist-test audit sbom hashes clean
 
 help:            ## this list
@@ -33,13 +33,19 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 
 # To work on it
 
-test: $(STAMP)   ## the tests: first on all cores, then those that the wall clock times, which mostly wait
+test: $(STAMP)   ## the tests: those that the wall clock times, which mostly wait, and beside them all others
+	@$(MAKE) --jobs=2 --keep-going --output-sync=target --no-print-directory test-timed test-others
+
+# more processes than cores: services and browsers wait for half of their time, drivers for most of it
+test-timed: $(STAMP)  ## the tests that the wall clock times: services and browsers, then drivers
 	@failed=0; \
-	$(BIN)/pytest --numprocesses auto -m 'not wall_clock' || failed=1; \
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers || failed=1; \
-	$(BIN)/pytest --numprocesses 3 --no-loadscope-reorder tests/drivers -m 'wall_clock and not alone' || failed=1; \
-	$(BIN)/pytest tests/drivers -m alone || failed=1; \
+	$(BIN)/pytest --numprocesses 6 --no-loadscope-reorder tests/drivers -m wall_clock || failed=1; \
 	exit $$failed
+
+# they take whatever the timed ones leave, so each may last several times as long as alone
+test-others: $(STAMP)  ## the tests that only compute, on all cores, making way for whatever else runs
+	nice -n 19 $(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock'
 
 check: $(STAMP)  ## style, types and walls; .pre-commit-config.yaml runs the same
 	$(BIN)/ruff check .

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import tempfile
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -42,13 +42,19 @@ class PostgresqlServer:
         with self._admin.connect() as connection:
             connection.execute(text(statement))
 
+    def cpu_s(self) -> float:
+        """CPU time of all processes of the server that live now [s]."""
+        parent = (self._folder / "data" / "postmaster.pid").read_text().split()[0]
+        children = Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
+        return sum(int(Path(f"/proc/{one}/schedstat").read_text().split()[0]) for one in children) * 1e-9
+
     def close(self) -> None:
         self._admin.dispose()
 
 
 @contextmanager
-def postgresql_server() -> Iterator[PostgresqlServer]:
-    """A server, or a skipped test where there is none to start."""
+def postgresql_server(settings: Mapping[str, str] = FAST) -> Iterator[PostgresqlServer]:
+    """A server with some settings of its own, or a skipped test where there is none to start."""
     programs = _programs()
     folder = Path(tempfile.mkdtemp(prefix="fb-pg-"))  # short: a socket's path has at most 107 characters
     user = "postgres" if os.geteuid() == 0 else None  # the server refuses to run as root
@@ -56,7 +62,7 @@ def postgresql_server() -> Iterator[PostgresqlServer]:
         shutil.chown(folder, user)
     try:
         _run(user, programs / "initdb", "-D", folder / "data", "-U", "postgres", "-A", "trust", "-E", "UTF8", "-N")
-        options = " ".join(f"-c {name}={value}" for name, value in FAST.items())
+        options = " ".join(f"-c {name}={value}" for name, value in settings.items())
         options += f" -c listen_addresses='' -c unix_socket_directories={folder}"
         start = ("-D", folder / "data", "-o", options, "-l", folder / "log", "-w")
         _run(user, programs / "pg_ctl", "start", *start)

@@ -2,13 +2,16 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 
 from plotly.offline import get_plotlyjs
 
 from bench.report.section import Section, Table
+from bench.report.wording import spoken
 
+FEW_COLUMNS = 2  # fit on a phone as they are
 _CONTENTS_FROM = 3  # sections; fewer are seen at once
 _STYLE = """
 :root { color-scheme: light dark; --text: #222; --soft: #555; --line: #ccc; --page: #fff; }
@@ -20,26 +23,44 @@ a { color: inherit; }
 table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
 th, td { padding: .15rem .8rem; border-bottom: 1px solid var(--line); text-align: left; }
-.number { text-align: right; }
-.figure { width: 100%; height: 26rem; }
+.number { text-align: right; white-space: nowrap; }
+figure { margin: 1.5rem 0; }
+figcaption { font-weight: 600; }
+.figure { width: 100%; height: 24rem; }
 .contents { columns: 2; color: var(--soft); }
-@media (max-width: 40rem) { .contents { columns: 1; } th, td { padding: .15rem .4rem; } }
+@media screen and (max-width: 40rem) {
+  .contents { columns: 1; }
+  .figure { height: 20rem; }
+  /* a row of a table becomes a card: nothing stands outside the screen */
+  .wide, .wide tbody, .wide caption { display: block; }
+  .wide .head { display: none; }
+  .wide tr { display: block; border: 1px solid var(--line); border-radius: 6px; }
+  .wide tr { padding: .3rem .6rem; margin-bottom: .5rem; }
+  .wide td { display: flex; gap: .2rem .8rem; border: 0; padding: .1rem 0; text-align: left; }
+  .wide td::before { content: attr(data-title); color: var(--soft); flex: 0 0 8rem; }
+  td { overflow-wrap: anywhere; padding: .15rem .4rem; }
+  td:empty { display: none; }
+}
 @media print {
   :root { --text: #000; --soft: #333; --line: #999; --page: #fff; }
   body { max-width: none; margin: 0; font-size: 10pt; }
   .table { overflow: visible; }
   h2 { break-after: avoid; }
-  table, .figure { break-inside: avoid; }
+  tr, figure { break-inside: avoid; }
 }
 """
 _DRAW = """
 const dark = matchMedia("(prefers-color-scheme: dark)");
 function draw(printing = false) {
-  const colour = dark.matches && !printing ? "#e6ebf0" : "#222222";
+  const [colour, grid] = dark.matches && !printing ? ["#e6ebf0", "#36414d"] : ["#222222", "#dddddd"];
   for (const place of document.querySelectorAll(".figure")) {
     const figure = JSON.parse(document.getElementById(place.dataset.from).textContent);
     const look = { ...figure.layout, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)" };
     look.font = { ...figure.layout.font, color: colour };
+    for (const axis of ["xaxis", "yaxis"]) {
+      look[axis] = { ...figure.layout[axis], gridcolor: grid, zerolinecolor: colour, automargin: true };
+    }
+    for (const trace of figure.data) if (trace.type === "bar" && trace.error_y) trace.error_y.color = colour;
     Plotly.react(place, figure.data, look, { responsive: true, displaylogo: false });
   }
 }
@@ -85,24 +106,40 @@ def _contents(sections: Sequence[Section]) -> str:
 
 def _section(section: Section, number: int) -> list[str]:
     parts = [f'<h2 id="part-{number}">{escape(section.title)}</h2>\n']
-    parts += [f"<p>{escape(sentence)}</p>\n" for sentence in section.sentences]
+    parts += [f"<p>{escape(spoken(sentence))}</p>\n" for sentence in section.sentences]
     parts += [_table(table) for table in section.tables]
     for index, figure in enumerate(section.figures):
         name = f"figure-{number}-{index}"
         data = json.dumps(figure.to_plotly(), allow_nan=False).replace("</", "<\\/")
         parts.append(f'<script type="application/json" id="{name}">{data}</script>')
-        parts.append(f'<div class="figure" data-from="{name}" role="img" aria-label="{escape(figure.title)}"></div>\n')
+        title = escape(spoken(figure.title))
+        parts.append(f"<figure><figcaption>{title}</figcaption>")
+        parts.append(f'<div class="figure" data-from="{name}" role="img" aria-label="{title}"></div></figure>\n')
     return parts
 
 
 def _table(table: Table) -> str:
+    """On a narrow screen each row becomes a card, and each cell says its column. A column of nothing is left out."""
+    table = _filled(table)
     sides = [' class="number"' if column.endswith("#") else "" for column in table.columns]
-    head = "".join(
-        f"<th{side}>{escape(c.removesuffix('#'))}</th>" for c, side in zip(table.columns, sides, strict=True)
-    )
-    rows = "".join(
-        "<tr>" + "".join(f"<td{s}>{escape(cell_text(v))}</td>" for v, s in zip(row, sides, strict=True)) + "</tr>"
-        for row in table.rows
-    )
-    caption = f"<caption>{escape(table.title)}</caption>"
-    return f'<div class="table" tabindex="0"><table>{caption}<tr>{head}</tr>{rows}</table></div>\n'
+    names = [escape(spoken(column.removesuffix("#"))) for column in table.columns]
+    head = "".join(f"<th{side}>{name}</th>" for name, side in zip(names, sides, strict=True))
+    titles = [f' data-title="{name}"' for name in names]
+    rows = "".join(f"<tr>{''.join(_cells(row, sides, titles))}</tr>" for row in table.rows)
+    wide = ' class="wide"' if len(names) > FEW_COLUMNS else ""
+    caption = f"<caption>{escape(spoken(table.title))}</caption>"
+    head = f'<tr class="head">{head}</tr>' if any(names) else ""
+    return f'<div class="table" tabindex="0"><table{wide}>{caption}{head}{rows}</table></div>\n'
+
+
+def _filled(table: Table) -> Table:
+    kept = [
+        at for at in range(len(table.columns)) if not table.rows or any(row[at] not in (None, "") for row in table.rows)
+    ]
+    rows = [[row[at] for at in kept] for row in table.rows]
+    return replace(table, columns=[table.columns[at] for at in kept], rows=rows)
+
+
+def _cells(row: Sequence[object], sides: Sequence[str], titles: Sequence[str]) -> list[str]:
+    cells = zip(row, sides, titles, strict=True)
+    return [f"<td{side}{title}>{escape(spoken(cell_text(value)))}</td>" for value, side, title in cells]

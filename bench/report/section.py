@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 
 from bench.json_types import Value
+from bench.report.wording import spoken
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _DARK, _LIGHT = (68, 1, 84), (253, 190, 60)  # of a row of shades: from a dark violet over green to a light orange
@@ -63,11 +64,10 @@ class Figure:
         return {
             "data": traces,
             "layout": {
-                "title": {"text": self.title},
-                "xaxis": {"title": {"text": self.x_title}},
-                "yaxis": {"title": {"text": self.y_title}},
-                "legend": {"orientation": "h", "y": -0.25},
-                "margin": {"l": 70, "r": 20, "t": 50, "b": 60},
+                "xaxis": {"title": {"text": spoken(self.x_title)}},
+                "yaxis": {"title": {"text": spoken(self.y_title)}},
+                "legend": {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0},
+                "margin": {"l": 70, "r": 20, "t": 30, "b": 60},
                 "template": "none",
             },
         }

@@ -10,10 +10,13 @@ import anyio.to_thread
 from fastapi import FastAPI, Request
 
 from bench.service.lab import Asker, Lab
+from bench.service.live.jobs import Jobs
 from bench.store import Store
 
 P = ParamSpec("P")
 T = TypeVar("T")
+JOB_HEADER = "X-Job"
+LONGEST_NAME = 100  # characters
 MOST_AT_ONCE = 2
 MOST_AT_BENCH = 8  # they wait, and take no processor
 LOOK_EVERY_S = 0.25  # whether the one who asked is still there
@@ -51,6 +54,8 @@ async def in_lab(
 ) -> T:
     """What a function of `bench.study` returns. It is ended when the one who asked breaks the connection.
 
+    A request with the header `X-Job` is a job of that name: /live/jobs tells how far it has come.
+
     Args:
         request: the request that asked for it; its application has the lab.
         function: of a module, so that another process finds it; takes the store first.
@@ -58,12 +63,17 @@ async def in_lab(
         **kwargs: passed on.
     """
     lab: Lab = request.app.state.lab
-    asker = Asker()
+    name = request.headers.get(JOB_HEADER, "")[:LONGEST_NAME]
+    jobs: Jobs = request.app.state.jobs
+    job = jobs.begin(name, function.__name__) if name else None
+    asker = Asker(job.tell) if job else Asker()
     watch = asyncio.create_task(_give_up_when_gone(request, asker))
     try:
         return await in_worker(request, lab.call_for, asker, function, *args, **kwargs)
     finally:
         watch.cancel()
+        if job:
+            job.end()
 
 
 async def _give_up_when_gone(request: Request, asker: Asker) -> None:
@@ -75,5 +85,6 @@ async def _give_up_when_gone(request: Request, asker: Asker) -> None:
 
 def install(app: FastAPI) -> None:
     """How many computations, and how many that wait for the bench, are under way at a time."""
+    app.state.jobs = Jobs()
     app.state.compute_limiter = anyio.CapacityLimiter(MOST_AT_ONCE)
     app.state.bench_limiter = anyio.CapacityLimiter(MOST_AT_BENCH)

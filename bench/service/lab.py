@@ -17,6 +17,7 @@ from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 from bench.errors import BenchError
 from bench.runs.bench_process.messages import Failure, error_of, failure_of
 from bench.store import Store
+from compensator.lab.progress import Stage, followed
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -28,9 +29,14 @@ class LabEndedError(BenchError, ConnectionError):
 
 
 class Asker:
-    """Whoever asked for a call. Once they have given it up, its process ends: nobody waits for the answer."""
+    """Whoever asked for a call. Once they have given it up, its process ends: nobody waits for the answer.
 
-    def __init__(self) -> None:
+    Args:
+        told: hears how far it has come.
+    """
+
+    def __init__(self, told: Callable[[Stage], None] = lambda _: None) -> None:
+        self.told = told
         self.has_given_up = False
         self._lock = threading.Lock()
         self._end: Callable[[], None] | None = None
@@ -100,7 +106,7 @@ class LabHere:
         self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
     ) -> T:
         """See `Lab`; what has begun in this thread goes on to its end."""
-        with asker.waiting(lambda: None):
+        with asker.waiting(lambda: None), followed(asker.told):
             return function(self._store, *args, **kwargs)
 
     def close(self) -> None:
@@ -136,7 +142,7 @@ class LabProcesses:
         worker = self._take()
         try:
             with asker.waiting(worker.end):
-                result: T = worker.call(_Call(function, args, kwargs))
+                result: T = worker.call(_Call(function, args, kwargs), asker.told)
         except LabEndedError:
             self._drop(worker)
             raise
@@ -198,10 +204,11 @@ class _Worker:
             self._process = context.Process(target=work, args=(theirs, url), name="lab", daemon=True)
             self._process.start()
 
-    def call(self, call: _Call) -> Any:
+    def call(self, call: _Call, told: Callable[[Stage], None]) -> Any:
         try:
             self._connection.send(call)
-            found = self._connection.recv()
+            while isinstance(found := self._connection.recv(), Stage):
+                told(found)
         except (EOFError, OSError) as error:
             raise LabEndedError("the process that computed has ended (killed, or out of memory); ask again") from error
         if isinstance(found, Failure):
@@ -223,7 +230,8 @@ def work(connection: Connection, url: str) -> None:
         while True:
             call: _Call = connection.recv()
             try:
-                answer = call.function(store, *call.args, **call.kwargs)
+                with followed(connection.send):
+                    answer = call.function(store, *call.args, **call.kwargs)
             except Exception as error:
                 answer = failure_of(0, error)
             connection.send(answer)

@@ -1,6 +1,7 @@
 """What a kind of database has to offer: all that differs between SQLite and PostgreSQL stands behind this."""
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from typing import Protocol
 
 from sqlalchemy import Connection, Engine
@@ -49,6 +50,9 @@ class Backend(Protocol):
 
     def begin_write(self, connection: Connection) -> None:
         """First thing in a transaction that writes: wait for other writers, and make sure that it can be kept."""
+
+    def sending(self, connection: Connection) -> AbstractContextManager[object]:
+        """Statements in it may be sent without waiting for the ones before; what fails is raised at its end at last."""
 
     def explain(self, error: BaseException | None) -> StoreError | None:
         """The store's error for an error of the driver, with the next step; None where it is none of these."""

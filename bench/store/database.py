@@ -58,6 +58,12 @@ class Database:
         finally:
             self._writer.release()
 
+    @contextmanager
+    def recording(self) -> Iterator[Connection]:
+        """As `writing`, for statements whose results nobody looks at: a server gets them without waiting for each."""
+        with self.writing() as connection, self.backend.sending(connection):
+            yield connection
+
     def claim(self) -> Claim:
         """Say that this process runs experiments. Called inside a transaction that writes."""
         with self.explained():

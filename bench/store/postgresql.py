@@ -7,8 +7,10 @@ when the process, or its network, is gone.
 """
 
 import secrets
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from types import ModuleType
+from typing import Any, cast
 
 from sqlalchemy import Connection, create_engine, text
 from sqlalchemy.engine import URL
@@ -71,6 +73,15 @@ class Postgresql:
     def begin_write(self, connection: Connection) -> None:
         """Wait for other writers."""
         connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": WRITER_KEY})
+
+    @contextmanager
+    def sending(self, connection: Connection) -> Iterator[None]:
+        """By libpq's pipeline: one round trip for all of it, and the server works while the next block is made."""
+        try:
+            with cast(Any, connection.connection.driver_connection).pipeline():
+                yield
+        except self._driver.Error as error:  # raised by the pipeline's end, where SQLAlchemy does not see it
+            raise self.explain(error) or error from error
 
     def explain(self, error: BaseException | None) -> StoreError | None:
         """By the class of the error, and by its SQLSTATE (PostgreSQL manual, appendix A)."""

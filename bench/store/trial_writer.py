@@ -44,7 +44,7 @@ class TrialWriter:
         self._check_running()
         if len(rows) == 0 and not events:
             return
-        with self._database.writing() as connection:
+        with self._database.recording() as connection:
             pending = samples.add(connection, self.trial_id, self.rows, rows, self._pending)
             trials.add_events(connection, self.trial_id, [Event(*event) for event in events])
         self._pending = pending

@@ -2,8 +2,6 @@
 
 from typing import Literal
 
-import numpy as np
-
 from bench.store import Store
 from bench.study.material import Material, load_model
 from bench.study.models.comparison import (
@@ -17,9 +15,9 @@ from bench.study.models.comparison import (
     FittedParameter,
     RegimeError,
     ResidualAgainst,
-    Series,
     TrialError,
 )
+from bench.study.plots.series import series_of
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
 from compensator.lab.at_rest.rest_comparison import Side, at_rest_in_words
 from compensator.lab.chance import stated
@@ -27,12 +25,9 @@ from compensator.lab.comparison import comparison
 from compensator.lab.comparison.null_space import left_open
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
-from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import ParameterEstimate, estimates
 from compensator.lab.model.validation import HeldOut
 from compensator.lab.rows.drivers import DRIVERS
-
-SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 
 
 def compare(store: Store, study_id: int, model_id: int | None = None) -> Comparison:
@@ -65,7 +60,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
         regimes=[_regime(one) for one in found.regimes],
         at_rest=_at_rest(found),
         breakaway=_breakaway(found),
-        series=_series(material, fit),
+        series=series_of(material, fit),
         residual_against=_against(material, found),
         notes=[*_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))],
     )
@@ -141,25 +136,6 @@ def _trials(material: Material, found: comparison.Comparison) -> list[TrialError
         TrialError(**dict(trial), rms=error.rms, relative=error.relative)
         for trial, error in zip(material.study_trials, found.trials, strict=True)
     ]
-
-
-def _series(material: Material, fit: Fit) -> list[Series]:
-    dataset, series = fit.dataset, []
-    for index, (trial, prepared) in enumerate(zip(material.trials, dataset.trials, strict=True)):
-        rows = np.flatnonzero(dataset.trial_index == index)
-        chosen = rows[:: max(1, len(rows) // SERIES_POINTS)]
-        time = dataset.time_of(prepared)[chosen - rows[0]] if len(rows) else np.empty(0)
-        series.append(
-            Series(
-                trial_id=trial.id,
-                name=trial.name,
-                time_s=time.tolist(),
-                measured=dataset.effort[chosen].tolist(),
-                predicted=fit.predicted[chosen].tolist(),
-                residual=fit.residual[chosen].tolist(),
-            )
-        )
-    return series
 
 
 def _against(material: Material, found: comparison.Comparison) -> list[ResidualAgainst]:

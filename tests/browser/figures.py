@@ -119,7 +119,7 @@ def study_page(chromium: Any, url: str) -> Iterator[Figure]:
         page.get_by_role("link", name=f"{number} {step.capitalize()}").click()
         if step == "diagnose":
             page.get_by_role("button", name="Diagnose").click()
-            page.locator("article .plot .trace").first.wait_for()
+            page.locator("article canvas.chart").first.wait_for()
         page.wait_for_timeout(1000)
         heights[step] = page.evaluate("document.documentElement.scrollHeight") / HEIGHT
     page.close()

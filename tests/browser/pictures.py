@@ -66,7 +66,7 @@ def _hidden_effect(page: Any, service: RunningService, picture: Path) -> None:
     page.locator("table.heat button.cell").first.wait_for()
     page.get_by_role("link", name="3 Diagnose").click()
     page.get_by_role("button", name="Diagnose").click()
-    page.locator("article .js-plotly-plot").first.wait_for()
+    page.locator("article canvas.chart").first.wait_for()
     page.wait_for_timeout(DRAWN_MS)
     page.locator("article").first.screenshot(path=picture)
 

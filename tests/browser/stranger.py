@@ -20,7 +20,7 @@ from tests.service.served_process import served_process
 
 MOST_ROUNDS = 3  # of diagnosing and adding
 MOST_CLICKS, MOST_S = 20, 480
-CANDIDATE = ".diagnosed article:has(.badge.completed) > button"
+CANDIDATE = ".diagnosed article:has(.badge.completed) button.add"
 
 
 def main() -> None:

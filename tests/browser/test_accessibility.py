@@ -37,13 +37,13 @@ def steps_broken(axe, page) -> list[str]:
         page.get_by_role("link", name=step).click()
         if step == "2 Compare":
             page.get_by_text("Residual against what drives it").click()
-            page.locator("[aria-label^='Residual against'] .trace").first.wait_for()
+            page.locator("canvas[aria-label^='Residual against']").first.wait_for()
             page.get_by_text("In closed loop", exact=True).click()
             page.get_by_role("button", name="Simulate", exact=True).click()
-            page.get_by_role("group", name="In closed loop").locator(".plot .trace").first.wait_for()
+            page.get_by_role("group", name="In closed loop").locator("canvas.chart").first.wait_for()
         if step == "3 Diagnose":
             page.get_by_role("button", name="Diagnose").click()
-            page.locator("article .plot .trace").first.wait_for()
+            page.locator("article canvas.chart").first.wait_for()
         broken += [f"{step} {one}" for one in violations(axe, page)]
     return broken
 

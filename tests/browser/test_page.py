@@ -64,7 +64,7 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     page.get_by_text("In closed loop", exact=True).click()
     loop = page.get_by_role("group", name="In closed loop")
     loop.get_by_role("button", name="Simulate and refine").click()
-    loop.locator(".plot .trace").first.wait_for()
+    loop.locator("canvas.chart").first.wait_for()
     assert (
         loop.locator("[aria-label='Errors in closed loop'] tbody tr").count() == 4
     )  # both models, both kinds of trials
@@ -74,7 +74,7 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     assert page.url.endswith("/diagnose")
     page.get_by_role("button", name="Diagnose").click()
     first = page.locator("article").first
-    first.locator(".plot .trace").first.wait_for()
+    first.locator("canvas.chart").first.wait_for()
     assert first.get_by_text("candidate").is_visible()
     assert first.get_by_text("Direction-asymmetric viscous friction").first.is_visible()
     before = held_out_errors(page)

@@ -74,7 +74,7 @@ def explain_a_challenge(walker: Walker) -> str:
     walker.link("3 Diagnose")
     walker.button("Diagnose")
     first = page.locator("article").first
-    first.locator(".js-plotly-plot").wait_for()
+    first.locator("canvas.chart").wait_for()
     shot("diagnosis")
     named = str(first.get_attribute("aria-label"))
     walker.press(first.get_by_role("button", name="Add"), "Add")

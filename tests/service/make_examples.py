@@ -120,11 +120,16 @@ def studies(asking: Asking, service: RunningService) -> None:
     asking.kept["POST /api/v1/recording-sets"] = imported
     new = {"name": "arm, winter", "experiment_ids": [imported["experiment_id"]], "hold_out": ["amplitude_rad=0.9"]}
     ask("POST /studies/check", {"experiment_ids": new["experiment_ids"]})
-    number = ask("POST /studies", new)["study_id"]
+    made = ask("POST /studies", new)
+    number, trial_id = made["study_id"], made["trials"][0]["trial_id"]
     ask("GET /studies")
+    service.client.get(f"/studies/{number}/diagnose", headers={"X-Job": "b7"})
+    ask("GET /live/jobs/{job}", job="b7")
     for route in ("", "/compare", "/closed-loop", "/diagnose", "/error-map"):
         ask(f"GET /studies/{{number}}{route}", number=number)
     ask("GET /studies/{number}/moments", query={"where": "velocity=0.5..1"}, number=number)
+    ask("GET /studies/{number}/action", query={"effect": "viscous_asymmetry"}, number=number)
+    ask("GET /studies/{number}/drivers", query={"trial_id": trial_id}, number=number)
     ask("POST /studies/{number}/models", {"effect": "viscous_asymmetry"}, number=number)
     ask("GET /studies/{number}/ladder", number=number)
     ask("POST /studies/{number}/search", {"most": 1}, number=number)

@@ -40,3 +40,36 @@ def test_a_criterion_that_is_none_says_what_would_be_right(service, path):
     answer = service.stranger.get(f"{path}/moments", params={"where": "moon=0..1"})
     assert answer.status_code == 422
     assert "velocity" in answer.json()["detail"]
+
+
+def test_where_a_missing_effect_would_act_is_told_with_what_it_takes_away(service, path):
+    found = service.stranger.get(f"{path}/action", params={"effect": "viscous_asymmetry"}).json()
+    assert found["title"] == "Direction-asymmetric viscous friction"
+    first = found["items"][0]
+    assert first["rms_with"] < first["rms"]
+    compared = service.stranger.get(f"{path}/compare").json()
+    before, after = compared["series"][0], found["series"][0]
+    assert before["time_s"] == after["time_s"]
+    assert before["measured"] == after["measured"]
+    assert before["predicted"] != after["predicted"]
+    models = service.stranger.get(f"{path}/ladder").json()["rungs"]
+    assert len(models) == 1, "a look keeps no model"
+
+
+def test_an_effect_that_is_unknown_or_in_the_model_acts_nowhere(service, path):
+    for effect, words in (("moon", "moon"), ("viscous", "has viscous already")):
+        answer = service.stranger.get(f"{path}/action", params={"effect": effect})
+        assert answer.status_code == 422
+        assert words in answer.json()["detail"]
+
+
+def test_what_drives_the_residual_stands_beside_the_series_of_its_trial(service, path):
+    series = service.stranger.get(f"{path}/compare").json()["series"][1]
+    found = service.stranger.get(f"{path}/drivers", params={"trial_id": series["trial_id"]}).json()
+    assert found["time_s"] == series["time_s"]
+    velocity = next(one for one in found["drivers"] if one["driver"] == "velocity")
+    assert velocity["unit"] == "rad/s"
+    assert len(velocity["values"]) == len(series["time_s"])
+    answer = service.stranger.get(f"{path}/drivers", params={"trial_id": 9999})
+    assert answer.status_code == 422
+    assert str(series["trial_id"]) in answer.json()["detail"]

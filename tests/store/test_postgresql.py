@@ -2,8 +2,11 @@
 
 import sys
 
+import numpy as np
+import psycopg
 import pytest
 from sqlalchemy import text
+from sqlalchemy.exc import IntegrityError
 
 from bench.store import Store
 from bench.store.backend import shown
@@ -70,6 +73,24 @@ def test_a_database_that_may_not_be_written_is_named(server: PostgresqlServer, s
     server.run(f"ALTER DATABASE {name} SET default_transaction_read_only = on")
     with Store.open(store_url) as other, pytest.raises(StoreReadOnlyError, match="may not be written"):
         begin(other)
+
+
+def test_samples_are_not_compressed(store: Store) -> None:
+    query = text("SELECT attstorage FROM pg_attribute WHERE attrelid = 'sample_block'::regclass AND attname = 'data'")
+    with store._database.reading() as connection:
+        assert connection.execute(query).scalar() in (b"e", "e")
+
+
+def test_what_fails_while_it_is_sent_is_named_and_nothing_of_it_is_kept(store: Store) -> None:
+    writer = begin_trial(store, begin(store))
+    width = len(store.trial(writer.trial_id).channels)
+    with store._database.writing() as connection:
+        connection.execute(text("ALTER TABLE sample_block ADD CHECK (rows < 9)"))
+    with pytest.raises((IntegrityError, psycopg.errors.CheckViolation)):  # at the next statement, or at the end
+        writer.append(np.zeros((9, width)), [(0.0, "begun", "")])
+    assert (store.trial(writer.trial_id).rows, store.events(writer.trial_id)) == (0, [])
+    writer.append(np.zeros((8, width)))
+    assert store.trial(writer.trial_id).rows == 8
 
 
 def test_the_missing_driver_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,21 +2,25 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Query, Request
+from fastapi import APIRouter, Depends, Header, Path, Query, Request
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel
 
 from bench.control.drive_factory import is_simulated
 from bench.service.auth.access import allow_read
+from bench.service.http.problems import problems
+from bench.service.live.jobs import JobRecord, Jobs
 from bench.service.live.live_events import LiveEvents
 from bench.service.live.status import Rows, Status, rows_of, status_of
 from bench.service.routes.leases import LeaseOf, lease_now
 from bench.service.services import RunnerOf
+from bench.store.errors import NotFoundError
 
 MOST_ROWS = 2000
 router = APIRouter(prefix="/live", tags=["live"], dependencies=[Depends(allow_read)])
 AfterRow = Annotated[int, Query(ge=-1, description="only rows after this one; -1: all that are kept")]
 MostRows = Annotated[int, Query(ge=1, le=20_000, description="most rows in one answer; the newest are sent")]
+JobName = Annotated[str, Path(max_length=100, description="as the request gave it in `X-Job`", examples=["b7"])]
 LastEvent = Annotated[str | None, Header(max_length=200, description="`id` of the rows that came last")]
 
 
@@ -65,3 +69,32 @@ def now(runner: RunnerOf, lease: LeaseOf, after_row: AfterRow = -1, limit: MostR
     simulated = is_simulated(runner.configuration)
     status = status_of(runner.status(), simulated, lease_now(lease.current()))
     return LiveNow(status=status, rows=rows_of(runner.live(after_row, limit)))
+
+
+@router.get("/jobs/{job}", summary="How far a computation has come", responses=problems(404))
+async def job_now(request: Request, job: JobName) -> JobRecord:
+    """Of a request that gave itself a name in the header `X-Job`: a diagnosis tells its stages."""
+    jobs: Jobs = request.app.state.jobs
+    found = jobs.find(job)
+    if found is None:
+        raise NotFoundError(f"no job '{job}'; a request is one under the name in its header X-Job")
+    return found.record()
+
+
+@router.get(
+    "/jobs/{job}/stream",
+    summary="The same as it goes on (server-sent events)",
+    response_class=StreamingResponse,
+    responses={
+        200: {
+            "description": "`event: progress` carries a JobRecord (see GET /live/jobs/{job}) at each change, until the "
+            "job has ended. To cancel it, break off the request itself.",
+            "content": {"text/event-stream": {"example": 'event: progress\ndata: {"state": "computing"}\n\n'}},
+        }
+    },
+)
+async def job_stream(request: Request, job: JobName) -> StreamingResponse:
+    """May be opened a little before the request; ends at once where none of that name comes."""
+    jobs: Jobs = request.app.state.jobs
+    events = jobs.stream(job, request.app.state)
+    return StreamingResponse(events, media_type="text/event-stream", headers={"Cache-Control": "no-store"})

@@ -10,7 +10,6 @@ from bench.service.http import conditional
 from bench.service.http.downloads import attachment
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
-from bench.study import error_map as study
 from bench.study.closed_loop import simulate
 from bench.study.compare import compare
 from bench.study.create import describe
@@ -21,6 +20,9 @@ from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
 from bench.study.models.study import Study
+from bench.study.plots import error_map as study
+from bench.study.plots import moments as at
+from bench.study.plots.series import DriversOverTime, drivers_over_time
 from bench.study.report.report import report_html
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
@@ -135,6 +137,30 @@ async def moments(
         Query(min_length=1, max_length=10, description="driver=low..high, all of them", examples=["velocity=0.5..1"]),
     ],
     model_id: ModelId = None,
-) -> study.Moments:
+) -> at.Moments:
     """Stretches of trials, with the residual's size during each; at most a dozen."""
-    return await in_lab(request, study.moments, study_id, where, model_id)
+    return await in_lab(request, at.moments, study_id, where, model_id)
+
+
+@router.get("/{study_id}/action", summary="Where a missing effect would act", responses=problems(404, 422))
+async def action(
+    request: Request,
+    study_id: StudyId,
+    effect: Annotated[str, Query(max_length=100, description="its name", examples=["viscous_asymmetry"])],
+    model_id: ModelId = None,
+) -> at.Action:
+    """The moments in which it takes most of the residual away, and every trial predicted with it. Nothing is kept."""
+    return await in_lab(request, at.action, study_id, effect, model_id)
+
+
+@router.get(
+    "/{study_id}/drivers",
+    summary="What drives the residual, over time",
+    dependencies=[Depends(kept)],
+    responses=problems(404, 422) | conditional.ANSWER,
+)
+async def drivers(
+    request: Request, study_id: StudyId, trial_id: Annotated[int, Query(ge=1, description="of the study")]
+) -> DriversOverTime:
+    """Speed, load, position and others of one trial, at the times of its series in /compare."""
+    return await in_lab(request, drivers_over_time, study_id, trial_id)

@@ -60,23 +60,21 @@ def add(
     Returns:
         The rows that are pending now, shape (channels, less than a group).
     """
-    blocks, pieces = [], []
     for start in range(0, len(rows), BLOCK_ROWS):
         columns = columns_of(rows[start : start + BLOCK_ROWS])
-        blocks.append(_block(trial_id, first_row + start, columns.shape[1], encode(columns)))
+        # one by one: a server works on a block while the next one is made
+        connection.execute(_INSERT, _block(trial_id, first_row + start, columns.shape[1], encode(columns)))
         piece, pending = _overview(trial_id, first_row + start, columns, pending)
-        pieces += piece
-    if blocks:
-        connection.execute(_INSERT, blocks)
+        if piece is not None:
+            connection.execute(_INSERT_OVERVIEW, piece)
+    if len(rows):
         connection.execute(_COUNT, {"trial": trial_id, "total": first_row + len(rows)})
-    if pieces:
-        connection.execute(_INSERT_OVERVIEW, pieces)
     return np.empty((rows.shape[1], 0)) if pending is None else pending
 
 
 def _overview(
     trial_id: int, first_row: int, columns: FloatArray, pending: FloatArray | None
-) -> tuple[list[dict[str, object]], FloatArray]:
+) -> tuple[dict[str, object] | None, FloatArray]:
     """The row of the overview's table, if whole groups have come together, and what is pending then."""
     if pending is not None and pending.shape[1]:
         first_row -= pending.shape[1]
@@ -84,9 +82,9 @@ def _overview(
     found = overview_of(columns)
     rest = columns[:, found.covered :].copy()
     if not found.covered:
-        return [], rest
+        return None, rest
     data = encode(np.vstack([found.rows, found.asked_by, found.columns]))
-    return [_block(trial_id, first_row, found.covered, data)], rest
+    return _block(trial_id, first_row, found.covered, data), rest
 
 
 def _block(trial_id: int, first_row: int, rows: int, data: bytes) -> dict[str, object]:

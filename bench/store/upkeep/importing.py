@@ -50,7 +50,7 @@ class Import:
         pending = None
         for start in range(0, len(recording), share):
             rows = samples.rows_of(recording.channels, start, share)
-            with self._database.writing() as connection:
+            with self._database.recording() as connection:
                 pending = samples.add(connection, trial_id, start, rows, pending)
 
     def finish(self) -> int:

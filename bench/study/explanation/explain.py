@@ -15,14 +15,23 @@ from bench.study.explanation.never_slid import NeverSlidError, never_slid_page
 from bench.study.ladder import ladder
 from bench.study.material import model_of
 from bench.study.models.change import SearchStep
-from bench.study.models.comparison import Comparison, TrialError
+from bench.study.models.comparison import Comparison
 from bench.study.models.coverage import Coverage
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
 from bench.study.report.coverage_section import advice_section, coverage_section
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section
 from bench.study.report.head_section import head_section, summary
-from bench.study.report.model_sections import ladder_section, measured_section, model_section, residual_section
+from bench.study.report.model_sections import (
+    ladder_figure,
+    ladder_section,
+    measured_figure,
+    measured_section,
+    model_section,
+    residual_section,
+    worst_trial,
+)
+from bench.study.report.wording import in_words
 from bench.study.search import search_and_diagnose
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
@@ -104,9 +113,9 @@ def explain(
     now = before if model_id == first else compare(store, study_id, model_id)
     rungs = ladder(store, study_id)
     study = describe(store, study_id)
+    pictures = [ladder_figure(rungs), measured_figure(before, now)]
+    head = head_section(study, rungs, last.sentence, store, pictures, confused)
     sections = [
-        head_section(study, rungs, last.sentence, store, confused),
-        *([came_in] if came_in else []),
         measured_section(study, store),
         coverage_section(told),
         ladder_section(rungs),
@@ -118,12 +127,13 @@ def explain(
         advice_section(told, _separating(missing, last)),
         provenance_section(study, store),
     ]
+    head, *rest = in_words([head, *sections], [one.name for one in study.trials])
     return Explained(
         study_id=study_id,
         sentences=tuple(summary(study, rungs, last.sentence, confused)),
         rungs=rungs,
         coverage=told,
-        html=html_page(f"What the model of {name} lacks", sections),
+        html=html_page(f"What the model of {name} lacks", [head, *([came_in] if came_in else []), *rest]),
     )
 
 
@@ -159,20 +169,15 @@ def _separating(*found: Diagnosis) -> list[str]:
 
 
 def _before_and_after(before: Comparison, now: Comparison) -> Section:
-    """Measured against what the first and the last model predict, in the trial that the first one is worst in."""
-    worst: TrialError = max(before.trials, key=lambda one: one.rms if one.rms == one.rms else -1.0)
-    unit = f"{now.effort.name} [{now.effort.unit}]"
+    """What the first and the last model leave, in the trial that the first one is worst in."""
+    worst = worst_trial(before)
     old, new = (next(s for s in one.series if s.trial_id == worst.trial_id) for one in (before, now))
-    lines = [Line("measured", old.time_s, old.measured), Line("first model", old.time_s, old.predicted)]
     left = [Line("first model", old.time_s, old.residual)]
     if now.model_id != before.model_id:
-        lines.append(Line("last model", new.time_s, new.predicted))
         left.append(Line("last model", new.time_s, new.residual))
+    unit = f"{now.effort.name} [{now.effort.unit}]"
     return Section(
         "Before and after",
         [f"Trial {worst.name}: of all trials the one in which the first model is worst."],
-        figures=[
-            Figure("Measured and predicted", "time [s]", unit, lines),
-            Figure("What the models leave", "time [s]", unit, left),
-        ],
+        figures=[Figure("What the models leave", "time [s]", unit, left)],
     )

@@ -8,7 +8,8 @@ from bench.store import Store
 from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis, ProvisionalTerm, Ranked
 from bench.study.models.study import Study
-from bench.study.report.model_sections import cell, number, percent
+from bench.study.report.model_sections import cell, gain_cell, number, percent
+from bench.study.report.wording import KEYS, condition_text
 from bench.study.suggestion.suggested import Suggested
 from compensator.lab.chance import chance_cell
 
@@ -33,7 +34,7 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
             chance_cell(one.p_value),
             percent(one.held_out_before),
             percent(one.held_out_after),
-            f"{one.gain:.1%} ({one.gain_low:.1%} .. {one.gain_high:.1%})",
+            gain_cell(one.gain, one.gain_low, one.gain_high),
             number(one.d_prime),
             ", ".join(one.confused_with).replace("_", " ") or "-",
         )
@@ -69,7 +70,10 @@ def suggestion_section(found: Suggested) -> Section:
     rows = [
         (
             one.kind,
-            ", ".join(f"{name} {cell(value)}" for name, value in one.parameters.items()),
+            ", ".join(
+                condition_text(name, value if isinstance(value, int | float) else cell(value))
+                for name, value in one.parameters.items()
+            ),
             one.minutes,
             f"{one.before:.1f} -> {one.after:.1f}",
             one.sentence,
@@ -102,7 +106,7 @@ def provenance_section(study: Study, store: Store) -> Section:
     columns = ["id#", "kind", "source", "started", "operator", "software", "drive"]
     return Section(
         "Where it comes from",
-        tables=[Table("Experiments", columns, rows), Table("Rig", ["value", ""], rig)],
+        tables=[Table("Experiments", columns, rows), Table(KEYS, ["value", ""], rig)],
     )
 
 

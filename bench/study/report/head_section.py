@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 
 from bench.provenance import software
-from bench.report import Section, Table
+from bench.report import Figure, Section, Table
 from bench.store import Store
 from bench.store.records import Experiment
 from bench.study.models.ladder import Ladder
@@ -18,7 +18,9 @@ _JUDGED_BY = {
 }
 
 
-def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store, confused: Sequence[str] = ()) -> Section:
+def head_section(
+    study: Study, rungs: Ladder, diagnosis: str, store: Store, pictures: Sequence[Figure], confused: Sequence[str] = ()
+) -> Section:
     """What whoever files the report looks for first.
 
     Args:
@@ -26,6 +28,7 @@ def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store, conf
         rungs: its models.
         diagnosis: of the newest model, in a sentence.
         store: with its experiments.
+        pictures: what came out, in one look.
         confused: which of its effects could as well be others, in sentences.
     """
     numbers = dict.fromkeys(store.trial(one.trial_id).experiment_id for one in study.trials)
@@ -33,7 +36,7 @@ def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store, conf
     now = software()
     drives = [one.provenance.get("drive") or {} for one in experiments]
     facts = [
-        ("date", datetime.now(UTC).astimezone().isoformat(sep=" ", timespec="minutes")),
+        ("date", datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")),
         ("recorded", _days(experiments)),
         ("operator", _joined(one.operator for one in experiments)),
         ("rig", _joined(str(one.rig.get("name", "")) for one in experiments)),
@@ -42,7 +45,7 @@ def head_section(study: Study, rungs: Ladder, diagnosis: str, store: Store, conf
         ("version", str(now.get("version") or NOT_TOLD)),
         ("commit", str(now.get("commit") or NOT_TOLD)),
     ]
-    return Section("In short", summary(study, rungs, diagnosis, confused), [Table("Head", ["", ""], facts)])
+    return Section("In short", summary(study, rungs, diagnosis, confused), [Table("Head", ["", ""], facts)], pictures)
 
 
 def summary(study: Study, rungs: Ladder, diagnosis: str, confused: Sequence[str] = ()) -> list[str]:
@@ -52,7 +55,7 @@ def summary(study: Study, rungs: Ladder, diagnosis: str, confused: Sequence[str]
     added = [name.replace("_", " ") for name in last.effects if name not in first.effects]
     error = f"{percent(last.held_out)} ({percent(last.held_out_low)} .. {percent(last.held_out_high)})"
     if added:
-        off = f"With {' and '.join(added)} the error goes from {percent(first.held_out)} to {error} of the effort"
+        off = f"With {listed(added)} the error goes from {percent(first.held_out)} to {error} of the effort"
     else:
         off = f"The model is off by {error} of the effort"
     many = f"{len(study.trials)} trial{'s' if len(study.trials) != 1 else ''}"
@@ -63,6 +66,12 @@ def summary(study: Study, rungs: Ladder, diagnosis: str, confused: Sequence[str]
         *confused,
         diagnosis,
     ]
+
+
+def listed(names: Sequence[str]) -> str:
+    """`a, b and c`."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _days(experiments: Iterable[Experiment]) -> str:

@@ -2,16 +2,21 @@
 
 from collections.abc import Sequence
 from math import isfinite
+from textwrap import wrap
 
 from bench.report import Bars, Figure, Line, Points, Section, Table
+from bench.report.wording import unit_text
 from bench.store import Store
 from bench.study.models.closed_loop import ClosedLoop, LoopError, TrialInLoop
 from bench.study.models.comparison import AtRest, Comparison, FittedParameter, ResidualAgainst, TrialError
 from bench.study.models.ladder import Ladder, Rung
 from bench.study.models.study import Study
+from bench.study.report.wording import condition_text
 from compensator.lab.chance import chance_cell
+from compensator.lab.rows.drivers import DRIVERS
 
 NO_SHARE = 1e-7  # less is rounding
+NO_GAIN = 5e-4  # less is shown as none
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
 
 
@@ -25,6 +30,18 @@ def percent(share: float | None) -> str:
     if share is None or not isfinite(share):
         return "-"
     return f"{100 * share:.2g}%" if NO_SHARE < abs(share) < SMALL_SHARE else f"{share:.2%}"
+
+
+def gain_cell(value: float, low: float, high: float) -> str:
+    """A gain with its interval, as per cent; one that is next to nothing, in words."""
+    if max(map(abs, (value, low, high))) < NO_GAIN:
+        return "none"
+    return f"{per_cent(value)} ({per_cent(low)} .. {per_cent(high)})"
+
+
+def per_cent(share: float) -> str:
+    """One digit after the point; what rounds to nothing has no sign."""
+    return f"{round(100.0 * share, 1) + 0.0:.1f}%"
 
 
 def cell(value: object) -> str:
@@ -42,18 +59,27 @@ def measured_section(study: Study, store: Store) -> Section:
     rows = []
     for one in study.trials:
         trial = store.trial(one.trial_id)
-        held = ", ".join(f"{key} {cell(value)}" for key, value in sorted(one.conditions.items()))
+        held = ", ".join(condition_text(key, value) for key, value in sorted(one.conditions.items()))
         rows.append((trial.id, one.name, trial.kind, one.role.replace("_", " "), trial.rows, held))
     held_out = sum(one.role == "held_out" for one in study.trials)
+    judged = f"of which {held_out} are held out" if held_out else "none of which is held out"
     return Section(
         "What was measured",
         [
-            f"{len(rows)} trials, of which {held_out} are held out. Predicted is {study.effort.name} "
+            f"{len(rows)} trials, {judged}. Predicted is {study.effort.name} "
             f"[{study.effort.unit}]; effort and motion are filtered alike at {study.cutoff_hz:.3g} Hz; "
             f"rows that count: {study.rows}."
         ],
         [Table("Trials", ["id#", "name", "kind", "used as", "samples#", "conditions"], rows)],
     )
+
+
+_HOW = {
+    "hold-out": "trials held out",
+    "leave-one-trial-out": "each trial left out in turn",
+    "leave-one-block-out": "stretches left out in turn",
+}
+_NAME_WIDTH = 16  # characters of a line beneath a bar
 
 
 def ladder_section(found: Ladder) -> Section:
@@ -66,7 +92,7 @@ def ladder_section(found: Ladder) -> Section:
             percent(rung.training),
             percent(rung.held_out),
             f"{percent(rung.held_out_low)} .. {percent(rung.held_out_high)}",
-            rung.held_out_kind,
+            _HOW.get(rung.held_out_kind, rung.held_out_kind),
             percent(rung.breakaway.held_out) if rung.breakaway else "",
             rung.reflected_error_g,
         )
@@ -83,9 +109,6 @@ def ladder_section(found: Ladder) -> Section:
         "reflected load [g]#",
     ]
     floor = found.floor
-    names = [f"{rung.model_id}: {change_of(rung)}" for rung in rungs]
-    held = [100.0 * rung.held_out for rung in rungs]
-    low, high = [100.0 * rung.held_out_low for rung in rungs], [100.0 * rung.held_out_high for rung in rungs]
     return Section(
         "The ladder",
         [
@@ -97,18 +120,41 @@ def ladder_section(found: Ladder) -> Section:
             )
         ],
         [Table("Models", columns, rows)],
+    )
+
+
+def ladder_figure(found: Ladder) -> Figure:
+    """The error from model to model, down towards the floor."""
+    rungs = found.rungs
+    changes = [f"{rung.model_id}: {change_of(rung) if rung.parent_id else 'base'}" for rung in rungs]
+    names = ["<br>".join(wrap(change, _NAME_WIDTH)) for change in changes]
+    held = [100.0 * rung.held_out for rung in rungs]
+    low, high = [100.0 * rung.held_out_low for rung in rungs], [100.0 * rung.held_out_high for rung in rungs]
+    return Figure(
+        "Error from model to model",
+        "",
+        "error [% of the effort]",
         [
-            Figure(
-                "Error from model to model",
-                "",
-                "error [% of the effort]",
-                [
-                    Bars("training", names, [100.0 * rung.training for rung in rungs]),
-                    Bars("held out", names, held, low, high),
-                ],
-            )
+            Bars("training", names, [100.0 * rung.training for rung in rungs]),
+            Bars("held out, with its 90 % interval", names, held, low, high),
         ],
     )
+
+
+def measured_figure(before: Comparison, now: Comparison) -> Figure:
+    """What was measured, and what the first and the last model predict, in the trial that the first one is worst in."""
+    worst = worst_trial(before)
+    old, new = (next(s for s in one.series if s.trial_id == worst.trial_id) for one in (before, now))
+    lines = [Line("measured", old.time_s, old.measured), Line("first model", old.time_s, old.predicted, dashed=True)]
+    if now.model_id != before.model_id:
+        lines.append(Line("last model", new.time_s, new.predicted))
+    title = f"Measured and predicted in trial {worst.name}, the one in which the first model is worst"
+    return Figure(title, "time [s]", f"{now.effort.name} [{now.effort.unit}]", lines)
+
+
+def worst_trial(found: Comparison) -> TrialError:
+    """Of all trials the one with the largest error."""
+    return max(found.trials, key=lambda one: one.rms if isfinite(one.rms) else -1.0)
 
 
 def change_of(rung: Rung) -> str:
@@ -185,9 +231,7 @@ def _moved(trial: TrialInLoop, unit: str) -> Figure:
 
 
 def _parameters(title: str, found: Sequence[FittedParameter]) -> Table:
-    rows = [
-        (one.effect.replace("_", " "), one.name, number(one.value), _interval(one), one.unit, one.note) for one in found
-    ]
+    rows = [(one.effect, one.name, number(one.value), _interval(one), unit_text(one.unit), one.note) for one in found]
     return Table(title, ["effect", "parameter", "value#", "95 % interval", "unit", "note"], rows)
 
 
@@ -234,8 +278,10 @@ def residual_section(before: Comparison, now: Comparison) -> Section:
         drawn = _bins(one, "" if same else f"model {before.model_id}, ")
         if not same and one.driver in later:
             drawn += _bins(later[one.driver], f"model {now.model_id}, ")
-        title = f"Residual against {one.driver.replace('_', ' ')}"
-        figures.append(Figure(title, f"{one.driver} [{one.unit}]", f"residual [{now.effort.unit}]", drawn))
+        name = DRIVERS[one.driver].title
+        figures.append(
+            Figure(f"Residual against {name}", f"{name} [{one.unit}]", f"residual [{now.effort.unit}]", drawn)
+        )
     sentence = "Means of bins, with two standard errors from the scatter between stretches of 2 s."
     return Section("What the models leave", [sentence], figures=figures)
 

@@ -13,11 +13,14 @@ from bench.study.report.diagnosis_sections import diagnosis_section, provenance_
 from bench.study.report.head_section import head_section
 from bench.study.report.model_sections import (
     closed_loop_section,
+    ladder_figure,
     ladder_section,
+    measured_figure,
     measured_section,
     model_section,
     residual_section,
 )
+from bench.study.report.wording import in_words
 from bench.study.suggestion.suggest import suggest
 
 
@@ -53,11 +56,13 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
         title = f"What was missing from the first model, {first}"
         sections.append(diagnosis_section(title, diagnose(store, study_id, first), before))
     last = diagnose(store, study_id)
-    sections.insert(0, head_section(study, rungs, last.sentence, store))
+    pictures = [ladder_figure(rungs), measured_figure(before, now)]
+    sections.insert(0, head_section(study, rungs, last.sentence, store, pictures))
     sections.append(diagnosis_section(f"What is missing from the newest model, {newest}", last, now))
     if configuration is not None:
         sections.append(_next(store, study_id, configuration))
-    return f"Study {study_id}: {study.name}", [*sections, provenance_section(study, store)]
+    sections.append(provenance_section(study, store))
+    return f"Study {study_id}: {study.name}", in_words(sections, [one.name for one in study.trials])
 
 
 def _next(store: Store, study_id: int, configuration: BenchConfiguration) -> Section:

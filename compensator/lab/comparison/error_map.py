@@ -1,23 +1,18 @@
-"""Where a model is wrong: its error over speed and load, and the moments at which the joint was there."""
+"""Where a model is wrong: its error over speed and load."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
 from compensator.lab.rows.drivers import available
 from compensator.lab.rows.picture import FEWEST_PER_BIN
 
 SPEEDS, LOADS = 12, 5
 MOST_LOADS = 10  # distinct known loads that get a row each
 TAIL = 0.005  # share of rows beyond the outer edges at each end; they count in the outer cells
-PAUSE_S = 0.25  # rows further apart are two moments
-MOST_MOMENTS = 12
 
 
 @dataclass(frozen=True)
@@ -39,24 +34,6 @@ class ErrorMap:
     rms: FloatArray
     mean: FloatArray
     count: FloatArray
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """A stretch of one trial during which every criterion held, but for pauses.
-
-    Attributes:
-        trial: index in the dataset.
-        from_s, to_s: since the start of the trial.
-        rows: that met the criteria; rms, mean: of their residual, in the effort's unit.
-    """
-
-    trial: int
-    from_s: float
-    to_s: float
-    rows: int
-    rms: float
-    mean: float
 
 
 def error_map(fit: Fit) -> ErrorMap:
@@ -83,42 +60,6 @@ def error_map(fit: Fit) -> ErrorMap:
     return ErrorMap(
         "velocity", down, across_edges, down_edges, *(one.reshape(shape) for one in (np.sqrt(square), mean, count))
     )
-
-
-def moments(fit: Fit, criteria: Mapping[str, tuple[float, float]]) -> list[Moment]:
-    """Moments at which drivers lay between two values, the one with most error first; at most MOST_MOMENTS.
-
-    Args:
-        fit: the model.
-        criteria: driver -> lowest and highest value.
-
-    Raises:
-        NotApplicableError: a driver that these trials do not have, or that does not vary.
-    """
-    values = available(fit.dataset)
-    rows = fit.dataset.counted.copy()
-    for name, (low, high) in criteria.items():
-        if name not in values:
-            raise NotApplicableError(f"these trials have no driver '{name}' that varies; they have {', '.join(values)}")
-        rows &= (values[name] >= low) & (values[name] <= high)
-    found = _stretches(fit, rows)
-    return sorted(found, key=lambda one: one.rms**2 * one.rows, reverse=True)[:MOST_MOMENTS]
-
-
-def _stretches(fit: Fit, rows: BoolArray) -> list[Moment]:
-    dataset = fit.dataset
-    times = np.concatenate([dataset.time_of(trial) for trial in dataset.trials])
-    chosen = np.flatnonzero(rows)
-    trial, time = dataset.trial_index[chosen], times[chosen]
-    cuts = np.flatnonzero((np.diff(trial) != 0) | (np.diff(time) > PAUSE_S)) + 1
-    found = []
-    for part in np.split(np.arange(len(chosen)), cuts):
-        if not len(part):
-            continue
-        residual = fit.residual[chosen[part]]
-        ends = float(time[part[0]]), float(time[part[-1]])
-        found.append(Moment(int(trial[part[0]]), *ends, len(part), rms(residual), float(residual.mean())))
-    return found
 
 
 def _even(values: FloatArray) -> FloatArray:

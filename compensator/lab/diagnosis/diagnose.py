@@ -7,13 +7,14 @@ and shapes), does it help (held-out error, resampled by whole trials).
 
 from math import nan
 
+from compensator.lab import progress
 from compensator.lab.at_rest.rest_comparison import compare_at_rest
 from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import Answer
-from compensator.lab.diagnosis.four_families import judged
+from compensator.lab.diagnosis.four_families import LEFT, STAGES, judged
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.notes import at_rest, differs_by_run
 from compensator.lab.diagnosis.remaining import what_remains
@@ -41,6 +42,11 @@ def diagnose(fit: Fit) -> Diagnosis:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
+    with progress.stages(STAGES):
+        return _diagnosed(fit)
+
+
+def _diagnosed(fit: Fit) -> Diagnosis:
     if problems := fatal_problems(fit):
         return _data_problem(fit, problems[0])
     alien = alien_effort(fit)
@@ -50,6 +56,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         if alien is None:
             raise
         return _data_problem(fit, alien.text)
+    progress.enter(LEFT)
     first = families.first()
     nothing = first.verdict == "nothing"
     too_short = nothing and least_p_value(families.stretches) > SIGNIFICANT

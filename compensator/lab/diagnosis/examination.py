@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
@@ -66,7 +67,7 @@ NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in fo
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect: the answer, others that are confirmed, the rest; each by score."""
     before = _held_out(fit, gathered.show_in)
-    fits = [with_effect(fit, item.block.name, shape_of(item)) for item in evidence]
+    fits = [with_effect(fit, item.block.name, shape_of(item)) for item in progress.each(evidence)]
     afters = [_held_out(explained, gathered.show_in) for explained in fits]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.diagnosis import Candidate
@@ -20,6 +21,16 @@ from compensator.lab.screening.evidence import Screening, kept_evidence, screen,
 from compensator.lab.screening.own_load import on_own_load
 
 FEWEST_REVERSAL_ROWS = 40
+# stages of a diagnosis, as whoever waits for it is told of them
+CHECKS = "Checking the data"
+COLUMNS = "Computing what every effect would add"
+SCREENING = "Screening the effects of steady sliding"
+STEADY = "Refitting with the likeliest of them"
+CHAIN = "Judging the measuring chain"
+MEMORY = "Judging what acts near reversals"
+REST = "Judging starts from rest"
+LEFT = "Looking at what is left"
+STAGES = (CHECKS, COLUMNS, SCREENING, STEADY, CHAIN, MEMORY, REST, LEFT)
 
 
 @dataclass(frozen=True)
@@ -69,6 +80,7 @@ def judged(fit: Fit) -> FourFamilies:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
+    progress.enter(COLUMNS)
     gathered = with_noise(gather(fit))
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
     pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
@@ -77,12 +89,17 @@ def judged(fit: Fit) -> FourFamilies:
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
     assert gathered.noise is not None
+    progress.enter(SCREENING)
     stretch = fit.dataset.block_index[gathered.rows]
     generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
     sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
+    progress.enter(STEADY)
     steady = answer_of(fit, gathered, sliding, generic)
+    progress.enter(CHAIN)
     chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
+    progress.enter(MEMORY)
     memory, wide, not_judged = _memory_of(fit)
+    progress.enter(REST)
     rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
     left_out = {**gathered.left_out, **not_judged, **not_at_rest}
     return FourFamilies(steady, memory, rest, chain, gathered, wide, left_out)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from compensator.lab.comparison.error_map import error_map, moments
+from compensator.lab.comparison.error_map import error_map
+from compensator.lab.comparison.moments import moments
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fit import fit_model

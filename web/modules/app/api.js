@@ -51,10 +51,11 @@ async function request(path, options = {}) {
   return response;
 }
 
-export async function get(path, query = {}, { timeout_ms = 0, signal } = {}) {
+// job: a name under which the service tells how far it has come
+export async function get(path, query = {}, { timeout_ms = 0, signal, job } = {}) {
   const pairs = Object.entries(query).filter(([, value]) => value !== "" && value !== null && value !== undefined);
   const search = pairs.length ? `?${new URLSearchParams(pairs)}` : "";
-  return (await request(path + search, { headers: headers(), signal: signal ?? timeLimit(timeout_ms) })).json();
+  return (await request(path + search, { headers: headers(job ? { "X-Job": job } : {}), signal: signal ?? timeLimit(timeout_ms) })).json();
 }
 
 function timeLimit(timeout_ms) {

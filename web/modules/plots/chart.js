@@ -5,7 +5,7 @@ import { h, replace } from "../ui/dom.js";
 import { csv, fileName, save } from "../ui/save.js";
 import { number } from "../ui/format.js";
 import { gestures } from "./gestures.js";
-import { frame, paint, valueAt } from "./paint.js";
+import { frame, nearest, paint, valueAt } from "./paint.js";
 import { colour, faded } from "../ui/colours.js";
 import { firstFrom } from "./thin.js";
 
@@ -20,7 +20,8 @@ export class Chart extends EventTarget {
   #theme = null;
 
   // label: what a screen reader says of the picture; the numbers stand in the table or facts beside it
-  constructor(place, { label, height = 420 }) {
+  // moves: whether there are buttons to move about; a small one has only those that save it
+  constructor(place, { label, height = 420, moves = true }) {
     super();
     this.canvas = h("canvas", { class: "chart", tabindex: "0", role: "img", "aria-label": `${label}. Arrow keys move, plus and minus zoom, 0 shows all.` });
     this.canvas.style.height = `${height}px`;
@@ -29,8 +30,9 @@ export class Chart extends EventTarget {
     this.legend = h("div", { class: "legend" });
     this.values = h("div", { class: "values number" }, "\u00a0");
     const button = (text, name, act) => h("button", { type: "button", class: "small", title: name, "aria-label": name, onclick: act }, text);
-    const tools = h("div", { class: "actions" }, button("−", "Zoom out", () => this.zoom(1 / 0.7)), button("+", "Zoom in", () => this.zoom(0.7)),
-      button("◂", "Earlier", () => this.move(-0.5)), button("▸", "Later", () => this.move(0.5)), button("all", "Show all", () => this.showAll()),
+    const moving = [button("−", "Zoom out", () => this.zoom(1 / 0.7)), button("+", "Zoom in", () => this.zoom(0.7)),
+      button("◂", "Earlier", () => this.move(-0.5)), button("▸", "Later", () => this.move(0.5)), button("all", "Show all", () => this.showAll())];
+    const tools = h("div", { class: "actions" }, moves ? moving : [],
       button("PNG", "Save the picture", () => this.savePicture()), button("CSV", "Save its numbers", () => this.saveNumbers()));
     this.element = h("div", { class: "chart-box" }, h("div", { class: "row centre between" }, this.legend, tools), this.canvas, this.values);
     place.append(this.element);
@@ -94,6 +96,12 @@ export class Chart extends EventTarget {
   point(pixel) {
     this.cursor = pixel === null ? null : valueAt(pixel, this.view, frame(0, 1, this.#width, this.height));
     this.dispatchEvent(new Event("cursor"));
+  }
+
+  // the point {line, index} that is nearest to where somebody pressed: heard as "choose"
+  choose(x, y) {
+    this.chosen = nearest({ x, y }, { width: this.#width, height: this.height, view: this.view, content: this.#content });
+    if (this.chosen) this.dispatchEvent(new Event("choose"));
   }
 
   // where the values are read; null: nowhere

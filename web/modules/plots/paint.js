@@ -25,14 +25,13 @@ export function valueAt(x, [from, to], box) {
   return from + ((x - box.left) / (box.right - box.left)) * (to - from);
 }
 
-// content: {rows: [{title, least}], lines: [{row, x, y, colour, dash, width}], bands, marks, shades, xTitle}; theme: colours and font; pixel: how large one of the screen is
+// content: {rows: [{title, least}], lines: [{row, x, y, colour, dash, width, dots, bare}], bands, marks, shades, xTitle}; theme: colours and font; pixel: how large one of the screen is
 export function paint(context, { width, height, view, content, theme, pointer, pixel = 1 }) {
   context.clearRect(0, 0, width, height);
   context.font = theme.font;
   content.rows.forEach((row, index) => {
     const box = frame(index, content.rows.length, width, height);
-    const lines = content.lines.filter((line) => line.row === index);
-    const bands = (content.bands ?? []).filter((band) => band.row === index);
+    const { lines, bands } = of(content, index);
     const range = rangeOf(lines, bands, view, box, row.least);
     grid(context, box, range, view, theme, index === content.rows.length - 1);
     title(context, row.title, box, theme);
@@ -49,6 +48,25 @@ export function paint(context, { width, height, view, content, theme, pointer, p
   context.textAlign = "center";
   context.textBaseline = "alphabetic";
   context.fillText(content.xTitle, (LEFT + width - RIGHT) / 2, height - 4);
+}
+
+function of(content, index) {
+  return { lines: content.lines.filter((line) => line.row === index), bands: (content.bands ?? []).filter((band) => band.row === index) };
+}
+
+// the point of any line that is nearest to a place in the picture, {line, index}; null where there is none
+export function nearest({ x, y }, { width, height, view, content }) {
+  let [found, least] = [null, Infinity];
+  content.rows.forEach((row, at) => {
+    const box = frame(at, content.rows.length, width, height);
+    const { lines, bands } = of(content, at);
+    const range = rangeOf(lines, bands, view, box, row.least);
+    for (const line of lines) for (let index = 0; index < line.x.length; index += 1) {
+      const away = Math.hypot(xOf(line.x[index], view, box) - x, yOf(line.y[index], range, box) - y);
+      if (away < least) [found, least] = [{ line: content.lines.indexOf(line), index }, away];
+    }
+  });
+  return found;
 }
 
 // least: what the axis spans at least, so that the noise of what stands still is not drawn as large as motion

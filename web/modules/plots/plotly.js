@@ -1,6 +1,6 @@
 // Plots by plotly, with the colours of the page.
 
-import { colour, faded } from "../ui/colours.js";
+import { colour } from "../ui/colours.js";
 import { h } from "../ui/dom.js";
 import { csv, fileName, save } from "../ui/save.js";
 
@@ -68,14 +68,6 @@ function library() {
 
 export function forget(place) {
   if (place && window.Plotly) window.Plotly.purge(place);
-}
-
-// a line with its band; two traces, one legend entry
-export function band(x, low, high, name, colourName, extra = {}) {
-  return {
-    x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], fill: "toself", fillcolor: faded(colourName), line: { width: 0 },
-    mode: "lines", hoverinfo: "skip", showlegend: false, name, ...extra,
-  };
 }
 
 // plots follow the page when it changes between light and dark

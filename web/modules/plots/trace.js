@@ -17,11 +17,12 @@ export function points(indices, line, xOf, yOf) {
   return { x, y };
 }
 
-export function drawTrace(context, { x, y }, { colour, dash = [], width = WIDTH, dots = false }, box, pixel = 1) {
+// dots: a square at each point; bare: these alone
+export function drawTrace(context, { x, y }, { colour, dash = [], width = WIDTH, dots = false, bare = false }, box, pixel = 1) {
   context.strokeStyle = colour;
   context.fillStyle = colour;
   if (!dots && lengthOf({ x, y }) > STROKED * (box.right - box.left)) barred(context, columns({ x, y }, box, pixel), dash, width, box, pixel);
-  else stroked(context, { x, y }, dash, width, dots);
+  else stroked(context, { x, y }, dash, width, dots, bare);
 }
 
 // how long the line is on the screen, up and down
@@ -72,7 +73,7 @@ function barred(context, { low, high }, dash, width, box, pixel) {
   context.stroke();
 }
 
-function stroked(context, { x, y }, dash, width, dots) {
+function stroked(context, { x, y }, dash, width, dots, bare) {
   context.lineWidth = width;
   context.lineJoin = "bevel";
   context.setLineDash(dash);
@@ -80,7 +81,7 @@ function stroked(context, { x, y }, dash, width, dots) {
   let down = false;
   for (let at = 0; at < x.length; at += 1) {
     if (y[at] === y[at]) {
-      if (down) context.lineTo(x[at], y[at]);
+      if (down && !bare) context.lineTo(x[at], y[at]);
       else context.moveTo(x[at], y[at]);
       if (dots) context.rect(x[at] - 3, y[at] - 3, 6, 6);
       if (dots) context.moveTo(x[at], y[at]);

@@ -4,16 +4,17 @@ import { get } from "../app/api.js";
 import { patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { number, percent } from "../ui/format.js";
-import { colour } from "../ui/colours.js";
-import { draw } from "../plots/plotly.js";
+import { Chart } from "../plots/chart.js";
+import { shownUnit } from "../ui/units.js";
 
 const TOLD = { bench: "the bench", recording: "set point and effort", "stand-in": "nobody: a stand-in" };
 
-export function closedLoop(place, path, model_id) {
+// linked: the plots whose cursor this one shares
+export function closedLoop(place, path, { model_id, linked }) {
   const answer = h("div");
   const ask = async (button, refine, busy) => {
     const found = await patiently(answer, "closed-loop", busy, (signal) => get(`${path}/closed-loop`, { model_id, refine }, { signal }), { button });
-    if (found) await show(answer, found);
+    if (found) show(answer, found, linked);
   };
   const simulate = h("button", { type: "button" }, "Simulate");
   const refine = h("button", { type: "button" }, "Simulate and refine");
@@ -23,13 +24,15 @@ export function closedLoop(place, path, model_id) {
     h("div", { class: "row centre" }, simulate, refine), answer);
 }
 
-async function show(place, found) {
-  const plot = h("div", { class: "plot", role: "figure", "aria-label": "Measured and simulated position" });
-  const choice = h("select", { id: "loop-trial", onchange: () => picture(plot, found, Number(choice.value)) },
+function show(place, found, linked) {
+  const plot = h("div");
+  const choice = h("select", { id: "loop-trial", onchange: () => picture(chart, found, Number(choice.value)) },
     found.trials.map((trial, index) => h("option", { value: String(index), selected: index === worst(found.trials) }, trial.name)));
   replace(place, errorTable(found), found.refined && refinement(found.refined),
     h("label", { for: "loop-trial" }, "Trial", choice), plot, trialTable(found), found.notes.map((note) => h("p", {}, note)));
-  await picture(plot, found, worst(found.trials));
+  const chart = new Chart(plot, { label: "Measured and simulated position", height: 360 });
+  linked.timed(chart, () => found.trials[Number(choice.value)].trial_id);
+  picture(chart, found, worst(found.trials));
 }
 
 // the trial whose position is the farthest off, of what it moves
@@ -73,11 +76,11 @@ function refinement(refined) {
 }
 
 // both motions, and beneath them by how much they differ: on the scale of the motion that is not to be seen
-function picture(plot, { trials, position_unit }, index) {
-  const { time_s, measured, simulated } = trials[index].series;
-  const line = (name, y, hue, extra) => ({ x: time_s, y, name, mode: "lines", line: { color: colour(hue), width: 2, ...extra } });
-  const apart = { ...line("simulated less measured", simulated.map((value, at) => value - measured[at]), "purple"), yaxis: "y2" };
-  const axis = (text, domain) => ({ title: { text: `${text} [${position_unit}]` }, domain });
-  return draw(plot, [line("measured", measured, "blue"), line("simulated", simulated, "red", { dash: "dash" }), apart],
-    { height: 360, xaxis: { title: { text: "time [s]" }, anchor: "y2" }, yaxis: axis("position", [0.45, 1]), yaxis2: axis("difference", [0, 0.35]) });
+function picture(chart, { trials, position_unit }, index) {
+  const { time_s: x, measured, simulated } = trials[index].series;
+  const { unit, factor } = shownUnit(position_unit);
+  const line = (row, name, values, colour, dash) => ({ row, name, x, y: values.map((value) => factor * value), colour, dash });
+  chart.show({ rows: [{ title: `position [${unit}]` }, { title: `difference [${unit}]` }], xTitle: "time in the trial [s]", lines: [line(0, "measured", measured, "blue"),
+    line(0, "simulated", simulated, "red", [6, 4]), line(1, "simulated less measured", simulated.map((value, at) => value - measured[at]), "purple")] });
+  chart.showAll();
 }

@@ -2,18 +2,18 @@
 
 import { get } from "../app/api.js";
 import { attempt } from "../ui/attempt.js";
+import { Chart } from "../plots/chart.js";
 import { closedLoop } from "./closedloop.js";
 import { facts, h, panel, replace, table } from "../ui/dom.js";
 import { errorMap, momentList } from "./errormap.js";
 import { conditions, nameOf, number, percent } from "../ui/format.js";
 import { milli, shownUnit } from "../ui/units.js";
-import { colour } from "../ui/colours.js";
-import { band, draw } from "../plots/plotly.js";
 
 const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
 
-// series: the plot beside it, which shows a moment that is chosen here
-export async function comparison(place, compared, { path, series }) {
+// linked: with the plot beside it, which shows a moment that is chosen here
+export function comparison(place, compared, { path, linked }) {
+  const { series } = linked;
   const [loop, spots, moments, drivers] = ["div", "div", "div", "div"].map((tag) => h(tag));
   drivers.className = "cards";
   const against = h("details", {}, h("summary", {}, "Residual against what drives it"),
@@ -23,28 +23,24 @@ export async function comparison(place, compared, { path, series }) {
     panel("Closer", against, h("details", {}, h("summary", {}, "Error of each trial and regime"), trialTable(compared), regimeTable(compared)),
       h("details", {}, h("summary", {}, "In closed loop"), h("div", { role: "group", "aria-label": "In closed loop" }, loop)),
       compared.notes.length > 0 && h("details", {}, h("summary", {}, compared.notes.length === 1 ? "1 note" : `${compared.notes.length} notes`), compared.notes.map((note) => h("p", {}, note)))));
-  closedLoop(loop, path, compared.model_id);
+  closedLoop(loop, path, { model_id: compared.model_id, linked });
   const ask = (where, words) => attempt(moments, async () => {
     const query = new URLSearchParams([...where.map((one) => ["where", one]), ["model_id", compared.model_id]]);
-    momentList(moments, words, await get(`${path}/moments?${query}`), (one) => series.showMoment(one));
+    const found = await get(`${path}/moments?${query}`);
+    momentList(moments, `Moments at ${words}`, found, (one) => series.showMoment(one));
     moments.scrollIntoView({ block: "nearest" });
+    if (found.items.length) series.showMoment(found.items[0], { focus: false });
   }, { busy: "Looking …" });
-  attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask), { busy: "Looking …" });
-  against.addEventListener("toggle", async () => {
+  attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask, linked), { busy: "Looking …" });
+  against.addEventListener("toggle", () => {
     if (!against.open || drivers.children.length) return;
-    for (const driver of compared.residual_against) {
-      const picture = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${nameOf(driver.driver)}` });
-      drivers.append(picture);
-      await driverPlot(picture, driver, compared.effort);
-      picture.on?.("plotly_click", ({ points }) => ask(...spotOf(driver, points[0])));
-    }
+    for (const driver of compared.residual_against) driverPlot(drivers, driver, { effort: compared.effort, linked, ask });
   });
 }
 
-// the bin around a point: half-way to its neighbours, on the side of its direction
-export function spotOf(driver, point) {
-  const group = driver.groups[Math.floor(point.curveNumber / 2)];
-  const at = point.pointIndex;
+// the bin around a point of a line: half-way to its neighbours, on the side of its direction
+export function spotOf(driver, { line, index: at }) {
+  const group = driver.groups[line];
   const low = at > 0 ? (group.x[at - 1] + group.x[at]) / 2 : group.x[at] - 1e9;
   const high = at < group.x.length - 1 ? (group.x[at] + group.x[at + 1]) / 2 : group.x[at] + 1e9;
   const side = { forward: ["direction=0..1"], backward: ["direction=-1..0"] }[group.direction] ?? [];
@@ -58,16 +54,16 @@ function errors({ error, effort }) {
   return facts([["training error", text(error.training)], [kinds[error.held_out?.kind] ?? "held-out error", text(error.held_out)], ["floor from repeats", text(error.floor)]]);
 }
 
-function driverPlot(plot, driver, effort) {
-  const traces = driver.groups.flatMap((group) => {
-    const name = DIRECTIONS[group.direction] ?? "blue";
-    const marker = { symbol: group.direction === "backward" ? "diamond" : "circle", size: 6 };
-    const x = group.x.map((value) => value * shownUnit(driver.unit).factor);
-    return [band(x, group.low, group.high, group.direction, name),
-      { x, y: group.mean, name: group.direction, mode: "lines+markers", marker, line: { color: colour(name) }, customdata: group.count, hovertemplate: "%{x:.4g}: %{y:.4g} (%{customdata} rows)" }];
-  });
-  return draw(plot, traces, { height: 270, xaxis: { title: { text: `${nameOf(driver.driver)}${driver.unit ? ` [${shownUnit(driver.unit).unit}]` : ""}` } },
-    yaxis: { title: { text: `residual [${effort.unit}]` } } });
+// a line for each direction, with its band; a point that is chosen leads to its moments
+function driverPlot(place, driver, { effort, linked, ask }) {
+  const { unit, factor } = shownUnit(driver.unit);
+  const chart = new Chart(place, { label: `Residual against ${nameOf(driver.driver)}`, height: 250, moves: false });
+  const shown = driver.groups.map((group) => ({ ...group, colour: DIRECTIONS[group.direction] ?? "blue", x: group.x.map((value) => factor * value) }));
+  chart.show({ rows: [{ title: `residual [${effort.unit}]` }], xTitle: `${nameOf(driver.driver)}${unit ? ` [${unit}]` : ""}`,
+    lines: shown.map((group) => ({ row: 0, name: group.direction, x: group.x, y: group.mean, colour: group.colour, dots: true, dash: group.direction === "backward" ? [6, 4] : undefined })),
+    bands: shown.map((group) => ({ row: 0, x: group.x, low: group.low, high: group.high, colour: group.colour })) });
+  chart.addEventListener("choose", () => ask(...spotOf(driver, chart.chosen)));
+  linked.over(chart, driver.driver);
 }
 
 function trialTable({ trials }) {
@@ -86,4 +82,3 @@ function regimeTable({ regimes, effort }) {
     { title: "Error", number: true, cell: (regime) => percent(regime.relative) },
   ], regimes);
 }
-

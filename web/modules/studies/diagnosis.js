@@ -1,16 +1,21 @@
 // What is missing: the verdict in a sentence, the class of effects that these data cannot tell apart, and each effect with its picture.
 
+import { get } from "../app/api.js";
+import { attempt } from "../ui/attempt.js";
 import { bar } from "./beforeafter.js";
 import { h, replace } from "../ui/dom.js";
 import { capital, chance as chanceIs, interval, nameOf, number, percent, spoken } from "../ui/format.js";
 import { shownUnit } from "../ui/units.js";
-import { colour } from "../ui/colours.js";
-import { band, draw } from "../plots/plotly.js";
+import { Chart } from "../plots/chart.js";
+import { momentList } from "./errormap.js";
 
 const SHOWN = 6;
+const MOMENTS = 4; // of a candidate: all have the same to say
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
-export async function diagnosis(place, found, add) {
+// add(effect, place): to the model; linked: the plots that show where an effect acts, or null; path: of the study
+export function diagnosis(place, found, { add, path, linked, effort }) {
+  const ways = { add, look: (one, answer, button) => look(answer, one, { path, linked, model_id: found.model_id, button }), linked, effort };
   const named = h("div", { class: "cards" });
   const others = h("div", { class: "cards" });
   const curve = found.provisional && h("div", { class: "cards" });
@@ -25,11 +30,11 @@ export async function diagnosis(place, found, add) {
     found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
     found.ranking.length > SHOWN && more,
     notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, spoken(text)))));
-  if (curve) await provisional(curve, found.provisional, add);
-  for (const one of first) await card(one.in_class ? named : others, one, add);
-  more.addEventListener("toggle", async () => {
+  if (curve) provisional(curve, found.provisional, ways);
+  for (const one of first) card(one.in_class ? named : others, one, ways);
+  more.addEventListener("toggle", () => {
     const rest = more.querySelector(".cards");
-    if (more.open && !rest.children.length) for (const one of found.ranking.slice(SHOWN)) await card(rest, one, add);
+    if (more.open && !rest.children.length) for (const one of found.ranking.slice(SHOWN)) card(rest, one, ways);
   });
 }
 
@@ -43,28 +48,44 @@ function className(one) {
     one.separating_trial && h("p", { class: "soft" }, `The trial that would tell: ${one.separating_trial}`));
 }
 
-async function card(parent, one, add) {
-  const plot = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${one.picture?.driver ?? "its driver"} with the curve of ${one.title}` });
-  const answer = h("div");
-  const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
-  const button = h("button", { type: "button", class: one.in_class ? "primary" : "", onclick: () => add(one.effect, answer) }, `Add ${one.title}`);
-  parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ",
-    one.in_class && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")),
-  h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar("with the effect", one.held_out_after, highest, "blue")),
-  h("p", {}, evidence(one)), one.picture && plot, button, answer));
-  if (one.picture) await picture(plot, one);
+function card(parent, one, ways) {
+  const badges = [one.in_class && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")];
+  article(parent, one, { badges, words: evidence(one), name: "with the effect", action: `Add ${one.title}`, primary: one.in_class }, ways);
 }
 
 // what has no formula: its curve, to stand in the model until somebody knows the physics
-async function provisional(parent, one, add) {
-  const plot = h("div", { class: "plot", role: "figure", "aria-label": `Residual against ${one.picture.driver} with the free curve` });
-  const answer = h("div");
+function provisional(parent, one, ways) {
+  const badges = [h("span", { class: "badge stale" }, "provisional")];
+  article(parent, one, { badges, words: spoken(one.sentence), name: "with the curve", action: "Add as a provisional term", primary: false }, ways);
+}
+
+function article(parent, one, { badges, words, name, action, primary }, { add, look: lookAt, linked, effort }) {
+  const [plot, answer] = [h("div"), h("div")];
   const highest = Math.max(one.held_out_before ?? 0, one.held_out_after ?? 0) || 1;
-  const button = h("button", { type: "button", class: "primary", onclick: () => add(one.effect, answer) }, "Add as a provisional term");
-  parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ", h("span", { class: "badge stale" }, "provisional")),
-    h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar("with the curve", one.held_out_after, highest, "blue")),
-    h("p", {}, spoken(one.sentence)), plot, button, answer));
-  await picture(plot, one);
+  const adding = h("button", { type: "button", class: primary ? "add primary" : "add", onclick: () => add(one.effect, answer) }, action);
+  const looking = h("button", { type: "button", "aria-label": `Show where ${one.title} acts`, onclick: () => lookAt(one, answer, looking) }, "Show where it acts");
+  parent.append(h("article", { class: "panel", "aria-label": one.title }, h("h3", {}, one.title, " ", badges),
+    h("div", { class: "bars" }, bar("held-out error now", one.held_out_before, highest, "purple"), bar(name, one.held_out_after, highest, "blue")),
+    h("p", {}, words), plot, h("div", { class: "row" }, adding, linked && looking), answer));
+  if (!one.picture) return;
+  const chart = picture(plot, one, effort);
+  if (!linked) return;
+  chart.addEventListener("choose", () => lookAt(one, answer, looking));
+  linked.over(chart, one.picture.driver);
+}
+
+// the plots beside it show the moment in which the effect takes most away, with and without it
+async function look(place, { effect, title }, { path, linked, model_id, button }) {
+  const found = await attempt(place, () => get(`${path}/action`, { effect, model_id }), { busy: "Fitting the model with it …", button });
+  if (!found) return;
+  if (!found.items.length) {
+    replace(place, h("p", { class: "soft", role: "status" }, `${title} changes no prediction of the moving joint: what it says is of breaking away from rest.`));
+    return;
+  }
+  const { series } = linked;
+  series.withEffect(found);
+  momentList(place, `Where ${title} takes most away`, { ...found, items: found.items.slice(0, MOMENTS) }, (one) => series.showMoment(one));
+  series.showMoment(found.items[0], { focus: false });
 }
 
 // the evidence in words, the numbers behind it in brackets
@@ -83,12 +104,14 @@ function ends({ gain, gain_low: low, gain_high: high }) {
   return gain >= 0 ? [low, high] : [-high, -low];
 }
 
-function picture(plot, { picture: shown, title }) {
+// the residual, each bin's mean with its band, and the curve of the effect over it
+function picture(place, { picture: shown, title }, effort) {
   const { unit, factor } = shownUnit(shown.unit);
   const x = shown.x.map((value) => factor * value);
-  return draw(plot, [
-    band(x, shown.low, shown.high, "residual", "blue"),
-    { x, y: shown.residual, name: "residual", mode: "markers", marker: { color: colour("blue"), size: 6 } },
-    { x: shown.curve_x.map((value) => factor * value), y: shown.curve, name: title, mode: "lines", line: { color: colour("red"), width: 3 } },
-  ], { height: 240, xaxis: { title: { text: `${nameOf(shown.driver)}${unit ? ` [${unit}]` : ""}` } }, yaxis: { title: { text: shown.against_motion ? "residual, against the motion" : "residual" } } });
+  const chart = new Chart(place, { label: `Residual against ${nameOf(shown.driver)} with the curve of ${title}`, height: 230, moves: false });
+  chart.show({ rows: [{ title: `residual${shown.against_motion ? " against motion" : ""} [${effort.unit}]` }], xTitle: `${nameOf(shown.driver)}${unit ? ` [${unit}]` : ""}`,
+    bands: [{ row: 0, x, low: shown.low, high: shown.high, colour: "blue" }],
+    lines: [{ row: 0, name: "residual", x, y: shown.residual, colour: "blue", dots: true, bare: true },
+      { row: 0, name: title, x: shown.curve_x.map((value) => factor * value), y: shown.curve, colour: "red", width: 3 }] });
+  return chart;
 }

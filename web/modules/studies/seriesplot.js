@@ -7,12 +7,17 @@ const AROUND_S = 1.5;
 const numbers = (values) => Float64Array.from(values, (value) => value ?? NaN);
 
 export class SeriesPlot {
+  #content = null;
+  #shades = [];
+
   // series: of the model that is shown; earlier: of the model before, or nothing
   constructor(place, { series, earlier = [], effort, label = "Measured and predicted effort over time, residual beneath" }) {
-    Object.assign(this, { series, earlier, effort, names: { before: "before", now: "" } });
+    const alone = { series, earlier, names: { before: "before", now: "" } };
+    Object.assign(this, { ...alone, alone, effort });
     this.choice = h("select", { id: `series-${label.length}` }, series.map((one) => h("option", { value: String(one.trial_id) }, one.name)));
     const picture = h("div");
-    replace(place, h("label", { class: "inline" }, "Trial", this.choice), picture);
+    this.said = h("div", { role: "status" });
+    replace(place, h("label", { class: "inline" }, "Trial", this.choice), this.said, picture);
     this.chart = new Chart(picture, { label, height: 400 });
     this.choice.addEventListener("change", () => this.show(Number(this.choice.value)));
     if (series.length) this.show(series[0].trial_id);
@@ -28,6 +33,25 @@ export class SeriesPlot {
   between(other, names) {
     Object.assign(this, { earlier: other.series, names });
     this.show(this.series[0].trial_id);
+  }
+
+  // what a missing effect would take away; found: as GET /studies/{id}/action answers
+  withEffect({ title, series }) {
+    Object.assign(this, { series, earlier: this.alone.series, names: { before: "by the model", now: "with the effect" } });
+    const back = h("button", { type: "button", class: "small", onclick: () => this.modelAlone() }, "The model alone");
+    replace(this.said, h("div", { class: "row centre" }, h("span", {}, `With ${title}: between the two lines lies what it would take away.`), back));
+    this.show(this.trial_id);
+  }
+
+  modelAlone() {
+    Object.assign(this, this.alone);
+    replace(this.said);
+    this.show(this.trial_id);
+  }
+
+  // the trial that is shown
+  get trial_id() {
+    return Number(this.choice.value);
   }
 
   show(trial_id, shades = []) {
@@ -46,15 +70,23 @@ export class SeriesPlot {
       before && line(before, "residual", { row: 1, name: called("residual", then), colour: "purple", dash: [2, 3] }),
       line(one, "residual", { row: 1, name: called("residual", now), colour: "red" }),
     ].filter(Boolean);
-    this.chart.show({ rows: [{ title: `effort [${unit}]` }, { title: `residual [${unit}]` }], lines, shades, xTitle: "time in the trial [s]" });
+    this.#content = { rows: [{ title: `effort [${unit}]` }, { title: `residual [${unit}]` }], lines, xTitle: "time in the trial [s]" };
+    this.#shades = shades;
+    this.brush([]);
     this.chart.showAll();
   }
 
-  showMoment({ trial_id, from_s, to_s }) {
+  // shades more of the trial, as long as something else is pointed at
+  brush(shades) {
+    if (this.#content) this.chart.show({ ...this.#content, shades: [...this.#shades, ...shades] });
+  }
+
+  // focus: whether the keyboard follows
+  showMoment({ trial_id, from_s, to_s }, { focus = true } = {}) {
     this.show(trial_id, [{ from: from_s, to: to_s }]);
     this.chart.look(from_s - AROUND_S, to_s + AROUND_S);
-    this.chart.element.scrollIntoView({ block: "center" });
-    this.chart.canvas.focus({ preventScroll: true });
+    this.chart.element.scrollIntoView({ block: "nearest" });
+    if (focus) this.chart.canvas.focus({ preventScroll: true });
   }
 
   close() {

@@ -10,6 +10,7 @@ import { beforeAfter } from "./beforeafter.js";
 import { comparison } from "./comparison.js";
 import { diagnosis } from "./diagnosis.js";
 import { ladderPlot, rungName } from "./ladder.js";
+import { Linked } from "./linked.js";
 import { parameterTables } from "./parameters.js";
 import { searchButton } from "./search.js";
 import { SeriesPlot } from "./seriesplot.js";
@@ -28,16 +29,13 @@ export function studyView(place, [id, step], query) {
 }
 
 class Study {
-  #plots = [];
-
   constructor(id, parts, wanted) {
-    Object.assign(this, { id, parts, wanted, path: `/studies/${encodeURIComponent(id)}`, model: null, compared: null, series: null });
+    Object.assign(this, { id, parts, wanted, path: `/studies/${encodeURIComponent(id)}`, model: null, compared: null, linked: null });
   }
 
   close() {
-    for (const plot of [...this.#plots, this.series]) plot?.close();
-    this.#plots = [];
-    this.series = null;
+    this.linked?.close();
+    this.linked = null;
   }
 
   // told(): what is to be said once the study is there, before anything is fitted: later it would take the reader away
@@ -65,7 +63,8 @@ class Study {
     this.model = model_id;
     this.steps.say();
     this.askDiagnosis();
-    await Promise.all([this.showLadder(), this.showComparison()]);
+    this.comparing = this.showComparison();
+    await Promise.all([this.showLadder(), this.comparing]);
   }
 
   async showLadder() {
@@ -83,10 +82,10 @@ class Study {
     const compared = await patiently(this.parts.compare, "compare", "Fitting, and comparing with every trial …", (signal) => get(`${this.path}/compare`, { model_id }, { signal }));
     if (!compared || model_id !== this.model) return;
     this.compared = compared;
-    this.series?.close();
-    this.series = new SeriesPlot(this.parts.series, compared);
+    this.linked?.close();
+    this.linked = new Linked(this.path, new SeriesPlot(this.parts.series, compared));
     replace(this.parts.parameters, parameterTables(compared), modelButtons(this.study, compared));
-    await comparison(this.parts.compare, compared, { path: this.path, series: this.series });
+    comparison(this.parts.compare, compared, { path: this.path, linked: this.linked });
   }
 
   askDiagnosis() {
@@ -94,8 +93,9 @@ class Study {
     const button = h("button", { class: "primary", type: "button", id: "diagnose-now" }, "Diagnose");
     replace(diagnosed);
     button.addEventListener("click", async () => {
-      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal }), { button });
-      if (found) await diagnosis(diagnosed, found, (effect, place) => this.add(effect, place));
+      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal, job) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal, job }), { button, followed: true });
+      await this.comparing; // its plots show where effects act
+      if (found) diagnosis(diagnosed, found, { add: (effect, place) => this.add(effect, place), path: this.path, linked: this.linked, effort: this.study.effort });
     });
     replace(diagnose, panel("What is missing?", h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button), diagnosed));
     searchButton(this.parts.search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
@@ -137,7 +137,7 @@ class Study {
     await this.select(result.model_id);
     if (this.compared?.model_id !== result.model_id) return;
     beforeAfter(this.parts.change, result, { undo: () => this.undo(result.parent_id) });
-    this.series.compareWith(before, this.compared);
+    this.linked.series.compareWith(before, this.compared);
   }
 
   // back to the model before; the one that is left was made by the last change, and nothing was made from it

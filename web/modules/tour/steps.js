@@ -24,7 +24,7 @@ export const STEPS = [
   { words: "Which effect does the model lack? Choose 3 Diagnose, then press Diagnose: every effect of the catalogue is tested.",
     target: ["#diagnose-now", "a[data-step='diagnose']"], done: ({ seen }) => seen(".diagnosed .sentence") },
   { words: "The curve of the candidate lies over what the model leaves. Press Add. Where nothing is missing, press Next.",
-    target: [".diagnosed article > button"], done: ({ seen }) => seen(".study-change .bars") },
+    target: [".diagnosed article button.add"], done: ({ seen }) => seen(".study-change .bars") },
   { words: "The error before and after, on trials that the model was not fitted to; Undo takes it back. Choose 5 Result: the error from model to model, the parameters, the report.",
     target: ["a[data-step='result']"], done: ({ address }) => address.includes("/result") },
   { words: "Was that it? Press Guess and reveal, then Reveal: you are told what was hidden, and what of the guess was right.",

@@ -5,7 +5,7 @@ import { h, replace } from "./dom.js";
 const KEY = "friction-bench-units";
 const DEGREES = 180 / Math.PI;
 const FOR_PEOPLE = { rad: ["°", DEGREES], "rad/s": ["°/s", DEGREES], "rad/s²": ["°/s²", DEGREES], kg: ["g", 1000] };
-const WRITTEN = { degC: "°C" };
+const WRITTEN = { degC: "°C", "rad/s2": "rad/s²", "m/s2": "m/s²" };
 
 export function inSi() {
   return localStorage.getItem(KEY) === "SI";
@@ -13,7 +13,8 @@ export function inSi() {
 
 // SI unit -> {unit, factor}: as it is shown, and what a value in SI is multiplied by
 export function shownUnit(si) {
-  const [unit, factor] = (!inSi() && FOR_PEOPLE[si]) || [WRITTEN[si] ?? si, 1];
+  const written = WRITTEN[si] ?? si;
+  const [unit, factor] = (!inSi() && FOR_PEOPLE[written]) || [written, 1];
   return { unit, factor };
 }
 

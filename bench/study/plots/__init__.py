@@ -1,0 +1,1 @@
+"""What the plots of a study are made of: series over time, the error map, and the moments behind it."""
