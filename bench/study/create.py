@@ -63,18 +63,17 @@ def definition_of(
     """What a study is made of; arguments and errors as `create_study`."""
     if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
         raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
-    trials = trials_of(store, experiment_ids, where)
+    trials = _trials(store, experiment_ids, where)
     facts = _facts(store, experiment_ids)
     with lab_errors():
         recordings = [store.recording(trial.id) for trial in trials]
         told = all(LOAD in one.channels and bool(np.isfinite(one.channels[LOAD]).any()) for one in recordings)
         effects = _base_effects(base) if base else base_model(store, experiment_ids, facts, told)
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
-        if cutoff_hz is None:
-            trials = _long_enough(trials, recordings, cutoff)
-    held = split(trials, hold_out)
+    used = trials if cutoff_hz else _long_enough(trials, recordings, cutoff)
+    held = split(used, hold_out)
     return Definition(
-        trial_ids=tuple(trial.id for trial in trials),
+        trial_ids=tuple(trial.id for trial in used),
         held_out=tuple(held),
         base=effects,
         cutoff_hz=cutoff,
@@ -83,6 +82,7 @@ def definition_of(
         experiment_ids=tuple(experiment_ids),
         hold_out=tuple(hold_out),
         where=tuple(where),
+        too_short=tuple(trial.id for trial in trials if trial not in used),
     )
 
 
@@ -119,6 +119,7 @@ def _describe(store: Store, material: Material) -> Study:
         cutoff_hz=material.definition.cutoff_hz,
         rows=material.definition.rows,
         trials=material.study_trials,
+        left_out=[store.trial(number).name for number in material.definition.too_short],
         models=[ModelName(model_id=one.id, parent_id=one.parent_id, effects=one.effects) for one in models],
         model_id=models[-1].id,
     )
@@ -131,12 +132,8 @@ def _base_effects(base: Sequence[str]) -> tuple[str, ...]:
     return tuple(effect_named(effect).name for effect in base)
 
 
-def trials_of(store: Store, experiment_ids: Sequence[int], where: Sequence[str] = ()) -> list[Trial]:
-    """Completed trials of experiments that meet every criterion, in order.
-
-    Raises:
-        StudyError: no such trial, or a criterion that fits none.
-    """
+def _trials(store: Store, experiment_ids: Sequence[int], where: Sequence[str] = ()) -> list[Trial]:
+    """Completed trials of experiments that meet every criterion, in order."""
     if not experiment_ids:
         raise StudyError("no experiment named; a study needs the trials of at least one")
     found = []

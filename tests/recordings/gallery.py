@@ -1,6 +1,7 @@
 """Pictures of what `explain` makes of recordings: `python -m tests.recordings.gallery FOLDER out/gallery [NAME...]`.
 
-A picture is what was measured, what the first and the last model predict, and what they leave, as the report shows it.
+A picture is the head of the report: the error from model to model, and what was measured beside what the first and the
+last model predict.
 EMPS is a published benchmark and XL330 is under Apache-2.0: their pictures are in the documents. Those of the others
 are for whoever has the recordings.
 """
@@ -21,7 +22,6 @@ SETS = {
     "odrive": (["odrive/slow*_nocomp_*.csv"], ["--counts-per-turn", "8192"]),
     "hsm150": (["hsm150"], []),
 }
-FIGURES = ("Measured and predicted", "What the models leave")
 WIDTH, HEIGHT = 1000, 900
 
 
@@ -39,7 +39,7 @@ def main() -> None:
             page = chromium.new_page(viewport={"width": WIDTH, "height": HEIGHT})
             page.goto(report.as_uri())
             page.wait_for_timeout(DRAWN_MS)
-            first, last = (page.get_by_role("img", name=title, exact=True).bounding_box() for title in FIGURES)
+            first, last = (page.locator("figure").nth(number).bounding_box() for number in range(2))
             clip = {**first, "height": last["y"] + last["height"] - first["y"]}
             page.screenshot(path=Path(folder) / f"explain-{name}.png", full_page=True, clip=clip)
     refuse_large(Path(folder))

@@ -4,9 +4,8 @@ from collections.abc import Iterator, Sequence
 from math import pi
 
 from bench.store import Store
-from bench.study.create import trials_of
 from bench.study.errors import lab_errors
-from bench.study.material import Definition, load_model
+from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
 from compensator.lab.comparison.judgeable import Judgeable, judgeable
 from compensator.lab.rows import coverage as lab
@@ -42,7 +41,7 @@ def coverage(store: Store, study_id: int, model_id: int | None = None) -> Covera
     with lab_errors():
         fit = material.fit_of(model)
         found, effects = lab.coverage_of(fit.dataset), judgeable(fit)
-    held = list(_held(found, fit.dataset, _too_short(store, material.definition)))
+    held = list(_held(found, fit.dataset, len(material.definition.too_short)))
     advice = _advice(found, effects)
     count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
     best = f" What would help most: {advice[0].trial}." if advice else ""
@@ -71,15 +70,9 @@ def _judged(one: Judgeable) -> JudgedEffect:
     )
 
 
-def _too_short(store: Store, definition: Definition) -> int:
-    """How many trials of the study's experiments the filter left nothing of."""
-    there = trials_of(store, definition.experiment_ids, definition.where) if definition.experiment_ids else []
-    return len({trial.id for trial in there} - set(definition.trial_ids))
-
-
-def _held(found: lab.Coverage, dataset: Dataset, too_short: int) -> Iterator[Held]:
+def _held(found: lab.Coverage, dataset: Dataset, left_out: int) -> Iterator[Held]:
     unit = dataset.facts.position_unit
-    short = f"; {too_short} more too short for the filter at {dataset.cutoff_hz:.3g} Hz" if too_short else ""
+    short = f"; {left_out} more too short for the filter at {dataset.cutoff_hz:.3g} Hz" if left_out else ""
     yield Held(
         quantity="trials",
         found=f"{found.trials}, {found.duration_s:.0f} s, {found.usable:.0%} of the samples usable{short}",
