@@ -6,8 +6,8 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: help demo paper serve test test-timed test-others check format docs report screenshots pictures benchmark kills schema test-vm dist \
-        dist-test audit sbom hashes clean
+.PHONY: help demo paper serve test test-timed test-services test-drivers test-others steady check format docs report \
+        screenshots pictures benchmark kills fuzz test-vm dist dist-test audit sbom hashes clean
 
 help:            ## this list
 	@awk -F ':.*## *' '/^[a-z-]+:.*##/ { printf "%-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -36,16 +36,21 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 test: $(STAMP)   ## the tests: those that the wall clock times, which mostly wait, and beside them all others
 	@$(MAKE) --jobs=2 --keep-going --output-sync=target --no-print-directory test-timed test-others
 
-# more processes than cores: services and browsers wait for half of their time, drivers for most of it
-test-timed: $(STAMP)  ## the tests that the wall clock times: services and browsers, then drivers
-	@failed=0; \
-	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers || failed=1; \
-	$(BIN)/pytest --numprocesses 6 --no-loadscope-reorder tests/drivers -m wall_clock || failed=1; \
-	exit $$failed
+test-timed: $(STAMP)  ## those that the wall clock times, one part after the other
+	@failed=0; for part in test-services test-drivers; do $(MAKE) --no-print-directory $$part || failed=1; done; exit $$failed
+
+test-services: $(STAMP)  ## of these, services and browsers
+	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers
+
+test-drivers: $(STAMP)  ## of these, drivers: they wait for most of their time, so there are more processes than cores
+	$(BIN)/pytest --numprocesses 6 --no-loadscope-reorder -m wall_clock tests/drivers
 
 # they take whatever the timed ones leave, so each may last several times as long as alone
 test-others: $(STAMP)  ## the tests that only compute, on all cores, making way for whatever else runs
 	nice -n 19 $(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock'
+
+steady: $(STAMP) ## the tests that the wall clock times, 20 times in a row: which of them fails when
+	$(BIN)/python -m tests.steady 20
 
 check: $(STAMP)  ## style, types and walls; .pre-commit-config.yaml runs the same
 	$(BIN)/ruff check .
@@ -83,8 +88,8 @@ benchmark: $(STAMP) ## rates of plant, store, service, drivers, lab and command 
 kills: $(STAMP)  ## 200 runs ended at random moments in every way: what is left of each
 	$(BIN)/python -m tests.stopping.kills --kills 200
 
-schema: $(STAMP) ## every route asked with many requests that fit its description, and many that do not
-	SCHEMA_EXAMPLES=100 $(BIN)/pytest tests/service/test_schema.py --timeout=3600
+fuzz: $(STAMP)   ## what is drawn at random, for long: requests, files and bytes on every wire; says how many
+	FUZZ_TIMES=50 $(BIN)/pytest --numprocesses auto --timeout=7200 tests/fuzz
 
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)

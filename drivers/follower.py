@@ -9,17 +9,19 @@ class Follower(Protocol):
     """Looks at a joint in the pauses of another program.
 
     Attributes:
-        place: what that program opens in the place of the real port.
+        wanted: what that program has to do, after "let the other program".
         device: name used in messages.
         product: what answers.
+        is_between: whether what that program says goes through here; else the bus is shared.
     """
 
-    place: str
+    wanted: str
     device: str
     product: str
+    is_between: bool
 
     def look(self, timeout_s: float) -> Sample | None:
-        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
+        """Listen for a while [s], and pass on what is said; return a sample as soon as one was taken, else None.
 
         Raises:
             DriveConnectionError: the real port is gone.
@@ -27,7 +29,7 @@ class Follower(Protocol):
 
     @property
     def silent_s(self) -> float:
-        """How long the other program has said nothing [s]."""
+        """How long the other program, or on a bus the actuator, has said nothing [s]."""
 
     def close(self) -> None:
         """Give both ports back. Never raises."""

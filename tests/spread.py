@@ -1,6 +1,7 @@
 """How tests are spread over processes: those of one file stay together, as they share what is slow to start.
 
-Conformance tests share the simulated device of one bench, so there it is those of one file and one bench.
+Conformance tests share the simulated device of one bench, so there it is those of one file and one bench. What is drawn
+at random shares a service, and takes long where much is drawn: each goes where there is room.
 """
 
 import re
@@ -9,12 +10,15 @@ from functools import cache
 from xdist.scheduler import LoadScopeScheduling
 
 CONFORMANCE = "tests/drivers/conformance/"
+FUZZ = "tests/fuzz/"
 
 
 class FileAndBench(LoadScopeScheduling):
     """Which tests go to the same process."""
 
     def _split_scope(self, nodeid: str) -> str:
+        if nodeid.startswith(FUZZ):
+            return nodeid
         path, _, name = nodeid.partition("::")
         return f"{path} {bench_of(name)}" if path.startswith(CONFORMANCE) else path
 

@@ -82,6 +82,11 @@ COMMANDS = (
         "Experiments over every combination of some parameters: plan, start.",
     ),
     CommandEntry("status", "bench.cli.operation.service:status", "Show what a running service's bench is doing."),
+    CommandEntry(
+        "benches",
+        "bench.cli.operation.benches:benches",
+        "List the benches of the laboratory: state, lease, queue, and what is not handed in yet.",
+    ),
     CommandEntry("stop", "bench.cli.operation.service:stop", "Stop the joint of a running service and power it off."),
     CommandEntry(
         "experiments", "bench.cli.records.experiments:experiments", "List what has been run or imported, newest first."

@@ -115,6 +115,11 @@ class StoreSettings(Section):
     url: str = quantity(
         "sqlite:///friction-bench.sqlite", "", "Database address: sqlite:///FILE or postgresql://USER@HOST/DATABASE"
     )
+    lab_url: str | None = quantity(
+        None,
+        "",
+        "Database of a laboratory of several benches, to which what was recorded is handed in: postgresql://...",
+    )
     reserve_mb: float = quantity(200.0, "MB", "Space that a new trial has to leave free on the disk", ge=0)
     retention: RetentionSettings = RetentionSettings()
 

@@ -12,6 +12,10 @@ from bench.errors import ConfigurationError
 from bench.json_types import Values
 
 Baud = Annotated[int, typer.Option(min=0, help="Pace of the line in bits a second; 0 is as fast as the machine.")]
+Interface = Annotated[
+    str, typer.Option(help="slcan (a pseudo-terminal), or any interface of python-can: socketcan, pcan ...")
+]
+Channel = Annotated[str, typer.Option(help="Of the interface: vcan0 ...")]
 Made = TypeVar("Made")
 
 

@@ -1,7 +1,7 @@
 """Record a joint that another program moves: its motion as a recording, with what the drive reports as the effort."""
 
 from collections.abc import Callable
-from math import nan
+from math import isfinite, isnan, nan
 from pathlib import Path
 from time import perf_counter
 
@@ -9,20 +9,21 @@ import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.drives.registry import drive_kind, drive_kinds
-from bench.control.servo import current_servo
+from bench.control.servo import current_servo, torque_constant_n_m_a
 from bench.errors import ConfigurationError
 from compensator.lab.recordings.recording import Condition, Recording
 from drivers.contract import Sample, Status
 from drivers.follower import Follower
 
 FEWEST_ROWS = 2
+EFFORTS = {"current_a", "current_estimate_a", "duty"}
 LEAVES_S = 2.0  # another program that says nothing for as long is gone
 _LOOK_S = 0.05  # how soon an end is noticed
 Stopped = Callable[[], bool]
 
 
 def follower_of(configuration: BenchConfiguration, link: Path, period_s: float) -> Follower:
-    """What looks at the joint of a bench, standing between it and another program.
+    """What looks at the joint of a bench: standing between it and another program, or listening on their bus.
 
     Args:
         configuration: of the bench.
@@ -73,32 +74,41 @@ def record(
             samples.append(sample)
     if len(samples) < FEWEST_ROWS:
         raise ConfigurationError(
-            f"{len(samples)} samples were taken, {FEWEST_ROWS} are wanted: does the other program talk to the servo "
-            f"through {follower.place}, and leave the line a pause of 2 ms now and then?"
+            f"{follower.device}: {len(samples)} samples were taken, {FEWEST_ROWS} are wanted. Let the other program "
+            f"{follower.wanted}"
         )
     return Recording(name, "followed", conditions, _channels(samples, configuration))
 
 
 def pass_on(follower: Follower, stopped: Stopped) -> None:
-    """Go on passing bytes until the other program has left: it may hold a load.
+    """Go on passing bytes until the other program has left: it may hold a load. On a shared bus nothing is passed.
 
     Raises:
         DriveConnectionError: the port is gone.
     """
     began_s = perf_counter()
-    while not stopped() and min(follower.silent_s, perf_counter() - began_s) < LEAVES_S:
+    while follower.is_between and not stopped() and min(follower.silent_s, perf_counter() - began_s) < LEAVES_S:
         follower.look(_LOOK_S)
 
 
 def _channels(samples: list[Sample], configuration: BenchConfiguration) -> dict[str, np.ndarray]:
-    """What was measured; a quantity that never was is left out."""
-    servo = current_servo(configuration.rig)
+    """What was measured; a quantity that never was is left out.
+
+    Raises:
+        ConfigurationError: a torque alone is told, and the rig does not say what current that is.
+    """
+    servo, constant_n_m_a = current_servo(configuration.rig), torque_constant_n_m_a(configuration.rig)
+    if isnan(constant_n_m_a) and any(isfinite(one.torque_n_m) and isnan(one.current_a) for one in samples):
+        raise ConfigurationError(
+            f"rig '{configuration.rig.name}': a torque is told and no current; motor.torque_constant_n_m_a makes one "
+            "of the other. Add it to the rig (1 where all is to be said in N m)"
+        )
     rows = {
         "time_s": [one.time_s - samples[0].time_s for one in samples],
         "position_rad": [one.position_rad for one in samples],
         "velocity_rad_s": [one.velocity_rad_s for one in samples],
         "duty": [one.duty for one in samples],
-        "current_a": [one.current_a for one in samples],
+        "current_a": [one.torque_n_m / constant_n_m_a if isnan(one.current_a) else one.current_a for one in samples],
         "current_estimate_a": [nan if servo is None else servo.estimate_a(one, one.velocity_rad_s) for one in samples],
         "supply_v": [one.supply_v for one in samples],
         "temperature_c": [one.temperature_c for one in samples],

@@ -4,6 +4,7 @@ import asyncio
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 
 import anyio.to_thread
 from fastapi import APIRouter, FastAPI
@@ -12,6 +13,7 @@ from bench import __version__
 from bench.commission.guide import ENDED, Guide
 from bench.runs.bench_control import BenchControl
 from bench.runs.calibrator import Calibrator
+from bench.runs.lab_link import LabLink, word_of
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
 from bench.service import compute
@@ -27,6 +29,7 @@ from bench.service.live.live_events import LiveEvents
 from bench.service.routes import (
     audit,
     bench_state,
+    benches,
     challenges,
     commission,
     drive,
@@ -101,6 +104,7 @@ A missing effect, found and added:
 
 _ROOMS = (
     bench_state,
+    benches,
     drive,
     commission,
     leases,
@@ -137,12 +141,16 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     calibrator = Calibrator(runner, store)
     lease = Lease(lambda: _under_way(guide, calibrator, runner), engaged=lambda: guide.engaged or calibrator.engaged)
     conductor = Conductor(runner, store, lease.starting)
+    places = runner.configuration.store
+    shares = places.lab_url is None and places.url.startswith("postgresql")
+    link = LabLink(store, places.lab_url, partial(word_of, runner, lease, conductor), shares=shares)
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         turns.prepare()
         trail.start()
         conductor.begin()
+        link.start()
         looking = asyncio.create_task(_look_again(access))
         yield
         looking.cancel()
@@ -154,6 +162,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         calibrator.close(ENDED)
         app.state.lab.close()
         conductor.close()
+        link.close()
         trail.close()
 
     app = FastAPI(
@@ -168,7 +177,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
     )
     app.state.store, app.state.runner, app.state.access, app.state.ending = store, runner, access, False
-    app.state.lease = lease
+    app.state.lease, app.state.lab_link = lease, link
     app.state.lab = lab or LabHere(store)
     app.state.conductor, app.state.guide, app.state.calibrator = conductor, guide, calibrator
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before

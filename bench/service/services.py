@@ -7,6 +7,7 @@ from fastapi import Depends, Request
 from bench.commission.guide import Guide
 from bench.runs.bench_control import BenchControl
 from bench.runs.calibrator import Calibrator
+from bench.runs.lab_link import LabLink
 from bench.runs.queue import Conductor
 from bench.store import Store
 
@@ -27,6 +28,10 @@ async def _calibrator(request: Request) -> Calibrator:
     return cast(Calibrator, request.app.state.calibrator)
 
 
+async def _lab_link(request: Request) -> LabLink:
+    return cast(LabLink, request.app.state.lab_link)
+
+
 async def _guide(request: Request) -> Guide:
     return cast(Guide, request.app.state.guide)
 
@@ -35,4 +40,5 @@ StoreOf = Annotated[Store, Depends(_store)]
 RunnerOf = Annotated[BenchControl, Depends(_runner)]
 ConductorOf = Annotated[Conductor, Depends(_conductor)]
 CalibratorOf = Annotated[Calibrator, Depends(_calibrator)]
+LabLinkOf = Annotated[LabLink, Depends(_lab_link)]
 GuideOf = Annotated[Guide, Depends(_guide)]

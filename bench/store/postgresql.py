@@ -30,6 +30,8 @@ from bench.store.tables.json_text import to_json
 WRITER_KEY = 0x46524943  # "FRIC": below all keys of claims
 CLAIM_PREFIX = "pg-"
 CONNECT_TIMEOUT_S = 10
+# a link that is cut is noticed in seconds, not in the quarter of an hour that TCP goes on for
+LINK = {"keepalives_idle": 5, "keepalives_interval": 2, "keepalives_count": 3, "tcp_user_timeout": 10_000}
 
 
 class Postgresql:
@@ -56,6 +58,7 @@ class Postgresql:
             connect_args={
                 "options": f"-c lock_timeout={max(1, round(1000 * busy_timeout_s))}",
                 "connect_timeout": CONNECT_TIMEOUT_S,
+                **LINK,
             },
             pool_pre_ping=True,  # the server may have been restarted
             max_overflow=-1,

@@ -313,3 +313,28 @@ EXPERIMENT_TAG = Table(
     Column("tag", PlainText, primary_key=True),
     Index(None, "tag", "experiment_id"),
 )
+
+# what benches handed in: by bench, its number there and its start; kept when the experiment is removed
+HANDED_IN = Table(
+    "handed_in",
+    METADATA,
+    Column("bench", PlainText, primary_key=True),
+    Column("origin_id", Integer, primary_key=True, autoincrement=False),
+    Column("started_utc", UtcDateTime, primary_key=True),
+    Column("experiment_id", Integer, nullable=False),
+    Column("complete", Boolean, nullable=False),
+)
+
+# as each bench last told of itself
+BENCH = Table(
+    "bench",
+    METADATA,
+    Column("name", PlainText, primary_key=True),
+    Column("host", PlainText, nullable=False),
+    Column("state", PlainText, nullable=False),
+    Column("doing", PlainText, nullable=False),
+    Column("lease", PlainText, nullable=False),
+    Column("queue", PlainText, nullable=False),
+    Column("waiting", Integer, nullable=False),  # experiments that are to be handed in
+    Column("seen_utc", UtcDateTime, nullable=False),  # by the clock of the database
+)

@@ -9,11 +9,13 @@ from bench.store.migration import migrate
 from bench.store.study_store import StudyStore
 from bench.store.tables.access_tokens import AccessTokens
 from bench.store.tables.audit import Audit
+from bench.store.tables.benches import Benches
 from bench.store.tables.calibrations import Calibrations
 from bench.store.tables.queue import QueueTable
 from bench.store.tables.start_keys import StartKeys
 from bench.store.trial_store import TrialStore
 from bench.store.upkeep.custody import Custody
+from bench.store.upkeep.hand_in import HandIn
 from bench.store.upkeep.removal import Removal
 from bench.store.upkeep.retention import Retention
 from bench.store.upkeep.space import SpaceNeed
@@ -105,6 +107,15 @@ class Store(ExperimentStore, TrialStore, StudyStore):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    @property
+    def benches(self) -> Benches:
+        """The benches that share this store."""
+        return Benches(self._database)
+
+    def hand_in_to(self, lab: "Store", bench: str) -> HandIn:
+        """From this store of a bench to that of the laboratory."""
+        return HandIn(self._database, lab._database, bench)
 
     def queue(self, bench: str) -> QueueTable:
         """The queue of a bench."""

@@ -1,8 +1,12 @@
 """What is missing from a model, for the page, the command line and reports."""
 
+import math
+
 from bench.store import Store
+from bench.store.records import ModelRow
 from bench.study.findings import conclusion_of, findings_of, not_judged
 from bench.study.judged import diagnosis_of_model
+from bench.study.keep import kept_of
 from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
@@ -12,6 +16,9 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS
+
+SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
+SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 
 
 def diagnose(store: Store, study_id: int, model_id: int | None = None) -> Diagnosis:
@@ -27,13 +34,22 @@ def diagnose(store: Store, study_id: int, model_id: int | None = None) -> Diagno
     """
     material, model = load_model(store, study_id, model_id)
     fit = material.fit_of(model)
-    return answer_of(fit, diagnosis_of_model(material, model, fit), study_id, model.id)
+    return answer_of(fit, diagnosis_of_model(material, model, fit), study_id, model.id, explained_by(store, model))
 
 
-def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int) -> Diagnosis:
-    """What a model of a study may be missing, given its fit and diagnosis."""
+def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int, explained: float = 0.0) -> Diagnosis:
+    """What a model of a study may be missing, given its fit and diagnosis.
+
+    Args:
+        fit: of the model.
+        found: its diagnosis.
+        study_id: of the answer.
+        model_id: of the answer.
+        explained: by effects that were added to the first model, root mean square as a share of the effort, held out.
+    """
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
     not_told = [not_judged(effect, reason) for effect, reason in found.left_out.items()]
+    advice = _advice(found, explained) if named else ""
     curve = provisional(fit, found) if found.verdict == "unknown-effect" else None
     return Diagnosis(
         study_id=study_id,
@@ -45,9 +61,37 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
         data_problems=found.data_problems,
         classes=[_class(members) for members in found.classes[:1]] if named else [],
         ranking=[] if found.too_short else [_ranked(fit.dataset, one, named) for one in found.candidates],
+        slight=bool(advice),
+        advice=advice,
         provisional=None if curve is None else _provisional(fit.dataset, curve),
         conclusion=conclusion_of(found),
         findings=findings_of(found),
+    )
+
+
+def explained_by(store: Store, model: ModelRow) -> float:
+    """What the effects explain that a study's first model had not: see `answer_of`."""
+    first = model
+    while first.parent_id is not None:
+        first = store.model(first.parent_id)
+    return _part(kept_of(first).held_out, kept_of(model).held_out)
+
+
+def _part(before: float, after: float) -> float:
+    """What took an error from one to the other, root mean square; 0 where it rose."""
+    return math.sqrt(max(0.0, before**2 - after**2))
+
+
+def _advice(found: diagnosis.Diagnosis, explained: float) -> str:
+    """What to make of an effect that is named and slight; empty where it is not slight."""
+    one = found.candidates[0]
+    part = _part(one.before, one.after)
+    if one.gain.high >= SLIGHT_GAIN or part >= SLIGHT_PART * explained:
+        return ""
+    return (
+        f"Next to nothing is left: {one.effect.title} would take {one.gain.value:.1%} of the held-out error away "
+        f"(90 % interval {one.gain.low:.1%} .. {one.gain.high:.1%}), {part / explained:.1%} of what the added effects "
+        "explain. A formula that is nearly right leaves as much: this is no reason to add another effect."
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from bench.parallel.over_cores import over_cores
 from bench.store import Store
 from bench.store.records import ModelRow
-from bench.study.diagnose import answer_of
+from bench.study.diagnose import answer_of, explained_by
 from bench.study.errors import StudyError, lab_errors
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Definition, Material, model_of, trials_of
@@ -27,6 +27,7 @@ class Question:
     model: ModelRow
     definition: Definition
     recordings: list[Recording]
+    explained: float  # by effects that were added, see `answer_of`
 
 
 def diagnose_many(
@@ -67,7 +68,7 @@ def answer_to(question: Question) -> Diagnosis | NotDiagnosed:
             )
         material = Material(question.study_id, "", definition, (), dataset)
         fit = material.fit_of(model)
-        return answer_of(fit, diagnosis_of_model(material, model, fit), question.study_id, model.id)
+        return answer_of(fit, diagnosis_of_model(material, model, fit), question.study_id, model.id, question.explained)
     except StudyError as error:
         return NotDiagnosed(study_id=question.study_id, model_id=model.id, error=str(error))
 
@@ -77,4 +78,5 @@ def _questions(store: Store, study_ids: Sequence[int]) -> Iterator[Question]:
     for study_id in study_ids:
         model = model_of(store, study_id, None)
         definition = trials_of(model, Definition.from_json(store.study(study_id).definition))
-        yield Question(study_id, model, definition, [store.recording(trial) for trial in definition.trial_ids])
+        recordings = [store.recording(trial) for trial in definition.trial_ids]
+        yield Question(study_id, model, definition, recordings, explained_by(store, model))

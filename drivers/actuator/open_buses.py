@@ -1,8 +1,10 @@
-"""Buses that several actuators of this process share: opened by the first, closed by the last."""
+"""Buses that several actuators share: opened by the first of this process, closed by the last; no two have one id."""
 
 from collections.abc import Callable
 from threading import Lock
 from typing import Any, Generic, Protocol, TypeVar
+
+from drivers.errors import DriveConfigurationError
 
 
 class Closable(Protocol):
@@ -38,3 +40,26 @@ class OpenBuses(Generic[BusT]):
                 self._open[key] = bus, users - 1
             else:
                 bus.close()
+
+
+def check_alone(device: str, addresses: str, answers: Callable[[], int]) -> None:
+    """See that one answers.
+
+    Args:
+        device: name used in messages.
+        addresses: its addresses as the settings name them.
+        answers: asks one question that moves nothing; how many answers came. Asked again where there are several: one
+            that was late is no second actuator.
+
+    Raises:
+        DriveConfigurationError: more than one does.
+    """
+    count = answers()
+    if count > 1:
+        count = answers()
+    if count > 1:
+        raise DriveConfigurationError(
+            device,
+            f"{count} answers came to one question: there are two actuators with {addresses} on the bus. Give each an "
+            "id of its own",
+        )

@@ -132,6 +132,18 @@ class CanPort:
                 left_s = end_s - time.perf_counter()
         return sorted(missing)
 
+    def answers(self, ask: Callable[[], object], can_id: int, wait_s: float) -> int:
+        """How many frames of an identifier come within a time [s] after something is asked.
+
+        Raises:
+            DriveConnectionError: the adapter is gone.
+        """
+        self.drain()
+        before = self.number(can_id)
+        ask()
+        self.wait_for([-1], wait_s)  # which never comes
+        return self.number(can_id) - before
+
     def heard_ids(self) -> list[int]:
         """Every identifier of which a frame has come."""
         return sorted(self._heard)

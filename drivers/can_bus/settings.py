@@ -1,7 +1,7 @@
 """How a CAN bus of python-can is reached."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 _WITHOUT_BITRATE = ("socketcan", "virtual", "udp_multicast")  # the bus has it already, or has none
@@ -44,6 +44,10 @@ class BusSettings:
     def echoes(self) -> bool:
         """Whether the interface hands this host its own frames."""
         return self.interface == "udp_multicast"
+
+    def listening(self) -> "BusSettings":
+        """The same bus for who sends nothing: a serial adapter then acknowledges no frame either."""
+        return replace(self, options={**self.options, "listen_only": True}) if self.interface == "slcan" else self
 
     @property
     def place(self) -> tuple[str | int, ...]:

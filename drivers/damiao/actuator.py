@@ -1,6 +1,7 @@
 """One Damiao actuator on its bus: opened by its registers, driven by the MIT protocol."""
 
 from collections.abc import Callable
+from math import inf
 from struct import Struct
 from time import perf_counter
 
@@ -86,10 +87,16 @@ class DamiaoActuator(MitActuator):
         """What it says that its frames mean.
 
         Raises:
-            DriveConfigurationError: the model has other ranges.
+            DriveConfigurationError: they mean nothing, or the model has others.
         """
         registers = (Register.POSITION_RANGE, Register.SPEED_RANGE, Register.TORQUE_RANGE)
         found = Ranges(*(float(self._read(one, protocol.FLOAT)) for one in registers))
+        if not all(0.0 < one < inf for one in found):
+            raise DriveConfigurationError(
+                self.device,
+                f"its ranges are {found.position_rad:g} rad, {found.speed_rad_s:g} rad/s, {found.torque_n_m:g} N m: "
+                "none may be 0. Set them with the maker's tool (PMAX, VMAX, TMAX)",
+            )
         wanted = MODELS.get(self._settings.model, found)
         if any(abs(one - other) > _NEAR * other for one, other in zip(found, wanted, strict=True)):
             raise DriveConfigurationError(

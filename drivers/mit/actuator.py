@@ -6,6 +6,7 @@ from math import nan, pi
 from time import perf_counter
 from typing import Protocol
 
+from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
@@ -189,17 +190,11 @@ class MitActuator(ABC):
         Raises:
             DriveConfigurationError: more than one does.
         """
-        self.bus.drain()
-        before = self.bus.number(self.answer_id)
-        self.bus.send(*self.question())
-        self.bus.wait_for([-1], self.answer_timeout_s)  # which never comes
-        answers = self.bus.number(self.answer_id) - before
-        if answers > 1:
-            raise DriveConfigurationError(
-                self.device,
-                f"{answers} answers came to one question: there are two actuators with {self.addresses()} on the bus. "
-                "Give each an id of its own",
-            )
+        check_alone(
+            self.device,
+            self.addresses(),
+            lambda: self.bus.answers(lambda: self.bus.send(*self.question()), self.answer_id, self.answer_timeout_s),
+        )
 
     def missed(self) -> None:
         """An answer was missed: what comes late is no answer to the next question."""
@@ -216,10 +211,7 @@ class MitActuator(ABC):
         """A reading; at the end of the range of positions it has a fault, as nobody knows what is beyond."""
         if abs(found.position_rad) > (1.0 - _MARGIN) * self.ranges.position_rad:
             fault = fault or "its position is at the end of the range of its frame, beyond which it is not told"
-        return Reading(
-            asked_s, found.position_rad * self._counts_rad, found.speed_rad_s * self._counts_rad, nan, nan,
-            found.torque_n_m, nan, temperature_c, is_on, fault,
-        )  # fmt: skip
+        return reading_of(asked_s, found, self._counts_rad, temperature_c, is_on, fault)
 
     def no_answer(self, what: str, began_s: float) -> DriveConnectionError:
         """An answer has not come."""
@@ -230,6 +222,16 @@ class MitActuator(ABC):
             f"{what}: found no answer within {self.answer_timeout_s:g} s, asked {ATTEMPTS} times at most; check the "
             f"cable, the power, {self.addresses()} and the bit rate{away}",
         )
+
+
+def reading_of(
+    asked_s: float, found: Motion, counts_rad: float, temperature_c: float, is_on: bool, fault: str
+) -> Reading:
+    """What an answer says, with so many counts of the sensor a radian."""
+    return Reading(
+        asked_s, found.position_rad * counts_rad, found.speed_rad_s * counts_rad, nan, nan, found.torque_n_m, nan,
+        temperature_c, is_on, fault,
+    )  # fmt: skip
 
 
 def exchange_all(demands: Sequence[tuple[MitActuator, Mode, float]]) -> list[Reading]:

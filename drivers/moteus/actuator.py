@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from math import copysign, nan
 from time import perf_counter
 
+from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
@@ -46,6 +47,7 @@ class MoteusActuator:
         self._brakes = False
         self.switch_off()
         self.identity = self._identify()
+        check_alone(settings.device, f"servo_id ({settings.servo_id})", self._answers)
         self._be_off_after_silence()
 
     @property
@@ -144,6 +146,10 @@ class MoteusActuator:
         serial = "-".join(f"{int(found[one]) & 0xFFFFFFFF:08x}" for one in (0x122, 0x121, 0x120))
         firmware = f"{version >> 16 & 0xFF}.{version >> 8 & 0xFF}.{version & 0xFF}"
         return Identity("mjbots", "moteus", firmware, serial, serial == SIMULATED_SERIAL)
+
+    def _answers(self) -> int:
+        heard = self.bus.listen({self.servo_id: self._frames.question}, self._settings.answer_timeout_s)
+        return sum(servo_id == self.servo_id for servo_id, _ in heard)
 
     def _be_off_after_silence(self) -> None:
         """Let its watchdog take the power away: as delivered it holds the speed at 0 then, with power.

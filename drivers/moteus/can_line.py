@@ -64,6 +64,26 @@ class MoteusCanLine:
             f"the power, servo_id, termination and the bit rates (1 and 5 Mbit/s){away}",
         )
 
+    def listen(self, questions: Mapping[int, bytes], wait_s: float) -> list[tuple[int, bytes]]:
+        """Ask some controllers, of which any may not be there, or twice; every answer that comes within a time [s].
+
+        Of several answers of one id the last is given as often as there were.
+
+        Raises:
+            DriveConnectionError: the adapter is gone.
+        """
+        self._port.drain()
+        before = {servo_id: self._port.number(_answer_id(servo_id)) for servo_id in questions}
+        for servo_id, data in questions.items():
+            self._port.send_prepared(_message(servo_id, data, True))
+            self._port.drain()
+        self._port.wait_for([-1], wait_s)  # which never comes
+        found: list[tuple[int, bytes]] = []
+        for servo_id, number in before.items():
+            can_id = _answer_id(servo_id)
+            found += [(servo_id, self._data(can_id))] * (self._port.number(can_id) - number)
+        return found
+
     def tell(self, servo_id: int, data: bytes) -> None:
         """Send a frame that is not answered. Never raises."""
         try:

@@ -70,19 +70,20 @@ class MoteusLine:
         """Send a frame that is not answered. Never raises."""
         self._port.shout(self._line(servo_id, data, False))
 
-    def listen(self, questions: Mapping[int, bytes], wait_s: float) -> dict[int, bytes]:
-        """Ask some controllers, of which any may not be there, and take what comes for a time [s].
+    def listen(self, questions: Mapping[int, bytes], wait_s: float) -> list[tuple[int, bytes]]:
+        """Ask some controllers, of which any may not be there, or twice; every answer that comes within a time [s].
 
         Raises:
             DriveConnectionError: the port is gone.
         """
-        found: dict[int, bytes] = {}
+        self._taken(self._port.arrived())  # what comes late is no answer to this question
+        found: list[tuple[int, bytes]] = []
         for servo_id, data in questions.items():
             self._port.shout(self._line(servo_id, data, True))
-            found |= self._taken(self._port.arrived())
+            found += self._taken(self._port.arrived())
         end_s = time.perf_counter() + wait_s
         while time.perf_counter() < end_s:
-            found |= self._taken(self._port.read(1) + self._port.arrived())
+            found += self._taken(self._port.read(1) + self._port.arrived())
         return found
 
     def _line(self, servo_id: int, data: bytes, wants_answer: bool) -> bytes:
@@ -96,18 +97,18 @@ class MoteusLine:
         while len(found) < len(wanted) and taken < _MOST_BYTES:
             more = self._port.read(1) + self._port.arrived()
             taken += len(more)
-            found |= {one: data for one, data in self._taken(more).items() if one in wanted}
+            found |= {one: data for one, data in self._taken(more) if one in wanted}
             if not more and time.perf_counter() >= end_s:
                 break
         return found
 
-    def _taken(self, data: bytes) -> dict[int, bytes]:
+    def _taken(self, data: bytes) -> list[tuple[int, bytes]]:
         """The frames to this host in bytes that have come; half a line waits for the rest."""
-        found: dict[int, bytes] = {}
+        found: list[tuple[int, bytes]] = []
         *lines, self._heard = (self._heard + data).replace(b"\r", b"\n").split(b"\n")
         for line in lines:
             frame = received(line, self._over_uart)
             if frame is not None and frame.can_id & 0xFF == HOST:
-                found[frame.can_id >> 8 & 0x7F] = frame.data
+                found.append((frame.can_id >> 8 & 0x7F, frame.data))
         self._heard = self._heard[-LONGEST_LINE:]
         return found

@@ -15,6 +15,9 @@ class Line(Protocol):
     def ask(self, questions: Mapping[int, bytes], what: str) -> dict[int, bytes]:
         """Send a frame to each of some controllers, and take the answer of each."""
 
+    def listen(self, questions: Mapping[int, bytes], wait_s: float) -> list[tuple[int, bytes]]:
+        """Ask some controllers, of which any may not be there, or twice; every answer that comes within a time [s]."""
+
     def tell(self, servo_id: int, data: bytes) -> None:
         """Send a frame that is not answered. Never raises."""
 

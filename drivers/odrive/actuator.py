@@ -5,6 +5,7 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
+from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, prepare
 from drivers.contract import Mode
@@ -18,7 +19,7 @@ from drivers.odrive.settings import OdriveSettings
 _QUICK = (Command.GET_ENCODER_ESTIMATES, Command.GET_IQ, Command.GET_ERROR)
 _SLOW = (Command.GET_BUS, Command.GET_TEMPERATURE)
 _ATTEMPTS = 2
-_STATE_S = 0.5  # a heartbeat comes every 0.1 s
+STATE_S = 1.0  # longest wait for a change of state, and for the heartbeat that shows it
 SIMULATED = 255  # "unreleased" of our own simulated device
 
 
@@ -59,6 +60,12 @@ class OdriveActuator:
                 "drive.watchdog_is_set_in_drive = true; `doctor --move` tries it",
             )
         self.identity = self._identify()
+        version = can_id(settings.node_id, Command.GET_VERSION)  # it says that only where it is asked
+        check_alone(
+            settings.device,
+            f"node_id ({settings.node_id})",
+            lambda: port.answers(lambda: port.send(version, remote=True), version, settings.answer_timeout_s),
+        )
         self.switch_off()
         self._forgive_lost_host()
         for command in _SLOW:
@@ -83,7 +90,7 @@ class OdriveActuator:
         self._send(Command.SET_CONTROLLER_MODE, protocol.MODES.pack(protocol.TORQUE_CONTROL, protocol.PASSTHROUGH))
         self._send(Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(0.0))
         self._send(Command.SET_AXIS_STATE, protocol.WORD.pack(protocol.CLOSED_LOOP))
-        end_s = perf_counter() + _STATE_S
+        end_s = perf_counter() + STATE_S
         while self._state() != protocol.CLOSED_LOOP:
             reading = self.exchange(Mode.TORQUE, 0.0)  # keeps its watchdog fed
             if reading.fault or perf_counter() > end_s:
@@ -93,10 +100,10 @@ class OdriveActuator:
     def switch_off(self) -> None:
         """Idle, and wait for the heartbeat that says so."""
         self._send(Command.SET_AXIS_STATE, protocol.WORD.pack(protocol.IDLE))
-        end_s = perf_counter() + _STATE_S
+        end_s = perf_counter() + STATE_S
         heartbeat = can_id(self._settings.node_id, Command.HEARTBEAT)
         while True:
-            missing = self.bus.wait_for([heartbeat], _STATE_S)
+            missing = self.bus.wait_for([heartbeat], STATE_S)
             if self._state() != protocol.CLOSED_LOOP and not missing:
                 return
             if missing or perf_counter() > end_s:
@@ -120,7 +127,7 @@ class OdriveActuator:
     def clear_fault(self) -> None:
         """Clear its errors."""
         self._send(Command.CLEAR_ERRORS, bytes(1))
-        self.bus.wait_for([can_id(self._settings.node_id, Command.HEARTBEAT)], _STATE_S)
+        self.bus.wait_for([can_id(self._settings.node_id, Command.HEARTBEAT)], STATE_S)
 
     def shout_off(self) -> None:
         """Idle, and wait for nothing."""
@@ -135,8 +142,6 @@ class OdriveActuator:
 
     def tell(self, mode: Mode, value: float) -> dict[int, int]:
         """Send a demand and the questions of a cycle. Returns how often each answer had come before."""
-        if mode is Mode.TORQUE:
-            self._send(Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(value))
         self._cycle += 1
         slow = _SLOW[self._cycle // self._settings.slow_every % len(_SLOW)]
         commands = (*_QUICK, slow) if self._cycle % self._settings.slow_every == 0 else _QUICK
@@ -145,6 +150,9 @@ class OdriveActuator:
             question = self._questions[command]
             before[question.arbitration_id] = self.bus.number(question.arbitration_id)
             self.bus.send_prepared(question)
+        # last: asked after it, the current would be now that of this cycle, now that of the one whose motion is told
+        if mode is Mode.TORQUE:
+            self._send(Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(value))
         self._has_asked_slow = slow in commands
         return before
 

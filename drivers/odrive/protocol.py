@@ -1,6 +1,7 @@
 """CANSimple: which message is which, and what is in it; low byte first, numbers of four bytes are floats.
 
-The identifier is `node id << 5 | command`. A message that the ODrive sends is asked for by a remote frame.
+The identifier is `node id << 5 | command`. A message that the ODrive sends is asked for by a remote frame. In its own
+message file (DBC) a message has eight bytes, also where a value fills four: who reads by that file takes no shorter.
 
 Source: ODrive, "CAN protocol" (firmware 0.6), and `odrive.enums` of its Python package 0.6.11 for states and errors.
 """
@@ -30,8 +31,8 @@ VERSION = Struct("<BBBBBBBB")  # protocol, product line, version, variant, firmw
 HEARTBEAT = Struct("<IBBB")  # active errors, state, procedure result, trajectory done
 ERRORS = Struct("<II")  # active, what it was disarmed for
 PAIR = Struct("<ff")  # position [turns], speed [turns/s]; Iq set and measured [A]; FET and motor [degC]; bus [V], [A]
-TORQUE = Struct("<f")  # [N m]
-WORD, MODES = Struct("<I"), Struct("<II")
+TORQUE = Struct("<f4x")  # [N m]
+WORD, MODES = Struct("<I4x"), Struct("<II")
 IDLE, CLOSED_LOOP = 1, 8
 TORQUE_CONTROL, PASSTHROUGH = 1, 1
 WATCHDOG_TIMER_EXPIRED = 0x0100_0000

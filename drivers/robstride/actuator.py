@@ -128,7 +128,9 @@ class RobstrideActuator(MitActuator):
         limit_n_m, angle_rad = self._value(Parameter.TORQUE_LIMIT), self._value(Parameter.POSITION)
         self.told(self.question())
         heard = self.bus.last(self.answer_id)
-        told_rad = nan if heard is None else protocol.feedback(heard.can_id, heard.data, self.ranges)[0].position_rad
+        told_rad = nan
+        if heard is not None and len(heard.data) == 8:
+            told_rad = protocol.feedback(heard.can_id, heard.data, self.ranges)[0].position_rad
         full = self.ranges
         if limit_n_m > (1.0 + _NEAR) * full.torque_n_m:
             raise DriveConfigurationError(

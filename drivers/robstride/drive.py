@@ -1,13 +1,20 @@
-"""The drive contract on one RobStride actuator."""
+"""The drive contract on one RobStride actuator, and a listener to one that another host drives."""
+
+from math import pi
 
 from drivers.actuator.drive import ActuatorDrive, Family
-from drivers.can_bus.port import on_bus
+from drivers.actuator.reading import Reading
+from drivers.can_bus.follower import BusFollower
+from drivers.can_bus.port import CanPort, Heard, on_bus
 from drivers.joint import JointScale
-from drivers.mit.actuator import exchange_all
+from drivers.mit.actuator import chosen_ranges, exchange_all, reading_of
+from drivers.robstride import protocol
 from drivers.robstride.actuator import RobstrideActuator
+from drivers.robstride.protocol import Kind
 from drivers.robstride.settings import RobstrideSettings
 
 _OPENING_QUESTIONS = 16
+_HOST_BITS = 0xFF
 
 
 class RobstrideDrive(ActuatorDrive[RobstrideActuator]):
@@ -30,3 +37,30 @@ class RobstrideDrive(ActuatorDrive[RobstrideActuator]):
             lambda: on_bus(settings.bus, lambda port, leave: RobstrideActuator(port, settings, joint, leave)),
             exchange_all,
         )
+
+
+def follow(settings: RobstrideSettings, joint: JointScale) -> BusFollower:
+    """Listen to it.
+
+    Raises:
+        DriveError: its ranges are not known, or the bus does not open.
+    """
+    written = settings.position_range_rad, settings.speed_range_rad_s, settings.torque_range_n_m
+    ranges = chosen_ranges(settings.device, settings.model, protocol.MODELS, written)
+    counts_rad = joint.counts_per_turn / (2.0 * pi)
+
+    def taken(_port: CanPort, heard: Heard) -> Reading | None:
+        if len(heard.data) != 8:
+            return None
+        found = protocol.feedback(heard.can_id, heard.data, ranges)
+        is_on = found.mode == protocol.RUNS and not found.fault
+        return reading_of(heard.at_s, found.motion, counts_rad, found.temperature_c, is_on, found.fault)
+
+    return BusFollower(
+        settings.bus,
+        protocol.answer_id(Kind.FEEDBACK, settings.motor_id),
+        (f"RobStride {settings.model or 'RS series actuator'}", settings.device),
+        taken,
+        joint,
+        protocol.STATE_BITS | _HOST_BITS,
+    )

@@ -157,7 +157,8 @@ class ServoBus:
             answer = frames.status(reply[start : start + length])
             if answer is None:
                 return answers, "an answer with a wrong checksum: noise, or two servos of one id"
-            if answer.servo_id != servo_id or (len(answer.data) < size and not answer.error):
+            # one that refuses has no data; what is refused is told by the caller
+            if answer.servo_id != servo_id or (len(answer.data) != size and not frames.refusal(answer.error)):
                 return answers, f"an answer of id {answer.servo_id}, {len(answer.data)} bytes"
             answers.append(answer)
             start += length

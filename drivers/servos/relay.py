@@ -131,7 +131,7 @@ class ServoRelay:
 
 
 class ServoFollower:
-    """A servo that another program moves.
+    """A servo that another program moves, through here.
 
     Args:
         relay: the line.
@@ -140,6 +140,8 @@ class ServoFollower:
         reading: the piece in SI, of its bytes and when it was asked for.
         joint: scales and signs.
     """
+
+    is_between = True
 
     def __init__(
         self,
@@ -150,7 +152,8 @@ class ServoFollower:
         joint: JointScale,
     ) -> None:
         self._relay, self._reading, self._joint = relay, reading, joint
-        self.place, self.product, self.device = relay.place, product, device
+        self.product, self.device = product, device
+        self.wanted = f"open {relay.place} in the place of the real port, and leave the line a pause of 2 ms at times"
 
     @property
     def silent_s(self) -> float:

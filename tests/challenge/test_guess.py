@@ -55,7 +55,7 @@ def test_score(
 )
 def test_what_a_study_leaves_unexplained_is_part_of_its_guess(monkeypatch, conclusion: str, unknown: bool) -> None:
     rungs = [SimpleNamespace(effects=["inertia"]), SimpleNamespace(effects=["inertia", "spring"])]
-    last = SimpleNamespace(classes=[], conclusion=SimpleNamespace(code=conclusion))
+    last = SimpleNamespace(classes=[], slight=False, conclusion=SimpleNamespace(code=conclusion))
     monkeypatch.setattr(guessing, "ladder", lambda *_: SimpleNamespace(rungs=rungs))
     monkeypatch.setattr(guessing, "diagnose", lambda *_: last)
     assert guessing.guess_of_study(None, 1) == Guess((("spring",),), unknown)  # type: ignore[arg-type]

@@ -108,7 +108,7 @@ def test_what_it_moves_is_recorded_and_it_notices_nothing(kind, tmp_path):
     failed = []
 
     def other_program():
-        program = PROGRAMS[kind](follower.place)
+        program = PROGRAMS[kind](str(tmp_path / "servo.port"))
         swing(program, 100, failed)
         program.close()
 
@@ -143,7 +143,7 @@ def test_the_silence_of_who_commands_is_not_filled(tmp_path):
 
         thread = threading.Thread(target=look)
         thread.start()
-        program = DynamixelProgram(follower.place)
+        program = DynamixelProgram(str(tmp_path / "servo.port"))
         swing(program, 10, [])
         device.wait_for_power(True)
         silent_s = time.monotonic()
@@ -158,14 +158,14 @@ def test_a_program_that_never_comes_is_said_so(tmp_path):
     looks = count()
     with (
         followed("feetech", tmp_path) as (_, configuration, follower),
-        pytest.raises(ConfigurationError, match="does the other program talk to the servo"),
+        pytest.raises(ConfigurationError, match="Let the other program open"),
     ):
         record(follower, configuration, "nothing", {}, 1.0, lambda: next(looks) > 3)
     assert not (tmp_path / "servo.port").is_symlink()
 
 
 def test_a_kind_that_cannot_be_followed_names_those_that_can(tmp_path):
-    with pytest.raises(ConfigurationError, match=r"dynamixel, feetech can\. A ROS 2 bag"):
+    with pytest.raises(ConfigurationError, match=r"odrive, robstride can\. A ROS 2 bag"):
         follower_of(configured(kind="roboclaw", port="/dev/absent"), tmp_path / "servo.port", LOOK_S)
 
 

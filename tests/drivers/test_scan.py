@@ -6,7 +6,9 @@ import sys
 
 import pytest
 
+from bench.cli.operation.drives import found_at
 from bench.control.drive_factory import make_equipment
+from sim_backend.devices.moteus.serve import MoteusBusSettings, serve_moteus
 from tests.devices.device_process import device_process
 from tests.devices.turns import no_turns
 from tests.drivers.conformance.benches import configured
@@ -54,6 +56,18 @@ def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):
             assert drive.describe().simulated
         finally:
             drive.close()
+
+
+def test_moteus_is_found_on_can_fd_where_that_is_asked_for():
+    """Its frames are errors to nodes of classic CAN: without --fd none is sent."""
+    with serve_moteus(MoteusBusSettings(ids=(3, 9), interface="virtual", channel="scan-fd")):
+        found = list(found_at("", bus="virtual:scan-fd", is_fd=True))
+        assert list(found_at("", bus="virtual:scan-fd")) == []
+        assert [one.drive["servo_id"] for one in found] == [3, 9]
+        drive = make_equipment(configured(**found[1].drive, answer_timeout_s=0.3)).drive
+        drive.open(0.01)
+        assert drive.describe().simulated
+        drive.close()
 
 
 def test_nothing_there_is_said_so():

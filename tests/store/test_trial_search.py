@@ -3,8 +3,10 @@
 from datetime import UTC, date, datetime, timedelta
 
 import pytest
+from sqlalchemy import delete
 
 from bench.store.errors import StoreValueError
+from bench.store.schema import TRIAL_CONDITION
 from bench.store.tables import experiments
 from bench.store.tables.days import begin_and_end
 from bench.store.tables.trial_search import TrialQuery
@@ -43,6 +45,16 @@ def test_words_find_what_has_all_of_them_somewhere(filled, words, wanted):
     expected = [f"trial {number}" for number in range(COUNT) if wanted(number)]
     assert [trial.name for trial in found] == expected
     assert total == len(expected)
+
+
+def test_a_word_that_all_trials_have_restricts_nothing_and_one_that_all_but_one_have_does(filled):
+    assert filled.search_trials(TrialQuery(words=("nlgi",)), limit=1)[1] == COUNT
+    with filled._database.writing() as connection:
+        wanted = (TRIAL_CONDITION.c.trial_id == 7) & (TRIAL_CONDITION.c.key == "grease")
+        connection.execute(delete(TRIAL_CONDITION).where(wanted))
+    found, total = filled.search_trials(TrialQuery(words=("nlgi",)), limit=COUNT)
+    assert total == COUNT - 1
+    assert 7 not in [trial.id for trial in found]
 
 
 def test_pages_are_cut_from_one_order(filled):

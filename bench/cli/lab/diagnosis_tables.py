@@ -17,6 +17,8 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 def diagnosis(found: "Diagnosis") -> None:
     """The verdict and the ranking."""
     say(found.sentence)
+    if found.slight:
+        say(found.advice)
     for finding in found.findings:
         if finding.code == "data-problem":
             say(f"data: {finding.text}")

@@ -30,12 +30,15 @@ def scan(
     ] = None,
     bus: Annotated[str, typer.Option(help="CAN bus to look at, as INTERFACE:CHANNEL, such as socketcan:can0.")] = "",
     bitrate: Annotated[int, typer.Option(help="Bit rate of the bus.")] = 1_000_000,
+    fd: Annotated[
+        bool, typer.Option("--fd", help="Ask with CAN-FD frames, too: only where every node on the bus knows them.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Say which drives answer on a serial port or a CAN bus, and print a section [drive] for each."""
     if bool(port) == bool(bus) or (bus and ":" not in bus):
         raise typer.BadParameter("one of --port PORT and --bus INTERFACE:CHANNEL is wanted")
-    found = list(found_at(port, tuple(baud or ()), bus, bitrate))
+    found = list(found_at(port, tuple(baud or ()), bus, bitrate, fd))
     if as_json:
         print_json([{"title": one.title, "drive": one.drive} for one in found])
     for one in found if not as_json else ():
@@ -43,10 +46,14 @@ def scan(
     if not found:
         if not as_json:
             say("Nothing answers. Check cable, power, baud rate or bit rate; the port must not be open elsewhere.")
+            if bus and not fd:
+                say("A moteus on a CAN bus is asked with --fd.")
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
 
-def found_at(port: str, baud_rates: tuple[int, ...], bus: str, bitrate: int) -> "Iterator[FoundDrive]":
+def found_at(
+    port: str, baud_rates: tuple[int, ...] = (), bus: str = "", bitrate: int = 1_000_000, is_fd: bool = False
+) -> "Iterator[FoundDrive]":
     """What every kind finds, one kind after the other."""
     from bench.config.drives.registry import drive_kinds
     from bench.config.drives.scanning import CanPlace, SerialPlace
@@ -56,7 +63,7 @@ def found_at(port: str, baud_rates: tuple[int, ...], bus: str, bitrate: int) -> 
         if port and kind.scan_serial is not None:
             yield from kind.scan_serial(SerialPlace(port, baud_rates))
         if bus and kind.scan_can is not None:
-            yield from kind.scan_can(CanPlace(interface, channel, bitrate))
+            yield from kind.scan_can(CanPlace(interface, channel, bitrate, is_fd))
 
 
 def _show(found: "FoundDrive") -> None:

@@ -27,11 +27,13 @@ class CanPlace:
         interface: of python-can.
         channel: of that interface.
         bitrate: of the bus [bit/s].
+        is_fd: whether every node on it knows CAN-FD.
     """
 
     interface: str
     channel: str
     bitrate: int = 1_000_000
+    is_fd: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """The CubeMars actuator as a kind of drive. It cannot be looked for: each frame that it answers is a command."""
 
-from typing import Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
@@ -8,6 +9,10 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
+
+if TYPE_CHECKING:
+    from sim_backend.devices.mit.serve import Make
 
 Model = Literal[
     "", "AK10-9", "AK40-10", "AK45-10", "AK45-36", "AK60-6", "AK70-10", "AK80-6", "AK80-8", "AK80-9", "AK80-64"
@@ -43,11 +48,28 @@ def make(settings: CubemarsDriveSettings, rig: Rig) -> Drive:
     return CubemarsDrive(CubemarsSettings(**can_values(settings)), joint_scale(settings, rig))
 
 
+def follow(settings: CubemarsDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives: to every answer, on the same bus."""
+    from drivers.cubemars.drive import follow
+    from drivers.cubemars.settings import CubemarsSettings
+
+    return follow(CubemarsSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
 def simulate() -> Simulate:
     """The command that simulates one."""
-    from bench.drives.cubemars.device import simulate
+    from bench.drives.mit_device import simulates
 
-    return simulate
+    summary = "A CubeMars actuator (MIT protocol) on a CAN bus; its ranges fit the joint of the paper."
+    return simulates(
+        "cubemars", "CubeMars, MIT protocol", summary, 1, _maker, {"accept_no_watchdog": True, "is_simulated": True}
+    )
+
+
+def _maker() -> "Make":
+    from sim_backend.devices.cubemars.motor import CubemarsMotor
+
+    return CubemarsMotor
 
 
 KIND = DriveKind(
@@ -55,6 +77,7 @@ KIND = DriveKind(
     settings=CubemarsDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     conformance=(
         ConformanceBench(
             "cubemars",

@@ -1,6 +1,7 @@
 """The Damiao actuator as a kind of drive."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -10,6 +11,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 _IDS = range(1, 33)
 _ANSWER_S = 0.01
@@ -37,6 +39,14 @@ def make(settings: DamiaoDriveSettings, rig: Rig) -> Drive:
     from drivers.damiao.settings import DamiaoSettings
 
     return DamiaoDrive(DamiaoSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
+def follow(settings: DamiaoDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives: to every answer, on the same bus."""
+    from drivers.damiao.drive import follow
+    from drivers.damiao.settings import DamiaoSettings
+
+    return follow(DamiaoSettings(**can_values(settings)), joint_scale(settings, rig))
 
 
 def simulate() -> Simulate:
@@ -75,6 +85,7 @@ KIND = DriveKind(
     settings=DamiaoDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     scan_can=scan,
     conformance=(
         ConformanceBench(

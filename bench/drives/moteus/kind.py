@@ -1,18 +1,23 @@
 """The moteus controller as a kind of drive."""
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import model_validator
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, driver_values, joint_scale
-from bench.config.drives.scanning import FoundDrive, SerialPlace
+from bench.config.drives.scanning import CanPlace, FoundDrive, SerialPlace
 from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
 
+if TYPE_CHECKING:
+    from drivers.can_bus.settings import BusSettings
+    from drivers.moteus.opening import Line
+
+Options = dict[str, str | int | float | bool]
 _IDS = range(1, 127)
 _ANSWER_S = 0.2
 _ASK_MODE = bytes((0x11, 0x00))  # read one register, the mode, as int8
@@ -25,7 +30,7 @@ class MoteusDriveSettings(RealDriveSettings):
     port: str = quantity("", "", "Serial port of the fdcanusb, or of its UART; left out with a CAN-FD bus")
     interface: str = quantity("", "", "Interface of python-can for a CAN-FD bus, in the place of a port")
     channel: str = quantity("", "", "Of the interface: can0, PCAN_USBBUS1")
-    options: dict[str, str | int | float | bool] = quantity(
+    options: Options = quantity(
         {}, "", "What else the interface takes, as python-can's documentation of it says: bit rates of CAN-FD"
     )
     servo_id: int = quantity(1, "", "Id of the controller", ge=1, le=126)
@@ -42,16 +47,12 @@ class MoteusDriveSettings(RealDriveSettings):
 
 def make(settings: MoteusDriveSettings, rig: Rig) -> Drive:
     """The driver."""
-    from drivers.can_bus.settings import BusSettings
     from drivers.moteus.drive import MoteusDrive
     from drivers.moteus.settings import MoteusSettings
 
     values = driver_values(settings)
-    place = {name: values.pop(name) for name in ("interface", "channel", "options")}
-    fd = {"fd": True} if settings.interface == "socketcan" else {}  # others have more to say, or nothing
-    bus = (
-        BusSettings(place["interface"], place["channel"], options=fd | place["options"]) if settings.interface else None
-    )
+    place = [values.pop(name) for name in ("interface", "channel", "options")]
+    bus = _bus(*place) if settings.interface else None
     return MoteusDrive(MoteusSettings(bus=bus, **values), joint_scale(settings, rig))
 
 
@@ -67,17 +68,40 @@ def scan(place: SerialPlace) -> Iterator[FoundDrive]:
     from drivers.moteus.line import MoteusLine
 
     for over_uart in (False, True):
-        line = MoteusLine(place.port, over_uart, 0.01)
-        try:
-            found = line.listen(dict.fromkeys(_IDS, _ASK_MODE), _ANSWER_S)
-        finally:
-            line.close()
-        for servo_id in sorted(found):
+        found = _found(MoteusLine(place.port, over_uart, 0.01))
+        for servo_id in found:
             yield FoundDrive("moteus controller", {
                 "kind": "moteus", "port": place.port, "servo_id": servo_id, "over_uart": over_uart,
             })  # fmt: skip
         if found:
             return
+
+
+def scan_can(place: CanPlace) -> Iterator[FoundDrive]:
+    """The same on a CAN-FD bus, and on no other: its frames are errors to nodes that do not know them."""
+    from drivers.moteus.can_line import MoteusCanLine
+
+    if not place.is_fd:
+        return
+    for servo_id in _found(MoteusCanLine(_bus(place.interface, place.channel, {}), 0.01)):
+        yield FoundDrive("moteus controller", {
+            "kind": "moteus", "interface": place.interface, "channel": place.channel, "servo_id": servo_id,
+        })  # fmt: skip
+
+
+def _found(line: "Line") -> list[int]:
+    """The ids that answer; the line is closed then."""
+    try:
+        return sorted(dict(line.listen(dict.fromkeys(_IDS, _ASK_MODE), _ANSWER_S)))
+    finally:
+        line.close()
+
+
+def _bus(interface: str, channel: str, options: Options) -> "BusSettings":
+    from drivers.can_bus.settings import BusSettings
+
+    fd: Options = {"fd": True} if interface == "socketcan" else {}  # others have more to say, or nothing
+    return BusSettings(interface, channel, options=fd | options)
 
 
 _PATIENT = {"watchdog_s": 1.0, "answer_timeout_s": 0.3}
@@ -88,6 +112,7 @@ KIND = DriveKind(
     make=make,
     simulate=simulate,
     scan_serial=scan,
+    scan_can=scan_can,
     conformance=(
         ConformanceBench(
             "moteus",

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from bench.config.drives.simulated_device import Simulated
-from bench.drives.device import DeviceOptions, started
+from bench.drives.device import Channel, DeviceOptions, Interface, started
 
 
 def simulate(
@@ -13,10 +13,8 @@ def simulate(
     watchdog: Annotated[
         float, typer.Option(min=0, max=10, metavar="SECONDS", help="Its watchdog; 0: not enabled.")
     ] = 0.2,
-    interface: Annotated[
-        str, typer.Option(help="slcan (a pseudo-terminal), or any interface of python-can: socketcan, pcan ...")
-    ] = "slcan",
-    channel: Annotated[str, typer.Option(help="Of the interface: vcan0 ...")] = "0",
+    interface: Interface = "slcan",
+    channel: Channel = "0",
     *,
     options: DeviceOptions,
 ) -> Simulated:

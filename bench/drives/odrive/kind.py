@@ -1,6 +1,7 @@
 """The ODrive as a kind of drive."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -10,6 +11,7 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 _LISTEN_S = 0.3  # a heartbeat comes every 0.1 s
 
@@ -37,6 +39,14 @@ def make(settings: OdriveDriveSettings, rig: Rig) -> Drive:
     from drivers.odrive.settings import OdriveSettings
 
     return OdriveDrive(OdriveSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
+def follow(settings: OdriveDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives: to every answer, on the same bus."""
+    from drivers.odrive.drive import follow
+    from drivers.odrive.settings import OdriveSettings
+
+    return follow(OdriveSettings(**can_values(settings)), joint_scale(settings, rig))
 
 
 def simulate() -> Simulate:
@@ -72,6 +82,7 @@ KIND = DriveKind(
     settings=OdriveDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     scan_can=scan,
     conformance=(
         ConformanceBench(

@@ -1,7 +1,8 @@
 """The RobStride actuator as a kind of drive."""
 
 from collections.abc import Iterator
-from typing import Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
@@ -10,6 +11,10 @@ from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.follower import Follower
+
+if TYPE_CHECKING:
+    from sim_backend.devices.mit.serve import Make
 
 _IDS = range(1, 128)
 _ANSWER_S = 0.3
@@ -40,11 +45,26 @@ def make(settings: RobstrideDriveSettings, rig: Rig) -> Drive:
     return RobstrideDrive(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
 
 
+def follow(settings: RobstrideDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives: to every answer, on the same bus."""
+    from drivers.robstride.drive import follow
+    from drivers.robstride.settings import RobstrideSettings
+
+    return follow(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
+
+
 def simulate() -> Simulate:
     """The command that simulates one."""
-    from bench.drives.robstride.device import simulate
+    from bench.drives.mit_device import simulates
 
-    return simulate
+    summary = "A RobStride actuator (its own protocol) on a CAN bus; its ranges fit the joint of the paper."
+    return simulates("robstride", "RobStride, its own protocol", summary, 127, _maker, {})
+
+
+def _maker() -> "Make":
+    from sim_backend.devices.robstride.motor import RobstrideMotor
+
+    return RobstrideMotor
 
 
 def scan(place: CanPlace) -> Iterator[FoundDrive]:
@@ -75,6 +95,7 @@ KIND = DriveKind(
     settings=RobstrideDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     scan_can=scan,
     conformance=(
         ConformanceBench(

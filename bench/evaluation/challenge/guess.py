@@ -105,7 +105,7 @@ def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> 
 
 
 def guess_of_study(store: Store, study_id: int) -> Guess:
-    """What a study says is hidden: what it added, and what its last diagnosis names.
+    """What a study says is hidden: what it added, and what its last diagnosis names, unless it calls that slight.
 
     Raises:
         NotFoundError: there is no such study.
@@ -114,7 +114,7 @@ def guess_of_study(store: Store, study_id: int) -> Guess:
     rungs = ladder(store, study_id).rungs
     last = diagnose(store, study_id)
     added = [(name,) for name in rungs[-1].effects if name not in rungs[0].effects]
-    named = [tuple(one.effects) for one in last.classes]
+    named = [] if last.slight else [tuple(one.effects) for one in last.classes]
     return Guess((*added, *named), last.conclusion.code in OUTSIDE)
 
 

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Table, insert, select, update
 from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment, NewExperiment
-from bench.store.schema import EXPERIMENT, TRIAL
+from bench.store.schema import EXPERIMENT, HANDED_IN, TRIAL
 from bench.store.tables import chain, tags
 
 COLUMNS = tuple(EXPERIMENT.c[field.name] for field in fields(Experiment) if field.name != "tags")
@@ -79,9 +79,15 @@ def show(connection: Connection, experiment_id: int) -> None:
 
 
 def unfinished(connection: Connection) -> list[tuple[int, str | None, str]]:
-    """id, owner and outcome of each experiment that is marked running, or that nobody sees."""
+    """id, owner and outcome of each experiment that is marked running, or that nobody sees.
+
+    Without what a bench is handing in: it goes on where it was broken off.
+    """
     columns = EXPERIMENT.c
-    query = select(columns.id, columns.owner, columns.outcome).where(columns.outcome.in_(("running", *HIDDEN)))
+    coming = select(HANDED_IN.c.experiment_id).where(HANDED_IN.c.complete.is_(False))
+    query = select(columns.id, columns.owner, columns.outcome).where(
+        columns.outcome.in_(("running", *HIDDEN)), columns.id.not_in(coming)
+    )
     return [(row.id, row.owner, row.outcome) for row in connection.execute(query)]
 
 

@@ -1,7 +1,7 @@
 """Trials found by words and conditions, sorted, a page at a time: for a list that a person looks through."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 
@@ -56,13 +56,13 @@ def search(connection: Connection, wanted: TrialQuery, limit: int, offset: int) 
         raise StoreValueError(f"sort is '{wanted.sort}'; wanted is one of {', '.join(SORTED_BY)}")
     if len(wanted.words) > MOST_WORDS:
         raise StoreValueError(f"found {len(wanted.words)} words; wanted at most {MOST_WORDS}")
-    filters = _filters(connection, wanted)
+    filters, words = _filters(connection, wanted), _words(connection, wanted.words)
     key = SORTED_BY[wanted.sort]
     order = [column.desc() if wanted.descending else column.asc() for column in dict.fromkeys((key, TRIAL.c.id))]
-    found = select(TRIAL.c.id).where(*filters).order_by(*order)
-    if wanted.words:  # every trial is looked at once: counting them apart would look again
-        ids = list(connection.execute(found).scalars())
-        return ids[offset : offset + limit], len(ids)
+    found = select(TRIAL.c.id).where(*filters, *words).order_by(*order)
+    if words:  # every trial is looked at once: counting them apart would look again
+        ids = connection.execute(found).scalars().all()
+        return list(ids[offset : offset + limit]), len(ids)
     count = connection.execute(select(func.count()).select_from(TRIAL).where(*filters)).scalar_one()
     return list(connection.execute(found.limit(limit).offset(offset)).scalars()), int(count)
 
@@ -79,21 +79,35 @@ def _filters(connection: Connection, wanted: TrialQuery) -> list[ColumnElement[b
         first, end = wanted.begun
         begun = select(EXPERIMENT.c.id).where(EXPERIMENT.c.started_utc >= first, EXPERIMENT.c.started_utc < end)
         filters.append(TRIAL.c.experiment_id.in_(begun))
-    if not wanted.words:
-        return filters
-    keys = _keys(connection)
-    return filters + [_has(connection, word, keys) for word in wanted.words]
+    return filters
 
 
-def _has(connection: Connection, word: str, keys: list[str]) -> ColumnElement[bool]:
-    """A word is somewhere in the trial. Conditions have few texts and keys: they are found first, trials by index."""
+def _words(connection: Connection, words: Sequence[str]) -> list[ColumnElement[bool]]:
+    if not words:
+        return []
+    keys = _values(connection, TRIAL_CONDITION.c.key)
+    few = {column: _values(connection, column) for column in (TRIAL.c.kind, TRIAL.c.outcome)}
+    return [one for word in words if (one := _has(connection, word, keys, few)) is not None]
+
+
+def _has(
+    connection: Connection, word: str, keys: list[str], few: Mapping[Column[str], list[str]]
+) -> ColumnElement[bool] | None:
+    """A word is somewhere in the trial; None where that is so of all of them.
+
+    Conditions have few texts and keys: they are found first, trials by index. So do columns of few values, as `few`
+    has them: their words are compared here, once each, and not with every trial.
+    """
     table = TRIAL_CONDITION.c
-    hits = [_like(connection, TRIAL.c[name], word) for name in ("name", "kind", "outcome", "reason")]
+    hits = [_like(connection, TRIAL.c[name], word) for name in ("name", "reason")]
+    hits += [column.in_([one for one in values if word.lower() in one.lower()]) for column, values in few.items()]
     texts = select(table.key, table.text).where(table.text.is_not(None), _like(connection, table.text, word)).distinct()
     by_key: dict[str, list[str]] = {}
     for key, text in connection.execute(texts).all():
         by_key.setdefault(key, []).append(text)
     told = [and_(table.key == key, table.text.in_(found)) for key, found in by_key.items()]
+    if any(_every_trial(connection, one) for one in told):
+        return None
     named = [key for key in keys if word.lower() in key.lower()]
     if named:  # a flag that is not set is no sign of what it is called
         told.append(and_(table.key.in_(named), or_(table.flag.is_(None), table.flag.is_(True))))
@@ -104,14 +118,22 @@ def _has(connection: Connection, word: str, keys: list[str]) -> ColumnElement[bo
     return or_(*hits, *(TRIAL.c.id.in_(select(table.trial_id).where(one)) for one in told))
 
 
-def _keys(connection: Connection) -> list[str]:
-    """The keys of all conditions: from one to the next in the index, as there are few of them and many rows."""
-    key = TRIAL_CONDITION.c.key
+def _every_trial(connection: Connection, condition: ColumnElement[bool]) -> bool:
+    """Whether all trials meet a condition, of which none has two of one key: counted in the index alone."""
+    met = select(func.count()).select_from(TRIAL_CONDITION).where(condition)
+    return bool(connection.execute(select(met.scalar_subquery() == _COUNTED)).scalar_one())
+
+
+_COUNTED = select(func.count()).select_from(TRIAL).scalar_subquery()
+
+
+def _values(connection: Connection, column: Column[str]) -> list[str]:
+    """The values of an indexed column: from one to the next in the index, as there are few of them and many rows."""
     found: list[str] = []
-    following = connection.execute(select(func.min(key))).scalar_one()
+    following = connection.execute(select(func.min(column))).scalar_one()
     while following is not None:
         found.append(following)
-        following = connection.execute(select(func.min(key)).where(key > following)).scalar_one()
+        following = connection.execute(select(func.min(column)).where(column > following)).scalar_one()
     return found
 
 

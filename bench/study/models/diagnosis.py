@@ -108,6 +108,11 @@ class Diagnosis(StudyModel):
     data_problems: list[str]
     classes: list[EffectClass]
     ranking: list[Ranked]
+    slight: bool = Field(
+        description="what is named is next to nothing beside what effects that were added explain: it may be what "
+        "their formulas leave, and is no reason to add another"
+    )
+    advice: str = Field(description="what that means, in a sentence; empty where it is not slight")
     provisional: ProvisionalTerm | None = Field(description="null unless the verdict is unknown-effect")
     conclusion: Conclusion
     findings: list[Finding] = Field(

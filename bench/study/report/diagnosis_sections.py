@@ -19,7 +19,7 @@ PICTURES = 3  # of a diagnosis, best effects first
 def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Section:
     """The answer, the evidence in words, the ranking, and the pictures of the best effects."""
     problems = [f"Data: {one.text}" for one in found.findings if one.code == "data-problem"]
-    words = [found.sentence, *problems]
+    words = [found.sentence, *([found.advice] if found.slight else []), *problems]
     for one in found.classes:
         words.append(one.sentence)
         if one.separating_trial:

@@ -13,6 +13,7 @@ from drivers.canopen.cia301.objects import DataType, DriveObject
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 
 _ATTEMPTS: Final = 2
+_SDO_BYTES: Final = 8
 _BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (CiA 301, 7.2.4.3)
 _NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
 _NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
@@ -146,6 +147,8 @@ class _Client(SdoClient):
         super().send_request(request)  # type: ignore[no-untyped-call]
 
     def on_response(self, can_id: int, data: bytes, timestamp: float) -> None:
+        if len(data) < _SDO_BYTES:
+            return
         if data[0] >> 5 not in _NAMES_OBJECT or bytes(data[1:4]) in (self._asked, _NO_OBJECT):
             super().on_response(can_id, data, timestamp)  # type: ignore[no-untyped-call]
 

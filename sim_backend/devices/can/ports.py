@@ -1,6 +1,7 @@
 """The port behind which a simulated device on a CAN bus is reached, by the name of an interface."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -8,7 +9,8 @@ from sim_backend.devices.can.bus_port import BusPort
 from sim_backend.devices.can.frame import CanDevice
 from sim_backend.devices.can.stream_port import SlcanPort, SocketcandPort
 from sim_backend.devices.link.line import Line
-from sim_backend.devices.process import Port, Workplace
+from sim_backend.devices.process import Port, RunningDevice, Workplace
+from sim_backend.devices.served import Served
 from sim_backend.errors import ParameterError
 
 
@@ -48,6 +50,27 @@ def port_of(device: CanDevice, settings: BusChoice) -> Callable[[Workplace], Por
         return BusPort(device, place.clock, *_bus(settings))
 
     return make
+
+
+@dataclass(frozen=True, kw_only=True)
+class ServedOnBus(Served):
+    """Its joint and its bus.
+
+    Attributes:
+        interface, channel: as `BusChoice` has them.
+    """
+
+    interface: str = "slcan"
+    channel: str = "0"
+
+    def on_bus(self, device: CanDevice) -> RunningDevice:
+        """Return the device at work.
+
+        Raises:
+            ParameterError: the channel is none of the interface's.
+            OSError: a port is taken.
+        """
+        return self.running(device, port_of(device, self))
 
 
 def _bus(settings: BusChoice) -> tuple[str, str, dict[str, str | int]]:

@@ -1,11 +1,9 @@
 """Starts a CiA 402 drive on a CAN bus."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from sim_backend.devices.can.ports import port_of
+from sim_backend.devices.can.ports import ServedOnBus, port_of
 from sim_backend.devices.canopen.conduct import GOOD, Conduct
 from sim_backend.devices.canopen.drive import ServoDrive
 from sim_backend.devices.canopen.eds import eds_text
@@ -23,35 +21,19 @@ FAMILIES = {family.name: family for family in (GENERIC, EPOS4)}
 
 
 @dataclass(frozen=True, kw_only=True)
-class CanOpenSettings:
+class CanOpenSettings(ServedOnBus):
     """A drive, its joint and its bus.
 
     Attributes:
         family: "generic" or "epos4".
         eds: data sheet or configuration file of the drive to be, instead of a family.
         node_id: 1 .. 127; None: what the file says, or 5.
-        interface: "slcan" (a pseudo-terminal), "socketcand" (a TCP server here), "join" (another device's server), or
-            an interface of python-can.
-        channel: of such an interface; TCP port of the server, 0 is any free one; host:port of the server that is
-            joined; not used by slcan.
         conduct: the drive's manners.
-        link: symbolic link to put on the pseudo-terminal; None: none.
-        preset, plant, seed: the joint.
-        side_port: TCP port of the side channel; 0 is any free one.
-        patience_s: how far time goes without a word of the host while the joint is at work [s]; None: for ever.
     """
 
     family: str = "generic"
     eds: Path | None = None
     node_id: int | None = None
-    interface: str = "slcan"
-    channel: str = "0"
-    link: Path | None = None
-    preset: str = "paper"
-    plant: Mapping[str, Any] | None = None
-    seed: int = 1
-    side_port: int = 0
-    patience_s: float | None = None
     conduct: Conduct = GOOD
 
 
@@ -73,7 +55,7 @@ def serve_canopen(settings: CanOpenSettings) -> RunningDrive:
         ParameterError: the joint cannot be, the family is not known, or the data sheet is none.
         OSError: a port is taken.
     """
-    parameters = behind_a_drive(settings.preset, None, settings.plant)
+    parameters = settings.joint()
     family = _family(settings.family) if settings.eds is None else family_of(read_data_sheet(settings.eds))
     node_id = settings.node_id or family.node_id or DEFAULT_NODE
     drive = ServoDrive(parameters, family, node_id, settings.seed, settings.conduct)

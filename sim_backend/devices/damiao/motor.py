@@ -23,13 +23,13 @@ class DamiaoMotor(MitMotor):
     Args:
         parameters: the joint.
         motor_id: to which it listens.
-        feedback_id: with which it answers.
         ranges: of position [rad], speed [rad/s] and torque [N m] in its frames.
         seed: of the plant.
+        feedback_id: with which it answers.
     """
 
     def __init__(
-        self, parameters: PlantParameters, motor_id: int, feedback_id: int, ranges: Top, seed: int = 0
+        self, parameters: PlantParameters, motor_id: int, ranges: Top, seed: int = 0, feedback_id: int = 0x11
     ) -> None:
         super().__init__(parameters, ranges[2], seed)
         self._motor_id, self._feedback_id = motor_id, feedback_id

@@ -1,5 +1,6 @@
 """The thread that carries bytes between a pseudo-terminal and a device, at the line's pace and with its faults."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -8,6 +9,8 @@ from sim_backend.devices.link.faults import Direction
 from sim_backend.devices.link.line import Line, pause_until
 from sim_backend.devices.link.port import LOOK_UP_S, PortThread
 from sim_backend.devices.link.pseudo_terminal import PseudoTerminal
+from sim_backend.devices.process import RunningDevice
+from sim_backend.devices.served import Served
 from sim_backend.devices.wall_time import WallTime
 
 
@@ -69,3 +72,24 @@ class SerialPort(PortThread):
         if self._terminal is not None:
             self._terminal.close()
             self._terminal = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ServedOnLine(Served):
+    """Its joint and its line.
+
+    Attributes:
+        baud: pace of the line; None is as fast as the machine.
+    """
+
+    baud: int | None = None
+
+    def on_pseudo_terminal(self, device: ByteDevice) -> RunningDevice:
+        """Return the device at work. Its port stays where it is while the line is not disconnected.
+
+        Raises:
+            OSError: the link or the side channel's port is taken.
+        """
+        return self.running(
+            device, lambda place: SerialPort(device, place.clock, Line(self.baud, place.faults, self.seed), self.link)
+        )

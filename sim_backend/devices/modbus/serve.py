@@ -1,11 +1,7 @@
 """Starts a drive on Modbus RTU or TCP."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
-from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.link.line import Line
 from sim_backend.devices.link.serial_relay import SerialRelay
 from sim_backend.devices.link.tcp_relay import TcpRelay
@@ -13,13 +9,14 @@ from sim_backend.devices.modbus.own_drive import OwnDrive
 from sim_backend.devices.modbus.roboteq import Roboteq
 from sim_backend.devices.modbus.server import ModbusServer, RegisterDevice
 from sim_backend.devices.process import RunningDevice, Workplace
+from sim_backend.devices.served import Served
 from sim_backend.errors import ParameterError
 
 MAPS = ("friction-bench", "roboteq")
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModbusSettings:
+class ModbusSettings(Served):
     """A drive, its joint and its line.
 
     Attributes:
@@ -28,11 +25,7 @@ class ModbusSettings:
         unit: number of the device.
         low_word_first: word order of our own map at the start.
         baud: pace of a serial line; None is as fast as the machine.
-        link: symbolic link to put on the pseudo-terminal; None: none.
         port: TCP port; 0 is any free one.
-        preset, plant, seed: the joint.
-        side_port: TCP port of the side channel; 0 is any free one.
-        patience_s: how far time goes without a word of the host while the joint is at work [s]; None: for ever.
     """
 
     map: str = "friction-bench"
@@ -40,13 +33,7 @@ class ModbusSettings:
     unit: int = 1
     low_word_first: bool = False
     baud: int | None = None
-    link: Path | None = None
     port: int = 0
-    preset: str = "paper"
-    plant: Mapping[str, Any] | None = None
-    seed: int = 1
-    side_port: int = 0
-    patience_s: float | None = None
 
 
 def serve_modbus(settings: ModbusSettings) -> RunningDevice:
@@ -60,15 +47,13 @@ def serve_modbus(settings: ModbusSettings) -> RunningDevice:
         raise ParameterError(f"register map '{settings.map}' is unknown; known are {', '.join(MAPS)}")
     if settings.transport not in ("rtu", "tcp"):
         raise ParameterError(f"transport '{settings.transport}' is unknown; known are rtu, tcp")
-    parameters = behind_a_drive(settings.preset, None, settings.plant)
+    parameters = settings.joint()
     device: OwnDrive | Roboteq
     if settings.map == "roboteq":
         device = Roboteq(parameters, seed=settings.seed)
     else:
         device = OwnDrive(parameters, settings.low_word_first, settings.seed)
-    return RunningDevice(
-        device, lambda place: _ServedPort(device, settings, place), settings.side_port, settings.patience_s
-    )
+    return settings.running(device, lambda place: _ServedPort(device, settings, place))
 
 
 class _ServedPort:

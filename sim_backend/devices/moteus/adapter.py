@@ -84,7 +84,8 @@ class FdcanusbAdapter:
 
 
 def padded(data: bytes) -> bytes:
-    """Return data as long as a frame may be."""
+    """Return data as long as a frame may be; what is beyond the longest is not sent."""
+    data = data[: _LENGTHS[-1]]
     return data.ljust(next(size for size in _LENGTHS if size >= len(data)), b"\x50")
 
 

@@ -12,7 +12,8 @@ from drivers.damiao import protocol
 from drivers.damiao.protocol import MODELS, Register
 from drivers.mit import frames
 from drivers.mit.frames import Ranges
-from sim_backend.devices.damiao.serve import DamiaoSimulation, serve_damiao
+from sim_backend.devices.damiao.motor import DamiaoMotor
+from sim_backend.devices.mit.serve import MitSimulation, serve_mit
 
 DM4310 = MODELS["DM4310"]
 
@@ -77,7 +78,7 @@ def test_answers_are_read_alike(position, speed, torque, state):
 
 def test_the_package_turns_the_simulated_actuator():
     ranges = (100.0, 200.0, 0.5)
-    with serve_damiao(DamiaoSimulation(interface="virtual", channel="damiao-peer", ranges=ranges)):
+    with serve_mit(DamiaoMotor, MitSimulation(interface="virtual", channel="damiao-peer", ranges=ranges)):
         bus = can.Bus(interface="virtual", channel="damiao-peer")
         motor = foreign.DaMiaoMotor(
             1, 0x11, bus, motor_type="4310", p_min=-ranges[0], p_max=ranges[0], v_min=-ranges[1], v_max=ranges[1],

@@ -3,16 +3,23 @@ and that package's client on the simulated axis. Neither side of that conversati
 """
 
 import asyncio
+import threading
+from contextlib import contextmanager, suppress
 from struct import pack
 
 import can
 import pytest
+from odrive_can.mock import ODriveCANMock
 from odrive_can.odrive import ODriveCAN
 from odrive_can.utils import get_dbc
 
+from drivers.can_bus.settings import BusSettings
+from drivers.contract import Command as Demand
+from drivers.contract import Mode, Status
 from drivers.odrive import protocol
 from drivers.odrive.protocol import Command, can_id
 from sim_backend.devices.odrive.serve import OdriveSimulation, serve_odrive
+from tests.drivers.actuators.kinds import ODRIVE
 
 DBC = get_dbc("odrive-cansimple-0.6.10")
 NAMES = {
@@ -57,6 +64,20 @@ def test_layouts(command, layout, names):
     assert [decoded[name] for name in names] == values
 
 
+@pytest.mark.parametrize(
+    ("command", "data"),
+    [
+        (Command.SET_AXIS_STATE, protocol.WORD.pack(protocol.IDLE)),
+        (Command.SET_CONTROLLER_MODE, protocol.MODES.pack(protocol.TORQUE_CONTROL, protocol.PASSTHROUGH)),
+        (Command.SET_INPUT_TORQUE, protocol.TORQUE.pack(0.1)),
+        (Command.CLEAR_ERRORS, bytes(1)),
+    ],
+)
+def test_what_is_sent_is_as_long_as_its_message_file_says(command, data):
+    """A peer that reads by that file took none of our states while they were four bytes long."""
+    assert len(data) == message(command).length
+
+
 def test_states_modes_and_errors():
     state = message(Command.SET_AXIS_STATE).decode(protocol.WORD.pack(protocol.CLOSED_LOOP).ljust(8, b"\0"))
     assert str(state["Axis_Requested_State"]) == "CLOSED_LOOP_CONTROL"
@@ -76,6 +97,51 @@ def test_its_heartbeat_says_the_state():
     found = message(Command.HEARTBEAT).decode(data)
     assert str(found["Axis_State"]) == "CLOSED_LOOP_CONTROL"
     assert protocol.HEARTBEAT.unpack_from(data)[:2] == (0x200, 8)
+
+
+@contextmanager
+def mock_at_work(channel):
+    """The package's mock of an axis: it knows no torque and no current, and changes its state half a second late."""
+    loop, began = asyncio.new_event_loop(), threading.Event()
+
+    async def work():
+        mock = ODriveCANMock(0, can.Bus(interface="virtual", channel=channel, ignore_config=True))
+        tasks = [asyncio.create_task(one()) for one in (mock.heartbeat_loop, mock.encoder_loop, mock.message_handler)]
+        began.set()
+        await asyncio.gather(*tasks)
+
+    def run():
+        with suppress(asyncio.CancelledError, RuntimeError):
+            loop.run_until_complete(work())
+        loop.close()
+
+    def cancel():
+        for task in asyncio.all_tasks(loop):
+            task.cancel()
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        assert began.wait(10.0)
+        yield
+    finally:
+        loop.call_soon_threadsafe(cancel)
+        thread.join()
+
+
+def test_our_driver_opens_and_drives_the_mock_of_another_package():
+    with mock_at_work("odrive-mock"):
+        drive = ODRIVE.on(BusSettings("virtual", "odrive-mock"), answer_timeout_s=1.0)  # it sleeps, and answers nothing
+        drive.open(0.01)
+        found = drive.describe()
+        drive.enable(Mode.TORQUE)
+        powered = drive.exchange(Demand(Mode.TORQUE, 0.01))
+        drive.disable()
+        off = drive.exchange(Demand(Mode.OFF))
+        drive.close()
+    assert (found.vendor, found.simulated) == ("ODrive", False)  # its mock says that it is released
+    assert (powered.status, off.status) == (Status.ENABLED, Status.DISABLED)
+    assert powered.supply_v == 0.0
 
 
 def test_another_client_turns_the_simulated_axis():

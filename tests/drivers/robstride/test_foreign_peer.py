@@ -13,7 +13,8 @@ from robstride_dynamics import protocol as foreign
 from drivers.can_bus.port import EXTENDED
 from drivers.robstride import protocol
 from drivers.robstride.protocol import Kind, Parameter
-from sim_backend.devices.robstride.serve import RobstrideSimulation, serve_robstride
+from sim_backend.devices.mit.serve import MitSimulation, serve_mit
+from sim_backend.devices.robstride.motor import RobstrideMotor
 
 RS02 = protocol.MODELS["RS02"]
 # their table has other ranges than the manuals of RS00, RS03, RS05 and RS06
@@ -84,9 +85,9 @@ def test_enable_and_stop_are_the_same():
 
 
 def test_the_package_turns_the_simulated_actuator():
-    settings = RobstrideSimulation(interface="virtual", channel="robstride-peer", ranges=RS02[:3])
+    settings = MitSimulation(interface="virtual", channel="robstride-peer", motor_id=127, ranges=RS02[:3])
     bus = can.Bus(interface="virtual", channel="robstride-peer")
-    with serve_robstride(settings), peer(bus) as made:
+    with serve_mit(RobstrideMotor, settings), peer(bus) as made:
         assert made.ping_by_id(127, 1.0) is not None
         assert made.read("joint", ParameterType.VBUS) == pytest.approx(24.0, abs=0.2)
         made.write("joint", ParameterType.CAN_TIMEOUT, 20_000)

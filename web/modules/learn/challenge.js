@@ -7,13 +7,17 @@ import { number, percent, when } from "../ui/format.js";
 
 const LEVELS = { easy: "easy: at most one, large", medium: "medium: up to two", hard: "hard: up to two, small, noisy recordings" };
 
-// resolves when the list is there
-export function challengePanel(place) {
+// wanted: the challenge that is guessed at, if any. Resolves when the list is there
+export function challengePanel(place, wanted = null) {
   const [list, answer, revealed] = [h("div"), h("div"), h("div", { class: "guess" })];
   place.className = "challenge";
   const level = h("select", { id: "difficulty" }, Object.entries(LEVELS).map(([value, text]) => h("option", { value }, text)));
   const button = h("button", { type: "button", class: "primary" }, "New challenge");
-  const refresh = () => attempt(list, async () => replace(list, challengeTable((await get("/challenges")).items, revealed)));
+  const refresh = () => attempt(list, async () => {
+    const { items } = await get("/challenges");
+    replace(list, challengeTable(items, revealed));
+    return items.find((one) => one.challenge_id === wanted);
+  });
   button.addEventListener("click", async () => {
     const made = await patiently(answer, `challenge ${level.value}`, "Drawing a joint at random, and recording it …", (signal) => post("/challenges", { difficulty: level.value }, 0, { signal }), { button, again: () => button.click() });
     if (!made) return;
@@ -22,7 +26,7 @@ export function challengePanel(place) {
   });
   replace(place, h("p", { class: "soft" }, "A joint is drawn at random; nothing, one or two mechanisms are hidden in it, and it is recorded. Find them from the recordings alone."),
     h("div", { class: "row" }, h("label", { for: "difficulty" }, "Difficulty", level), button), answer, list, revealed);
-  return refresh();
+  return refresh().then((found) => found && guessForm(revealed, found));
 }
 
 function challengeTable(items, revealed) {

@@ -13,7 +13,7 @@ export function learnView(place, { rest }) {
   const search = h("input", { type: "search", id: "effect-search", autocomplete: "off" });
   replace(place, panel("Practise: what is hidden in this joint?", challenge),
     panel("Effects that a model can be made of", h("label", { for: "effect-search" }, "Search", search), h("div", { class: "gap" }), list));
-  const practice = challengePanel(challenge);
+  const practice = challengePanel(challenge, Number(rest[1]) || null);
   const listed = attempt(list, async () => {
     const { items } = await get("/effects");
     const show = () => replace(list, items.filter((one) => matches(one, search.value)).map(card));

@@ -13,9 +13,9 @@ const SHOWN = 6;
 const MOMENTS = 4; // of a candidate: all have the same to say
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
-// add(effect, place): to the model; linked: the plots that show where an effect acts, or null; path: of the study
-export function diagnosis(place, found, { add, path, linked, effort }) {
-  const ways = { add, look: (one, answer, button) => look(answer, one, { path, linked, model_id: found.model_id, button }), linked, effort };
+// add(effect, place): to the model; finish: what to press where nothing is left to add; linked: the plots that show where an effect acts, or null; path: of the study
+export function diagnosis(place, found, { add, finish, path, linked, effort }) {
+  const ways = { add, look: (one, answer, button) => look(answer, one, { path, linked, model_id: found.model_id, button }), linked, effort, slight: found.slight };
   const named = h("div", { class: "cards" });
   const others = h("div", { class: "cards" });
   const curve = found.provisional && h("div", { class: "cards" });
@@ -24,10 +24,12 @@ export function diagnosis(place, found, { add, path, linked, effort }) {
   const notJudged = found.findings.filter(({ code }) => code === "not-judged");
   const notes = found.findings.filter((one) => !problems.includes(one) && !notJudged.includes(one));
   const first = found.ranking.slice(0, SHOWN);
-  replace(place, h("p", { class: "sentence", role: "status" }, spoken(found.sentence)),
+  replace(place, h("p", { class: "sentence", role: "status" }, spoken(found.slight ? found.advice : found.sentence)),
+    found.slight && h("p", { class: "soft" }, spoken(found.sentence)),
+    (found.slight || found.verdict === "nothing") && h("div", { class: "row finish" }, finish),
     problems.map(({ text }) => h("div", { class: "problem" }, capital(spoken(text)))),
     notes.map(({ text }) => h("p", { class: "soft" }, capital(spoken(text)))),
-    found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
+    !found.slight && found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
     found.ranking.length > SHOWN && more,
     notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, spoken(text)))));
   if (curve) provisional(curve, found.provisional, ways);
@@ -49,8 +51,9 @@ function className(one) {
 }
 
 function card(parent, one, ways) {
-  const badges = [one.in_class && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")];
-  article(parent, one, { badges, words: evidence(one), name: "with the effect", action: `Add ${one.title}`, primary: one.in_class }, ways);
+  const candidate = one.in_class && !ways.slight;
+  const badges = [candidate && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")];
+  article(parent, one, { badges, words: evidence(one), name: "with the effect", action: `Add ${one.title}`, primary: candidate }, ways);
 }
 
 // what has no formula: its curve, to stand in the model until somebody knows the physics

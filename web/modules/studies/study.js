@@ -95,10 +95,18 @@ class Study {
     button.addEventListener("click", async () => {
       const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal, job) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal, job }), { button, followed: true });
       await this.comparing; // its plots show where effects act
-      if (found) diagnosis(diagnosed, found, { add: (effect, place) => this.add(effect, place), path: this.path, linked: this.linked, effort: this.study.effort });
+      if (found) diagnosis(diagnosed, found, { add: (effect, place) => this.add(effect, place), finish: await this.finish(), path: this.path, linked: this.linked, effort: this.study.effort });
     });
     replace(diagnose, panel("What is missing?", h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button), diagnosed));
     searchButton(this.parts.search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
+  }
+
+  // what to press where nothing is left to add: of the joint of a challenge, one is told what was hidden
+  async finish() {
+    const made = await get("/challenges").catch(() => ({ items: [] }));
+    const challenge = made.items.find((one) => one.experiment_id === this.experiment?.experiment_id);
+    return [challenge && h("a", { class: "button primary", href: `#learn/challenge/${challenge.challenge_id}` }, "Guess and reveal"),
+      h("button", { type: "button", class: challenge ? "" : "primary", onclick: () => this.steps.show("result") }, "See the result")];
   }
 
   async extended(sentence) {
@@ -199,8 +207,8 @@ class Study {
   // only the joint of this bench can be recorded again: trials that came in from elsewhere are of another one
   async #offerSuggestions(place) {
     const first = await get(`/trials/${this.study.trials[0].trial_id}`).catch(() => null);
-    const experiment = first && (await get(`/experiments/${first.experiment_id}`).catch(() => null));
-    if (experiment?.source === "imported") {
+    this.experiment = first && (await get(`/experiments/${first.experiment_id}`).catch(() => null));
+    if (this.experiment?.source === "imported") {
       replace(place, h("p", { class: "soft" }, "These trials were imported, or are those of a challenge: their joint does not stand on this bench, so nothing more can be recorded of it here."));
     } else suggestions(place, this.path, () => this.model, (sentence) => this.extended(sentence));
   }

@@ -1,0 +1,79 @@
+"""What the page offers once a diagnosis is there: one thing to press, and that is what helps."""
+
+import pytest
+
+from tests.service.recorded_joint import study_path
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture(scope="module")
+def study(service) -> str:
+    return study_path(service, "diagnosed").split("/")[-1]
+
+
+@pytest.fixture
+def diagnosed(open_page, study):
+    """The page with a diagnosis of the study that was changed on its way."""
+
+    def opened(**changes):
+        page = open_page(f"#study/{study}/diagnose", width=1440)
+
+        def change(route) -> None:
+            answer = route.fetch()
+            route.fulfill(response=answer, json={**answer.json(), **changes})
+
+        page.route("**/diagnose?*", change)
+        page.get_by_role("button", name="Diagnose").click()
+        page.locator(".diagnosed .sentence").wait_for()
+        return page
+
+    return opened
+
+
+def primaries(page) -> list[str]:
+    return page.locator(".diagnosed .primary").all_inner_texts()
+
+
+def test_a_missing_effect_is_the_one_thing_to_add(diagnosed):
+    page = diagnosed()
+    page.locator("article").first.wait_for()
+    assert primaries(page) == ["Add Direction-asymmetric viscous friction"]
+
+
+def test_what_is_slight_is_no_candidate_and_the_result_is_next(diagnosed):
+    page = diagnosed(slight=True, advice="Next to nothing is left: it would take 3.0% of the held-out error away.")
+    page.get_by_text("Next to nothing is left: it would take 3.0 % of").wait_for()
+    page.locator("article").first.wait_for()
+    assert page.locator(".diagnosed .badge.completed").count() == 0
+    assert primaries(page) == ["See the result"]
+    page.get_by_role("button", name="See the result").click()
+    page.wait_for_url("**/result")
+
+
+def test_a_provisional_curve_is_offered_and_not_pressed_on_anybody(diagnosed):
+    picture = {"driver": "velocity", "unit": "rad/s", "against_motion": True, "x": [0, 1], "residual": [0, 1],
+               "low": [0, 1], "high": [0, 1], "curve_x": [0, 1], "curve": [0, 1]}  # fmt: skip
+    errors = {"held_out_before": 0.1, "held_out_after": 0.09, "gain": 0.1, "gain_low": 0.0, "gain_high": 0.2}
+    curve = {"effect": "curve_of_velocity", "title": "Curve", "sentence": "Until then.", "picture": picture, **errors}
+    page = diagnosed(verdict="unknown-effect", classes=[], ranking=[], provisional=curve)
+    page.get_by_role("button", name="Add as a provisional term").wait_for()
+    assert primaries(page) == []
+
+
+def test_of_the_joint_of_a_challenge_one_is_told_what_was_hidden(open_page, service, diagnosed, study):
+    trial = service.client.get(f"/studies/{study}").json()["trials"][0]["trial_id"]
+    experiment = service.client.get(f"/trials/{trial}").json()["experiment_id"]
+    made = {"items": [{"challenge_id": 7, "experiment_id": experiment, "difficulty": "easy", "created_utc": None}]}
+    page = open_page("#home", width=1440)
+    page.route("**/api/v1/challenges", lambda route: route.fulfill(json=made))
+    page.route("**/diagnose?*", lambda route: _nothing(route))
+    page.evaluate("(hash) => { location.hash = hash; }", f"#study/{study}/diagnose")
+    page.get_by_role("button", name="Diagnose").click()
+    page.get_by_role("link", name="Guess and reveal").click()
+    page.get_by_text("What is hidden in challenge 7?").wait_for()
+
+
+def _nothing(route) -> None:
+    answer = route.fetch()
+    route.fulfill(response=answer, json={**answer.json(), "verdict": "nothing", "classes": [], "ranking": []})

@@ -1,0 +1,65 @@
+"""`python -m tests.steady [RUNS]`: the tests that the wall clock times, many times in a row; which of them fails when.
+
+Printed is a row for each run of a part, and at the end how often each test has failed; what it said is in out/steady. A
+race shows in one run of many: it is mended, no test is tried twice.
+"""
+
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from xml.etree import ElementTree
+
+from tests.paths import ROOT
+
+RUNS = 20
+OUT = ROOT / "out" / "steady"
+PARTS = ("services", "drivers")  # `make test-services`, `make test-drivers`
+
+
+def failed_of(report: Path) -> tuple[int, list[str]]:
+    """How many tests of a report there were, and the names of those that failed."""
+    cases = list(ElementTree.parse(report).iter("testcase"))
+    return len(cases), [
+        f"{case.get('classname')}::{case.get('name')}"
+        for case in cases
+        if case.find("failure") is not None or case.find("error") is not None
+    ]
+
+
+def run(part: str, number: int) -> list[str]:
+    """Run a part once, and print its row; the names of the tests that failed."""
+    name = f"{part}-{number:02}"
+    report = OUT / f"{name}.xml"
+    report.unlink(missing_ok=True)
+    words, options = ["make", f"test-{part}"], {"PYTEST_ADDOPTS": f"--junitxml={report}"}
+    began_s = time.monotonic()
+    with (OUT / f"{name}.log").open("w", encoding="utf-8") as log:
+        status = subprocess.run(
+            words, cwd=ROOT, env=os.environ | options, stdout=log, stderr=subprocess.STDOUT, check=False
+        ).returncode
+    count, failed = failed_of(report) if report.exists() else (0, [f"no report of {name}"])
+    if status and not failed:
+        failed = [f"pytest ended with {status} in {name}"]
+    took_s = time.monotonic() - began_s
+    print(f"{number:3} {part:<10} {count:5} {len(failed):6} {took_s:6.0f} s  {', '.join(failed)}", flush=True)
+    return failed
+
+
+def main(runs: int) -> int:
+    """Run every part so many times; 0 where no test has failed."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    print(f"run {'part':<10} {'tests':>5} {'failed':>6} {'took':>8}", flush=True)
+    ended = [(run(part, number), number) for number in range(1, runs + 1) for part in PARTS]
+    failures = Counter(name for failed, _ in ended for name in failed)
+    green = runs - len({number for failed, number in ended if failed})
+    print(f"{green} of {runs} runs in which no test failed")
+    for name, count in failures.most_common():
+        print(f"{count:3} {name}")
+    return int(bool(failures))
+
+
+if __name__ == "__main__":
+    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else RUNS))
