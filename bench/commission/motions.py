@@ -4,8 +4,11 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
+import numpy as np
+
 from bench.commission.questions import CommissionError
 from bench.config.configuration import BenchConfiguration
+from bench.control.late_cycles import moves_a_joint
 from bench.errors import PromptError
 from bench.json_types import Values
 from bench.runs.bench_control import BenchControl, Request, to_its_end
@@ -13,6 +16,7 @@ from bench.runs.connection import Connection
 from bench.store import Experiment, Store
 
 NOTE = "friction-bench commission"
+ATTEMPTS = 3  # of one motion, on a machine that is busy with other work
 
 
 class Motions:
@@ -44,7 +48,7 @@ class Motions:
         return self._runner.look(bench)
 
     def run(self, bench: BenchConfiguration, kind: str, parameters: Values, hung: tuple[float, bool]) -> Experiment:
-        """One experiment to its end.
+        """One experiment to its end; again where host or line was late, which says nothing of the joint.
 
         Args:
             bench: with what is known of the joint so far.
@@ -56,14 +60,27 @@ class Motions:
             CommissionError: it did not complete, with the reason.
             BenchError, DriveError: it is refused, or the drive cannot be opened.
         """
-        self._refuse_given_up()
-        with self._guarded(self._runner):
-            request = Request(kind, parameters, note=NOTE, hung=hung, bench=bench)
-            number = to_its_end(self._runner, request, self._given_up, self._attend)
-        found = self._store.experiment(number)
-        if found.outcome != "completed":
-            raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")
-        return found
+        request = Request(kind, parameters, note=NOTE, hung=hung, bench=bench)
+        for _ in range(ATTEMPTS):
+            self._refuse_given_up()
+            with self._guarded(self._runner):
+                number = to_its_end(self._runner, request, self._given_up, self._attend)
+            found = self._store.experiment(number)
+            if found.outcome == "completed":
+                return found
+            if not self._was_late(found, bench):
+                break
+        raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")
+
+    def _was_late(self, ended: Experiment, bench: BenchConfiguration) -> bool:
+        """Whether a limit that tripped, or a drive that went off, may be put down to cycles lost or samples too old."""
+        trials = self._store.trials(ended.id)
+        if ended.outcome not in ("tripped", "failed") or not trials:
+            return False
+        if moves_a_joint(trials[-1].results.get("overruns", 0), bench.control.period_s):
+            return True
+        ages_s = self._store.recording(trials[-1].id).channels.get("age_s", np.empty(0))
+        return bool((ages_s > bench.limits.sample_age_s).any())
 
     def _refuse_given_up(self) -> None:
         if reason := self._given_up():

@@ -39,10 +39,15 @@ class LateCycles:
     def explain(self, cycle: int) -> str:
         """What the drive did meanwhile, where a good few cycles were lost a moment ago; else ""."""
         lost = sum(lost for at, lost in self._lost if (cycle - at) * self._period_s <= TOLD_S)
-        if lost * self._period_s < LEAST_S:
+        if not moves_a_joint(lost, self._period_s):
             return ""
         late = f"the host was late by {lost * self._period_s:.3g} s ({lost} cycles) just before"
         return f"; {late}, and the drive went on with the last command meanwhile: see what kept the host busy"
+
+
+def moves_a_joint(lost: int, period_s: float) -> bool:
+    """Whether so many lost cycles are enough for a joint to be elsewhere when the host is back."""
+    return lost * period_s >= LEAST_S
 
 
 def braking_cycles(clock: Clock, period_s: float) -> Iterator[None]:

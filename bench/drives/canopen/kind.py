@@ -1,6 +1,7 @@
 """CiA 402 drives on a CAN bus as a kind."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -10,9 +11,10 @@ from bench.config.rig import Rig
 from bench.drives.canopen.settings import CanopenDriveSettings
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 if TYPE_CHECKING:  # imported when needed: a bench needs no library of another kind
-    from drivers.canopen import CanopenDrive
+    from drivers.canopen import CanopenDrive, CanopenSettings
 
 
 _UNHURRIED = {"watchdog_s": 1.0, "answer_s": 0.6}
@@ -24,17 +26,37 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
     Raises:
         ConfigurationError: settings that contradict each other.
     """
-    from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+    from drivers.canopen import CanopenDrive
     from drivers.errors import DriveConfigurationError
 
-    values = driver_values(settings)
-    bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
-    constant_n_m_a = rig.motor.torque_constant_n_m_a
     try:
-        drive = CanopenSettings(bus=bus, torque_constant_n_m_a=constant_n_m_a, **values)
-        return CanopenDrive(drive, joint_scale(settings, rig))
+        return CanopenDrive(_driver_settings(settings, rig), joint_scale(settings, rig))
     except DriveConfigurationError as error:
         raise ConfigurationError(str(error)) from error
+
+
+def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another master drives.
+
+    Raises:
+        ConfigurationError: a COB-ID is no number.
+    """
+    from drivers.canopen.follow import follow
+
+    try:
+        mappings = {int(cob_id, 0): entries for cob_id, entries in settings.tpdo_mapping.items()}
+    except ValueError as error:
+        raise ConfigurationError(f"drive.tpdo_mapping: {error}; a COB-ID such as '0x185' is wanted") from error
+    return follow(_driver_settings(settings, rig), joint_scale(settings, rig), mappings)
+
+
+def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettings":
+    from drivers.canopen import BusSettings, CanopenSettings
+
+    values = driver_values(settings)
+    del values["tpdo_mapping"]
+    bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    return CanopenSettings(bus=bus, torque_constant_n_m_a=rig.motor.torque_constant_n_m_a, **values)
 
 
 def share(drives: "Sequence[CanopenDrive]") -> None:
@@ -64,6 +86,7 @@ KIND = DriveKind(
     settings=CanopenDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     share=share,
     conformance=(
         ConformanceBench(

@@ -85,3 +85,8 @@ class CanopenDriveSettings(RealDriveSettings):
     vendor_id: int | None = quantity(None, "", "What 0x1018:01 has to say; left out: anything", ge=0)
     product_code: int | None = quantity(None, "", "What 0x1018:02 has to say; left out: anything", ge=0)
     serial_number: int | None = quantity(None, "", "What 0x1018:04 has to say; left out: anything", ge=0)
+    tpdo_mapping: dict[str, list[int]] = quantity(
+        {},
+        "",
+        "For `record`: entries of the TPDOs that another master has set up (0x60640020), by COB-ID ('0x185')",
+    )

@@ -1,0 +1,63 @@
+"""A motion of commissioning that a late host has spoilt is made again; one that the joint has ended is not."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from bench.commission import motions
+from bench.commission.questions import CommissionError
+from bench.config.configuration import default_configuration
+
+BENCH = default_configuration()
+LATE, NOT_LATE = {"overruns": 20}, {"overruns": 1}
+FRESH_S, OLD_S = 0.5 * BENCH.limits.sample_age_s, 2.0 * BENCH.limits.sample_age_s
+
+
+class Ended:
+    """A store of experiments that ended so; and what runs them, one after the other."""
+
+    def __init__(self, *endings):
+        self._endings, self.ran = endings, 0
+
+    def to_its_end(self, *_arguments):
+        self.ran += 1
+        return self.ran
+
+    def experiment(self, number):
+        return SimpleNamespace(id=number, outcome=self._endings[number - 1][0], reason="age of the sample")
+
+    def trials(self, number):
+        return [SimpleNamespace(id=number, results=self._endings[number - 1][1])]
+
+    def recording(self, number):
+        return SimpleNamespace(channels={"age_s": np.array([FRESH_S, self._endings[number - 1][1].get("age_s", 0.0)])})
+
+
+def run(monkeypatch, *endings):
+    ended = Ended(*endings)
+    monkeypatch.setattr(motions, "to_its_end", ended.to_its_end)
+    found = motions.Motions(None, ended).run(BENCH, "identification", {}, (0.0, False))
+    return found, ended
+
+
+@pytest.mark.parametrize("ending", [("tripped", LATE), ("failed", LATE), ("tripped", NOT_LATE | {"age_s": OLD_S})])
+def test_a_late_host_is_no_reason_to_give_up(monkeypatch, ending):
+    found, ended = run(monkeypatch, ending, ("completed", {}))
+    assert (found.id, ended.ran) == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("endings", "runs"),
+    [
+        ([("tripped", NOT_LATE)], 1),
+        ([("stopped", LATE)], 1),  # a person has stopped it
+        ([("tripped", LATE)] * 3, 3),
+    ],
+)
+def test_what_the_joint_or_a_person_has_ended_is_over(monkeypatch, endings, runs):
+    ended = Ended(*endings)
+    monkeypatch.setattr(motions, "to_its_end", ended.to_its_end)
+    with pytest.raises(CommissionError, match="identification"):
+        motions.Motions(None, ended).run(BENCH, "identification", {}, (0.0, False))
+    assert ended.ran == runs
