@@ -89,7 +89,7 @@ kills: $(STAMP)  ## 200 runs ended at random moments in every way: what is left 
 	$(BIN)/python -m tests.stopping.kills --kills 200
 
 fuzz: $(STAMP)   ## what is drawn at random, for long: requests, files and bytes on every wire; says how many
-	FUZZ_TIMES=50 $(BIN)/pytest --numprocesses auto --timeout=7200 tests/fuzz
+	FUZZ_TIMES=40 $(BIN)/pytest --numprocesses auto --timeout=7200 tests/fuzz
 
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)

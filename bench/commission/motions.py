@@ -72,10 +72,17 @@ class Motions:
                 break
         raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")
 
+    def lost_cycles(self, ran: Experiment, bench: BenchConfiguration) -> int:
+        """How many cycles a late host has lost in the trial in which it lost most; 0 where they move no joint."""
+        lost = max((int(trial.results.get("overruns", 0)) for trial in self._store.trials(ran.id)), default=0)
+        return lost if moves_a_joint(lost, bench.control.period_s) else 0
+
     def _was_late(self, ended: Experiment, bench: BenchConfiguration) -> bool:
         """Whether a limit that tripped, or a drive that went off, may be put down to cycles lost or samples too old."""
         trials = self._store.trials(ended.id)
-        if ended.outcome not in ("tripped", "failed") or not trials:
+        if not trials:  # the trial of the watchdog, which is on no record: its demand is small, and may be made again
+            return ended.outcome == "tripped"
+        if ended.outcome not in ("tripped", "failed"):
             return False
         if moves_a_joint(trials[-1].results.get("overruns", 0), bench.control.period_s):
             return True

@@ -11,6 +11,7 @@ from bench.config.configuration import default_configuration
 
 BENCH = default_configuration()
 LATE, NOT_LATE = {"overruns": 20}, {"overruns": 1}
+NO_TRIAL = {"none": "on record"}  # it ended in the trial of the watchdog
 FRESH_S, OLD_S = 0.5 * BENCH.limits.sample_age_s, 2.0 * BENCH.limits.sample_age_s
 
 
@@ -28,7 +29,8 @@ class Ended:
         return SimpleNamespace(id=number, outcome=self._endings[number - 1][0], reason="age of the sample")
 
     def trials(self, number):
-        return [SimpleNamespace(id=number, results=self._endings[number - 1][1])]
+        results = self._endings[number - 1][1]
+        return [] if results is NO_TRIAL else [SimpleNamespace(id=number, results=results)]
 
     def recording(self, number):
         return SimpleNamespace(channels={"age_s": np.array([FRESH_S, self._endings[number - 1][1].get("age_s", 0.0)])})
@@ -41,7 +43,9 @@ def run(monkeypatch, *endings):
     return found, ended
 
 
-@pytest.mark.parametrize("ending", [("tripped", LATE), ("failed", LATE), ("tripped", NOT_LATE | {"age_s": OLD_S})])
+@pytest.mark.parametrize(
+    "ending", [("tripped", LATE), ("failed", LATE), ("tripped", NOT_LATE | {"age_s": OLD_S}), ("tripped", NO_TRIAL)]
+)
 def test_a_late_host_is_no_reason_to_give_up(monkeypatch, ending):
     found, ended = run(monkeypatch, ending, ("completed", {}))
     assert (found.id, ended.ran) == (2, 2)
@@ -51,6 +55,7 @@ def test_a_late_host_is_no_reason_to_give_up(monkeypatch, ending):
     ("endings", "runs"),
     [
         ([("tripped", NOT_LATE)], 1),
+        ([("failed", NO_TRIAL)], 1),  # the watchdog does not stop the drive
         ([("stopped", LATE)], 1),  # a person has stopped it
         ([("tripped", LATE)] * 3, 3),
     ],
@@ -61,3 +66,11 @@ def test_what_the_joint_or_a_person_has_ended_is_over(monkeypatch, endings, runs
     with pytest.raises(CommissionError, match="identification"):
         motions.Motions(None, ended).run(BENCH, "identification", {}, (0.0, False))
     assert ended.ran == runs
+
+
+def test_cycles_that_move_no_joint_are_not_counted(monkeypatch):
+    _, few = run(monkeypatch, ("completed", NOT_LATE))
+    _, many = run(monkeypatch, ("completed", LATE))
+    ran = few.experiment(1)
+    assert motions.Motions(None, few).lost_cycles(ran, BENCH) == 0
+    assert motions.Motions(None, many).lost_cycles(ran, BENCH) == 20

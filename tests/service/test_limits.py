@@ -1,17 +1,14 @@
 """Requests that bring too much: refused before they cost anything, while STOP stays quick."""
 
 import socket
-import threading
-import time
 from urllib.parse import urlsplit
 
 import pytest
 
-from bench.service.http.limits import LONGEST_S, MOST_BYTES, MOST_DEPTH, MOST_DIGITS, check_json
-from tests.service.running_service import TOKEN
+from bench.service.http.limits import MOST_BYTES, MOST_DEPTH, MOST_DIGITS, check_json
+from tests.service.attacks import BODIES, STOPPED_WITHIN_S, stopped_s, under_attack
 
 JSON = {"Content-Type": "application/json"}
-STOPPED_WITHIN_S = 0.2
 
 
 def nested(depth: int) -> bytes:
@@ -57,42 +54,11 @@ def test_whoever_has_no_token_is_answered_without_his_body_being_read(idle):
 
 
 @pytest.mark.wall_clock
-@pytest.mark.parametrize("attack", ["large", "deep", "digits", "slow"])
+@pytest.mark.parametrize("attack", BODIES)
 def test_stop_is_quick_under_each_attack(idle, attack):
-    address, over = urlsplit(idle.url), threading.Event()
-    bodies = {
-        "large": b" " * MOST_BYTES,
-        "deep": b"[" * MOST_BYTES,
-        "digits": b"9" * MOST_BYTES,
-        "slow": b"",
-    }
-
-    def send() -> None:
-        size = len(bodies[attack]) or 1000
-        head = (
-            "POST /api/v1/experiments HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-            f"Authorization: Bearer {TOKEN}\r\nContent-Length: {size}\r\n\r\n"
-        )
-        while not over.is_set():
-            with socket.create_connection((address.hostname, address.port), timeout=LONGEST_S) as connection:
-                connection.sendall(head.encode() + bodies[attack])
-                if attack == "slow":
-                    over.wait(5.0)
-                else:
-                    connection.recv(1000)
-
-    threads = [threading.Thread(target=send, daemon=True) for _ in range(8)]
     idle.start("steps", pace="real-time", repeats=20)
-    for thread in threads:
-        thread.start()
-    time.sleep(0.5)
-    began = time.perf_counter()
-    answer = idle.client.post("/stop")
-    took_s = time.perf_counter() - began
-    over.set()
-    for thread in threads:
-        thread.join(10.0)
-    assert answer.json()["was_running"] is True
+    with under_attack(idle.url, attack):
+        took_s = stopped_s(idle.client)
     assert took_s <= STOPPED_WITHIN_S
     assert idle.runner.wait(5.0)
 

@@ -37,6 +37,16 @@ class CanNode(Protocol):
         """The bus is there: say what is to be said at power-up."""
 
 
+class QuietNode:
+    """The place on the bus of a device that says nothing at power-up."""
+
+    def __init__(self) -> None:
+        self.send: Callable[[Frame], None] = lambda _frame: None
+
+    def boot(self) -> None:
+        """Nothing is to be said."""
+
+
 class CanDevice(Device, Protocol):
     """A device with a node."""
 

@@ -1,14 +1,13 @@
 """An actuator whose torque is its feed-forward term, and what its gains make of position and speed."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from math import isnan
 from threading import RLock
 from typing import NamedTuple
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
-from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.frame import Frame, QuietNode
 from sim_backend.faults.script import Trip
 from sim_backend.plant.parameters import PlantParameters
 
@@ -23,16 +22,6 @@ class Command(NamedTuple):
     stiffness: float = 0.0
     damping: float = 0.0
     torque_n_m: float = 0.0
-
-
-class _Node:
-    """The actuator's place on the bus."""
-
-    def __init__(self) -> None:
-        self.send: Callable[[Frame], None] = lambda _frame: None
-
-    def boot(self) -> None:
-        """It says nothing at power-up."""
 
 
 class MitMotor(ABC):
@@ -52,7 +41,7 @@ class MitMotor(ABC):
     def __init__(self, parameters: PlantParameters, torque_limit_n_m: float, seed: int = 0) -> None:
         self.axis = Axis(parameters, self, seed)
         self.lock = RLock()
-        self.node = _Node()
+        self.node = QuietNode()
         self.is_on = False
         self.command = Command()
         self.watchdog_trips = 0

@@ -1,21 +1,11 @@
 """Controllers on a CAN-FD bus, without an adapter."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from threading import RLock
 
-from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.frame import Frame, QuietNode
 from sim_backend.devices.moteus.adapter import padded
 from sim_backend.devices.moteus.controller import MoteusController
-
-
-class _Node:
-    """Their place on the bus."""
-
-    def __init__(self) -> None:
-        self.send: Callable[[Frame], None] = lambda _frame: None
-
-    def boot(self) -> None:
-        """They say nothing at power-up."""
 
 
 class MoteusOnBus:
@@ -28,7 +18,7 @@ class MoteusOnBus:
     def __init__(self, controllers: Sequence[MoteusController]) -> None:
         self.axis = controllers[0].axis
         self.lock = RLock()
-        self.node = _Node()
+        self.node = QuietNode()
         self._controllers = controllers
 
     def advance_to(self, time_s: float) -> None:

@@ -7,7 +7,7 @@ from threading import RLock
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
-from sim_backend.devices.can.frame import Frame
+from sim_backend.devices.can.frame import Frame, QuietNode
 from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
 from sim_backend.plant.parameters import PlantParameters
 
@@ -18,16 +18,6 @@ WATCHDOG, ESTOP = 0x1000000, 0x2000000
 UNRELEASED = 255  # so that no record of it is taken for one of hardware
 _DEFAULT_C = 25.0
 _LIMIT_A = 20.0
-
-
-class _Node:
-    """The axis' place on the bus."""
-
-    def __init__(self) -> None:
-        self.send: Callable[[Frame], None] = lambda _frame: None
-
-    def boot(self) -> None:
-        """It says nothing at power-up."""
 
 
 class OdriveAxis:
@@ -45,7 +35,7 @@ class OdriveAxis:
     ) -> None:
         self.axis = Axis(parameters, self, seed)
         self.lock = RLock()
-        self.node = _Node()
+        self.node = QuietNode()
         self._node_id = node_id
         self._watchdog_s = watchdog_s
         self._torque_constant_n_m_a = parameters.motor.torque_constant_n_m_a
