@@ -9,7 +9,7 @@ drive on a wire says is as old as the demand that it has just got, so that the o
 The lab names what is missing; it is added; the error on the trials held out (50 g) is what is compared.
 
 Not the same is the phase: a simulated device looks at its joint and its demand once a millisecond, and the cycles of
-the host drift through that. In process they do not. With free play trials of one wire differ by a tenth from each other.
+the host drift through that. In process they do not. With free play the trials of one wire differ by a tenth.
 """
 
 from tests.drivers.virtual_devices import KINDS, TIME, device_of, reached  # first: the drivers read its clock
