@@ -57,6 +57,10 @@ def test_words_of_the_service_begin_with_a_capital_and_names_stay(call):
 
 def test_sentences_of_the_lab_have_the_words_and_signs_of_the_page(call):
     said = "it varies with velocity; 1.69% to 0.49% (gain 71%, 90 % interval 69% .. 73%; p <= 0.001)"
+    named = "viscous_asymmetry needs session_s; put motor.torque_constant into rig.toml, see out/a_b"
+    assert call("ui/format", f"m.spoken('{named}')") == (
+        "viscous asymmetry needs session; put motor.torque_constant into rig.toml, see out/a_b"
+    )
     assert call("ui/format", f"m.spoken('{said}')") == (
         "it varies with speed; 1.69 % to 0.49 % (gain 71 %, 90 % interval 69 % to 73 %; p ≤ 0.001)"
     )

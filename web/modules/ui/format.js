@@ -61,9 +61,11 @@ export function capital(text) {
   return /^[a-z]+[ ,;:]/.test(text) ? text[0].toUpperCase() + text.slice(1) : text;
 }
 
-// a sentence of the lab in the words and signs of the page
+const MADE_FOR_PROGRAMS = /(?<![\w./-])[a-z]+(?:_[a-z]+)+(?![\w/-])(?!\.\w)/g;
+
+// a sentence of the lab in the words and signs of the page: names such as viscous_asymmetry are words here
 export function spoken(text) {
-  return text.replace(/\bvelocity\b/g, "speed").replace(/(\d)%/g, "$1 %").replace(/(\d(?: %)?) \.\. (?=[-−\d])/g, "$1 to ").replaceAll("<=", "≤");
+  return text.replace(MADE_FOR_PROGRAMS, nameOf).replace(/\bvelocity\b/g, "speed").replace(/(\d)%/g, "$1 %").replace(/(\d(?: %)?) \.\. (?=[-−\d])/g, "$1 to ").replaceAll("<=", "≤");
 }
 
 // a time as people say it
