@@ -94,6 +94,10 @@ def channels_of_table(table: ColumnTable, mapping: Mapping) -> dict[str, FloatAr
 
 def _values(raw: Raw, column: Column, mapping: Mapping) -> FloatArray:
     """Without factor and offset not a bit is changed."""
+    if column.sign_from is not None:
+        sign = np.sign(raw.numbers[column.sign_from])
+        magnitude = np.abs(_values(raw, column.model_copy(update={"sign_from": None}), mapping))
+        return np.where((sign == 0.0) & (magnitude > 0.0), np.nan, magnitude * sign)
     factors, offset = mapping.factors(column)
     first, *others = column.sources
     if not others and factors[0] == 1.0 and offset == 0.0:

@@ -16,6 +16,10 @@ from = "angle"
 unit = "deg"
 period = 360                  # it wraps, and is unwrapped; in the unit of the column
 
+[columns.current_a]           # a magnitude, with the sign of another column
+from = "current"
+sign_from = "duty"
+
 [columns.time_s]              # one channel of two columns: their sum
 from = ["seconds", "nanoseconds"]
 scale = [1, 1e-9]
@@ -110,10 +114,19 @@ class Column(Section):
         None, gt=0, allow_inf_nan=False, description="The column wraps after so much, in its own unit: it is unwrapped"
     )
 
+    sign_from: str | None = Field(
+        None, min_length=1, description="Column whose sign it takes, where it is a magnitude; unknown where that is 0"
+    )
+
     @property
     def sources(self) -> tuple[str, ...]:
         """Names of the columns."""
         return (self.source,) if isinstance(self.source, str) else tuple(self.source)
+
+    @property
+    def read(self) -> tuple[str, ...]:
+        """Names of the columns, and of that of the sign."""
+        return self.sources if self.sign_from is None else (*self.sources, self.sign_from)
 
     @property
     def is_stamp(self) -> bool:

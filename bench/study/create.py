@@ -17,6 +17,8 @@ from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.processing import lowest_cutoff_hz
+from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.dataset import RowChoice
 
 
@@ -39,7 +41,7 @@ def create_study(
         hold_out: criteria `key=value`; trials that meet one judge the model instead of being fitted.
         base: effects of the first model; None takes the rigid joint with General Kinetic Friction.
         where: criteria that every trial used must meet.
-        cutoff_hz: of the final low-pass [Hz]; None lets the data choose.
+        cutoff_hz: of the final low-pass [Hz]; None lets the data choose, and leaves out trials too short for it.
         rows: "sliding", "moving" or "all".
 
     Raises:
@@ -61,16 +63,17 @@ def definition_of(
     """What a study is made of; arguments and errors as `create_study`."""
     if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
         raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
-    trials = keep(_trials(store, experiment_ids), where)
-    held = split(trials, hold_out)
+    trials = _trials(store, experiment_ids, where)
     facts = _facts(store, experiment_ids)
     with lab_errors():
         recordings = [store.recording(trial.id) for trial in trials]
         told = all(LOAD in one.channels and bool(np.isfinite(one.channels[LOAD]).any()) for one in recordings)
         effects = _base_effects(base) if base else base_model(store, experiment_ids, facts, told)
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
+    used = trials if cutoff_hz else _long_enough(trials, recordings, cutoff)
+    held = split(used, hold_out)
     return Definition(
-        trial_ids=tuple(trial.id for trial in trials),
+        trial_ids=tuple(trial.id for trial in used),
         held_out=tuple(held),
         base=effects,
         cutoff_hz=cutoff,
@@ -79,6 +82,7 @@ def definition_of(
         experiment_ids=tuple(experiment_ids),
         hold_out=tuple(hold_out),
         where=tuple(where),
+        too_short=tuple(trial.id for trial in trials if trial not in used),
     )
 
 
@@ -115,6 +119,7 @@ def _describe(store: Store, material: Material) -> Study:
         cutoff_hz=material.definition.cutoff_hz,
         rows=material.definition.rows,
         trials=material.study_trials,
+        left_out=[store.trial(number).name for number in material.definition.too_short],
         models=[ModelName(model_id=one.id, parent_id=one.parent_id, effects=one.effects) for one in models],
         model_id=models[-1].id,
     )
@@ -127,7 +132,8 @@ def _base_effects(base: Sequence[str]) -> tuple[str, ...]:
     return tuple(effect_named(effect).name for effect in base)
 
 
-def _trials(store: Store, experiment_ids: Sequence[int]) -> list[Trial]:
+def _trials(store: Store, experiment_ids: Sequence[int], where: Sequence[str] = ()) -> list[Trial]:
+    """Completed trials of experiments that meet every criterion, in order."""
     if not experiment_ids:
         raise StudyError("no experiment named; a study needs the trials of at least one")
     found = []
@@ -138,7 +144,14 @@ def _trials(store: Store, experiment_ids: Sequence[int]) -> list[Trial]:
         raise StudyError(
             "these experiments have no completed trial with samples; run them to the end, or choose others"
         )
-    return sorted(found, key=lambda trial: trial.id)
+    return keep(sorted(found, key=lambda trial: trial.id), where)
+
+
+def _long_enough(trials: list[Trial], recordings: Sequence[Recording], cutoff_hz: float) -> list[Trial]:
+    """The trials that a cut-off leaves anything of; all where it leaves none, for the error to be raised."""
+    pairs = zip(trials, recordings, strict=True)
+    kept = [trial for trial, recording in pairs if lowest_cutoff_hz(recording) <= cutoff_hz]
+    return kept or trials
 
 
 def _facts(store: Store, experiment_ids: Sequence[int]) -> Facts:

@@ -35,6 +35,7 @@ class Definition:
         rows: which rows count.
         facts: of the joint, from the rig.
         experiment_ids, hold_out, where: as the user wrote them.
+        too_short: trials that are not used, since a cut-off that nobody chose leaves nothing of them.
     """
 
     trial_ids: tuple[int, ...]
@@ -46,6 +47,7 @@ class Definition:
     experiment_ids: tuple[int, ...] = ()
     hold_out: tuple[str, ...] = ()
     where: tuple[str, ...] = field(default=())
+    too_short: tuple[int, ...] = ()
 
     def first(self, trials: int) -> "Definition":
         """As it was when it had so many trials: later ones are added at the end."""

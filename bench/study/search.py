@@ -1,11 +1,15 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
+from collections.abc import Collection
+
 from bench.store import Store
+from bench.study.diagnose import answer_of
 from bench.study.errors import lab_errors
 from bench.study.judged import diagnosis_of_model
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep
+from bench.study.models.diagnosis import Diagnosis
 from compensator.lab.diagnosis.search import MOST_EFFECTS, Step
 from compensator.lab.diagnosis.search import search as search_from
 
@@ -22,11 +26,31 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
     Raises:
         StudyError: no such model, or no effect can be judged on these trials.
     """
+    return search_and_diagnose(store, study_id, model_id, most)[0]
+
+
+def search_and_diagnose(
+    store: Store,
+    study_id: int,
+    model_id: int | None = None,
+    most: int = MOST_EFFECTS,
+    without: Collection[str] = (),
+) -> tuple[Searched, Diagnosis]:
+    """As `search`, and what its last model lacks beside the effects that other trials did not bear out.
+
+    Args:
+        store: as in `search`.
+        study_id: as in `search`.
+        model_id: as in `search`.
+        most: as in `search`.
+        without: effects that an earlier search dropped.
+    """
     material = load(store, study_id)
     first = model_of(store, study_id, model_id)
     fit = material.fit_of(first)
     with lab_errors():
-        found = search_from(fit, most, diagnosis_of_model(material, first, fit))
+        known = None if without else diagnosis_of_model(material, first, fit)
+        found = search_from(fit, most, known, without)
     parent, before = first.id, kept_of(first).held_out
     steps: list[SearchStep] = []
     for step in found.steps:
@@ -45,7 +69,7 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
             )
         )
         parent, before = child, step.held_out.relative
-    return Searched(
+    searched = Searched(
         study_id=study_id,
         model_id=parent,
         added=list(found.added),
@@ -53,6 +77,7 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
         verdict=found.last.verdict,
         sentence=found.last.sentence,
     )
+    return searched, answer_of(found.fit, found.last, study_id, parent)
 
 
 _DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}

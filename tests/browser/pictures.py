@@ -76,7 +76,7 @@ def _study(page: Any, service: RunningService, folder: Path) -> None:
     page.get_by_role("region", name="Moments").wait_for()
     page.evaluate("scrollTo(0, 0)")
     page.wait_for_timeout(DRAWN_MS)
-    page.screenshot(path=folder / "study.png")
+    page.screenshot(path=folder / "study.png", clip={"x": 0, "y": 60, "width": 1100, "height": 780})
     page.get_by_role("link", name="3 Diagnose").click()
     page.get_by_role("button", name="Diagnose").click()
     page.locator("article canvas.chart").first.wait_for()

@@ -9,7 +9,7 @@ from tests.browser.browser import imported
 from tests.service.recorded_joint import study_path
 
 pytestmark = pytest.mark.browser
-LEFT_PX = 66  # of the axis, in paint.js
+LEFT_PX = 78  # of the axis, in paint.js
 
 
 @pytest.fixture(scope="module")

@@ -44,6 +44,12 @@ def test_rows_of_a_block_are_handed_on_evenly_and_all_of_them(call):
     assert [call("app/pour", f"m.dueOf({block}, {at})") for at in (900, 1000, 1030, 1060, 9000)] == [0, 0, 50, 100, 100]
 
 
+@pytest.mark.parametrize(("status", "fresh"), [("null", False), ("{state: 'idle'}", True)])
+def test_nothing_is_known_of_a_bench_that_has_said_nothing_of_its_state(call, status, fresh):
+    live = f"Object.assign(new EventTarget(), {{status: {status}, heard_ms: performance.now(), retry_ms: 0}})"
+    assert call("app/state", f"new m.BenchState({live}).now.fresh") is fresh
+
+
 def test_words_of_the_service_begin_with_a_capital_and_names_stay(call):
     assert call("ui/format", "m.capital('the bench is busy')") == "The bench is busy"
     assert call("ui/format", "m.capital('load_kg is 5 kg')") == "load_kg is 5 kg"
@@ -51,6 +57,10 @@ def test_words_of_the_service_begin_with_a_capital_and_names_stay(call):
 
 def test_sentences_of_the_lab_have_the_words_and_signs_of_the_page(call):
     said = "it varies with velocity; 1.69% to 0.49% (gain 71%, 90 % interval 69% .. 73%; p <= 0.001)"
+    named = "viscous_asymmetry needs session_s; put motor.torque_constant into rig.toml, see out/a_b"
+    assert call("ui/format", f"m.spoken('{named}')") == (
+        "viscous asymmetry needs session; put motor.torque_constant into rig.toml, see out/a_b"
+    )
     assert call("ui/format", f"m.spoken('{said}')") == (
         "it varies with speed; 1.69 % to 0.49 % (gain 71 %, 90 % interval 69 % to 73 %; p ≤ 0.001)"
     )

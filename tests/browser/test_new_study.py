@@ -61,3 +61,16 @@ def test_a_service_that_is_gone_is_asked_ever_more_seldom(open_page):
         }"""
     )
     assert waits == [1000, 2000, 4000, 8000, 8000]
+
+
+def test_hundreds_of_experiments_make_no_wall_of_boxes(open_page):
+    one = {"kind": "steps", "source": "simulated", "outcome": "completed", "note": "", "tags": [], "parameters": {},
+           "started_utc": "2026-01-01T00:00:00Z"}  # fmt: skip
+    items = [{**one, "experiment_id": number} for number in range(1, 301)]
+    page = open_page("#home")
+    page.route("**/api/v1/experiments?*", lambda route: route.fulfill(json={"items": items}))
+    page.evaluate("location.hash = '#study'")
+    page.get_by_text("280 more: find them by their words.").wait_for()
+    assert page.locator("main :is(input, button, select, a)").count() < 60
+    page.get_by_label("Find experiments").fill("299:")
+    page.get_by_label("299: steps").check()

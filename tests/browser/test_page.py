@@ -95,7 +95,7 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     assert held_out_errors(page) == before
 
     page.get_by_role("button", name="Search by itself").click()
-    page.get_by_label("Steps of the search").get_by_text("Added viscous_asymmetry").wait_for()
+    page.get_by_label("Steps of the search").get_by_text("Added viscous asymmetry").wait_for()
     assert held_out_errors(page)[1] == after[1]
     page.get_by_role("button", name="Drop").last.click()
     page.locator("[aria-label='Ladder'] tbody tr").nth(2).wait_for(state="attached")

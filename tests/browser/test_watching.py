@@ -21,7 +21,7 @@ SHIFTS = """new Promise((resolve) => {
   setTimeout(() => resolve(shifts), 300);
 })"""
 FRAME = "() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))"
-LEFT_PX, RIGHT_PX = 58, 10  # of the axis, in paint.js
+LEFT_PX, RIGHT_PX = 78, 10  # of the axis, in paint.js
 MOST_SHIFT = 0.1  # what is called good: https://web.dev/articles/cls
 
 

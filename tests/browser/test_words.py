@@ -46,6 +46,7 @@ def test_every_parameter_has_a_unit_or_is_a_number_and_an_interval(open_page, st
     units = table.locator(f"tbody td:nth-child({heads.index('Unit') + 1})").all_inner_texts()
     assert [one for one in units if re.search(r"2|\bdeg\b", one)] == []
     assert sum(bool(one) for one in units) >= len(units) / 2
+    assert "shape" not in units
     assert re.search(r"to|–", table.inner_text())
 
 
@@ -53,6 +54,8 @@ def test_a_reading_of_nothing_has_no_sign_and_noise_at_rest_is_not_drawn_as_moti
     page = open_page()
     read = f"{imported('bench/liveplot')}.then((m) => [m.readingText(-1e-5, 'rad'), m.readingText(-0.5, 'A')])"
     assert page.evaluate(read) == ["0.00°", "−0.500 A"]
+    words = "m.words({ position_rad: 0, current_a: -0.001 })"
+    assert page.evaluate(f"{imported('joint/drawing')}.then((m) => {words})") == "0°  0.00 A"
     drawn = """{
       const height = (least) => {
         const canvas = Object.assign(document.createElement("canvas"), { width: 400, height: 300 });
@@ -71,6 +74,26 @@ def test_a_reading_of_nothing_has_no_sign_and_noise_at_rest_is_not_drawn_as_moti
     wild, calm = page.evaluate(f"{imported('plots/paint')}.then((m) => {drawn})")
     assert wild > 100
     assert calm <= 4
+
+
+def test_the_title_of_an_axis_does_not_stand_over_its_numbers(open_page):
+    page = open_page()
+    drawn = """(range) => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: 500, height: 300 });
+      const context = canvas.getContext("2d");
+      const places = { title: [], numbers: [] };
+      context.fillText = (text, x) => {
+        if (context.textAlign === "right") places.numbers.push(x - context.measureText(text).width);
+        else if (context.getTransform().b !== 0) places.title.push(context.getTransform().e + 8);
+      };
+      const theme = { text: "#000", soft: "#000", line: "#000", font: "12px system-ui, sans-serif" };
+      m.paint(context, { width: 500, height: 300, view: [0, 1], theme, pointer: null,
+        content: { rows: [{ title: "residual [N m]" }], lines: [{ row: 0, x: [0, 1], y: range, colour: "#f00" }], xTitle: "" } });
+      return Math.min(...places.numbers) - Math.max(...places.title);
+    }"""  # noqa: E501
+    ranges = "[[-0.0015, 0.0015], [-0.02, 0.03], [-1200, 800], [99000, 250000]]"
+    gaps = page.evaluate(f"{imported('plots/paint')}.then((m) => {ranges}.map({drawn}))")
+    assert min(gaps) >= 0, gaps
 
 
 def test_start_and_stop_are_in_reach_of_a_thumb(open_page):

@@ -119,6 +119,22 @@ def _text_files() -> dict[str, Foreign]:
             renamed("Time", "Angle", "Current", time=1e3, position=DEG), header="Time,Angle,Current\nms,deg,A")),
         "line of units in brackets": Foreign("a.csv", _text(
             renamed("t", "q", "i", position=DEG), delimiter=";", header="t;q;i\n[s];[deg];[A]")),
+        "a kind above each name, spare columns": Foreign("a.csv", _text(
+            {**renamed("Time", "Angle [deg]", "Current", time=1e3, position=DEG), "spare": 0.0 * TIME_S,
+             "spare again": 0.0 * TIME_S},
+            header="Time,Analog 1,Analog 2,Digital 1,Digital 2\nms,Angle [deg],Current,not used,not used")),
+        "an instrument's own lines, as wide as the table": Foreign("a.csv", (
+            b"Started,2026-05-04 17:04:51,Trigger,none\nInterval,0.01,Interval,0.01\n"
+            + _text({"event": [""] * ROWS, "t [s]": TIME_S, "angle [rad]": POSITION_RAD, "current [A]": CURRENT_A}))),
+        "a current without its sign": Foreign("a.csv", _text({
+            "time_s": TIME_S, "position_rad": POSITION_RAD, "current": np.abs(CURRENT_A), "duty": 0.1 * CURRENT_A}),
+            asks="'current' is never below 0, while 'duty' is of both signs: say --take 'current=current.A. by duty'"),
+        "a current without its sign, said": Foreign("a.csv", _text({
+            "time_s": TIME_S, "position_rad": POSITION_RAD, "current": np.abs(CURRENT_A), "duty": 0.1 * CURRENT_A}),
+            known=Known(read_said(["current=current[A] by duty"]))),
+        "a current that is of one sign": Foreign("a.csv", _text({
+            "time_s": TIME_S, "position_rad": POSITION_RAD, "current": 3.0 + CURRENT_A, "duty": 0.1 * CURRENT_A}),
+            known=Known(read_said(["current=current[A]"])), truth={"current_a": 3.0 + CURRENT_A}),
         "missing values": Foreign("a.csv", PLAIN.replace(b"\n0.05,", b"\n0.05,", 1) + b"4,NA,NA\n4.01,,NaN\n",
                                   truth={"time_s": np.append(TIME_S, [4.0, 4.01])}),
         "scientific": Foreign("a.csv", _text(COLUMNS, form="%.8E")),

@@ -122,7 +122,7 @@ BAD: dict[str, tuple[str, str]] = {
     "unknown key of a column": (
         '[columns.position_rad]\nfrom = "x"\nunits = "deg"\n',
         "mapping.toml, line 3: columns.position_rad.units: unknown key; remove it or correct its spelling "
-        "(allowed: from, scale, offset, unit, period)",
+        "(allowed: from, scale, offset, unit, period, sign_from)",
     ),
     "signs the same": ('delimiter = ","\ndecimal = ","\n', "delimiter and decimal are both ','"),
     "condition without value": (

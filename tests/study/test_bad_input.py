@@ -163,8 +163,7 @@ REFUSED = {
     ),
     "holes": Bad(every(put("torque_n_m", every_other_empty)), "torque_n_m is missing in 50% of the samples"),
     "milliseconds": Bad(every(put("time_s", lambda t: 1e3 * t)), "check that time_s is in seconds"),
-    "a trial of two samples": Bad(first(part(2)), "has 2 samples; at least"),
-    "a short trial": Bad(first(part(50)), "record longer, choose a higher cut-off, or leave the trial out"),
+    "nothing but short trials": Bad(every(part(50)), "record longer, choose a higher cut-off, or leave the trial out"),
     "degrees": Bad(every(in_degrees), r"velocity_rad_s differ by a factor of 57.* \(degrees\?\)"),
     "degrees beside a set point": Bad(
         every(add("target_rad", lambda c: np.radians(c["position_rad"]))),
@@ -225,6 +224,14 @@ def kept(ask: Callable[..., tuple[int, str, str]], bad: Bad, trials: list[Plan] 
     made = bad.alter(recordings(bench=SHORT, trials=trials or plans(LOADS_KG), seed=3))
     with Store.open(ask.url) as store:
         import_recording_set(store, RecordingSet("set", bad.rig, made), "known joint")
+
+
+@pytest.mark.parametrize("samples", [2, 50])
+def test_a_trial_too_short_for_the_filter_is_left_out_and_named(ask, samples):
+    kept(ask, Bad(first(part(samples)), ""))
+    code, out, _ = ask("study", "new", "s", "--experiment", "1")
+    assert code == 0
+    assert re.search(r"too short for the low-pass of .* Hz, and left out: load-0g", out)
 
 
 @pytest.mark.parametrize("what", REFUSED)

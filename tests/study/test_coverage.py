@@ -10,6 +10,7 @@ from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.store import Store
 from bench.study.create import create_study
+from bench.study.errors import StudyError
 from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, WARMTH, coverage
 from bench.study.explanation.explain import STEPS, explain
 from bench.study.models.coverage import Coverage
@@ -51,6 +52,19 @@ def test_two_loads_both_ways_and_repeats(store: Store, experiment_id: int) -> No
     advised = [one.trial for one in found.advice]
     assert advised[0] == LOADS
     assert not {WARMTH, REPEAT} & set(advised)
+
+
+def test_a_trial_too_short_for_the_filter_is_left_out_and_counted(store: Store) -> None:
+    trials = [turning(sign, seed) for sign in (1.0, -1.0) for seed in (1, 2)]
+    short = {name: values[:60] for name, values in trials[0].channels.items()}
+    trials.append(Recording("short", "step", {"sign": 1.0}, short))
+    number = import_recording_set(store, RecordingSet("shaft", FREE, trials), "shaft")
+    study = create_study(store, "x", [number])
+    assert [trial.name for trial in study.trials] == [trial.name for trial in trials[:-1]]
+    (held,) = [one for one in coverage(store, study.study_id).held if one.quantity == "trials"]
+    assert "1 more too short for the filter at" in held.found
+    with pytest.raises(StudyError, match="'short' has 60 samples; at least"):
+        create_study(store, "x", [number], cutoff_hz=2.0)
 
 
 def test_what_is_there_is_not_advised(store: Store) -> None:

@@ -21,6 +21,8 @@ def study(found: "Study") -> None:
     say(f"study {found.study_id}: {found.name}, effort: {found.effort.name} [{found.effort.unit}]")
     rows = [(one.trial_id, one.name, one.role, conditions(one.conditions)) for one in found.trials]
     table("Trials", ["id#", "name", "role", "conditions"], rows)
+    if found.left_out:
+        say(f"too short for the low-pass of {found.cutoff_hz:.3g} Hz, and left out: {', '.join(found.left_out)}")
 
 
 def comparison(found: "Comparison") -> None:

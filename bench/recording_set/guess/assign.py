@@ -48,7 +48,8 @@ def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
     for one in files:
         columns = one | columns  # of a column that several have, the first one's values
     columns = {name: columns[name] for one in files for name in one}
-    missing = [name for name in said if name not in columns]
+    named = [name for one in said.values() for name in (one.column, one.sign_from) if name is not None]
+    missing = [name for name in named if name not in columns]
     if missing:
         raise RecordingSetError("--take", f"no column is called '{missing[0]}'; there are {', '.join(columns)}")
     readings = {name: read_name(name) for name in columns}

@@ -7,6 +7,7 @@ from typing import Literal
 
 from bench.recording_set.formats.column_table import Columns
 from bench.recording_set.guess.assign import Assigned, assign
+from bench.recording_set.guess.magnitude import magnitude_questions
 from bench.recording_set.guess.said import Said
 from bench.recording_set.guess.units_told import Units
 from bench.recording_set.mapping import Column, Mapping
@@ -111,7 +112,8 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     if mapping.position_from_speed:
         notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
     taken = tuple(_taken(name, columns, units, assigned) for name in assigned.names)
-    questions = (*assigned.questions, *units.questions, *_missing(assigned, known, rate_hz))
+    unsigned = magnitude_questions([sheet.columns for sheet in sheets], assigned)
+    questions = (*assigned.questions, *units.questions, *unsigned, *_missing(assigned, known, rate_hz))
     return Guess(mapping, "linear" if units.joint == "linear" else "rotary", taken, questions, tuple(notes))
 
 

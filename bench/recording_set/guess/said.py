@@ -1,4 +1,7 @@
-"""What a user says of a column: `NAME=QUANTITY[UNIT]`, such as `pos=position[deg]` or `mark=ignore`."""
+"""What a user says of a column: `NAME=QUANTITY[UNIT]`, such as `pos=position[deg]` or `mark=ignore`.
+
+A magnitude takes its sign from another column: `i=current[A] by duty`.
+"""
 
 import re
 from collections.abc import Sequence
@@ -10,17 +13,25 @@ from bench.recording_set.mapping import STAMP
 from bench.recording_set.units import unit_named, units_of
 
 IGNORE = "ignore"
-_FORM = re.compile(r"(?P<name>.+)=(?P<quantity>[a-z_]+)(?:\[(?P<unit>[^\]]+)\])?")
+_FORM = re.compile(r"(?P<name>.+)=(?P<quantity>[a-z_]+)(?:\[(?P<unit>[^\]]+)\])?(?: by (?P<sign>.+))?")
 _OPTION = "--take"
 
 
 @dataclass(frozen=True)
 class Said:
-    """What a user says of a column. Attributes: its name, the quantity or IGNORE, the unit; None where none is said."""
+    """What a user says of a column.
+
+    Attributes:
+        column: its name.
+        quantity: or IGNORE.
+        unit: None where none is said.
+        sign_from: column whose sign it takes, where it is a magnitude.
+    """
 
     column: str
     quantity: str
     unit: str | None
+    sign_from: str | None = None
 
 
 def read_said(texts: Sequence[str]) -> dict[str, Said]:
@@ -48,4 +59,4 @@ def _read(text: str) -> Said:
         if known is None or known.si not in allowed:
             names = ", ".join(name for si in allowed for name in units_of(si))
             raise RecordingSetError(_OPTION, f"'{unit}' of '{text}' is no unit of {quantity}; wanted one of {names}")
-    return Said(match["name"], quantity, unit)
+    return Said(match["name"], quantity, unit, match["sign"])

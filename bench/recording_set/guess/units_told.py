@@ -76,7 +76,9 @@ class Units:
             return None
         plain = unit.factor == 1.0 and unit.offset == 0.0 and not unit.counts and not self._is_sure(quantity)
         period = self._period() if quantity in ("position", "target") else None
-        return Column(source=names[0], unit=None if plain else unit.name, period=period)
+        said = self._assigned.said.get(names[0])
+        sign_from = said.sign_from if said else None
+        return Column(source=names[0], unit=None if plain else unit.name, period=period, sign_from=sign_from)
 
     def channel_of(self, quantity: str) -> str:
         """The name of a quantity's channel."""

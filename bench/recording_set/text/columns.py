@@ -43,7 +43,7 @@ class Plan:
     @property
     def numbers(self) -> list[str]:
         """Columns of numbers."""
-        return _unique([name for one in self.channels.values() if not one.is_stamp for name in one.sources])
+        return _unique([name for one in self.channels.values() if not one.is_stamp for name in one.read])
 
     @property
     def stamps(self) -> list[str]:
@@ -62,7 +62,7 @@ def plan(table: Headed, mapping: Mapping) -> Plan:
         RecordingSetError: a column that is no channel, nor mapped, nor ignored; no time; nothing but time.
     """
     _check_known(table, mapping)
-    mapped = {name: one for name, one in mapping.columns.items() if all(each in table.header for each in one.sources)}
+    mapped = {name: one for name, one in mapping.columns.items() if all(each in table.header for each in one.read)}
     _check_clash(table, mapped, mapping)
     taken = {name for one in mapped.values() for name in one.sources}
     own = [name for name in table.header if _is_known(name) and name not in taken and not _unwanted(name, mapping)]
@@ -87,7 +87,7 @@ def _unwanted(name: str, mapping: Mapping) -> bool:
 
 
 def _check_known(table: Headed, mapping: Mapping) -> None:
-    wanted = {name for column in mapping.columns.values() for name in column.sources}
+    wanted = {name for column in mapping.columns.values() for name in column.read}
     unknown = [
         name for name in table.header if not _is_known(name) and name not in wanted and not mapping.ignores(name)
     ]

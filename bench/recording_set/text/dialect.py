@@ -123,7 +123,8 @@ def _block(rows: Sequence[list[str]], decimal: str) -> tuple[int, int, float, in
         width = len(cells)
         following = [row for row in rows[first : first + MOST_LINES] if row and not is_comment(row[0])]
         alike = [row for row in following if len(row) == width and _is_data(row, decimal)]
-        if len(alike) >= FEWEST_LINES and len(alike) >= 0.6 * len(following):
+        enough = len(alike) >= FEWEST_LINES and len(alike) >= 0.6 * len(following)
+        if enough and not _is_preface(cells, alike, decimal):
             share = sum(_is_value(cell, decimal) for row in alike for cell in row) / (width * len(alike))
             return first, width, share, len(alike)
     return None
@@ -134,6 +135,15 @@ def _is_data(cells: Sequence[str], decimal: str) -> bool:
     values = sum(_is_value(cell, decimal) for cell in cells)
     numbers = sum(is_number(cell, decimal) or is_stamp(cell) for cell in cells)
     return numbers > 0 and values >= NUMERIC * len(cells) and not any("=" in cell or ":=" in cell for cell in cells[:1])
+
+
+def _is_preface(cells: Sequence[str], alike: Sequence[list[str]], decimal: str) -> bool:
+    """Whether a line has text where most others have values: "Interval,0.0005" of an instrument, not a row."""
+    for cell, column in zip(cells, zip(*alike, strict=True), strict=True):
+        values = sum(_is_value(one, decimal) for one in column)
+        if not _is_value(cell, decimal) and values > 0.5 * len(alike):
+            return True
+    return False
 
 
 def _is_value(cell: str, decimal: str) -> bool:
@@ -152,10 +162,29 @@ def _header(rows: Sequence[list[str]], first: int, width: int, decimal: str) -> 
     if not texts:
         return tuple(f"column {number + 1}" for number in range(width)), 0
     index, names = texts[0]
-    if len(texts) == 2 and _are_units(names):
-        index, upper = texts[1]
-        names = [f"{name} {_bracketed(unit)}".strip() for name, unit in zip(upper, names, strict=True)]
-    return tuple(names), index + 1
+    if len(texts) == 2:
+        above_it, upper = texts[1]
+        if _are_units(names):
+            index = above_it
+            names = [f"{name} {_bracketed(unit)}".strip() for name, unit in zip(upper, names, strict=True)]
+        else:  # an instrument that names the kind of each column, then the column, or its unit where it has no name
+            named = zip(upper, names, strict=True)
+            names = [f"{name} {_bracketed(cell)}" if _is_unit_of(name, cell) else cell for name, cell in named]
+    return tuple(_told_apart(names)), index + 1
+
+
+def _is_unit_of(name: str, cell: str) -> bool:
+    bare = cell.strip("[]() ")
+    return bool(name) and unit_named(bare) is not None and unit_named(name) is None
+
+
+def _told_apart(names: Sequence[str]) -> list[str]:
+    """The names, each of those that come again with its number: "spare", "spare (2)"."""
+    found: list[str] = []
+    for name in names:
+        number = names[: len(found)].count(name) + 1
+        found.append(name if number == 1 or not name else f"{name} ({number})")
+    return found
 
 
 def _names(cells: Sequence[str], width: int) -> list[str] | None:

@@ -41,7 +41,7 @@ def coverage(store: Store, study_id: int, model_id: int | None = None) -> Covera
     with lab_errors():
         fit = material.fit_of(model)
         found, effects = lab.coverage_of(fit.dataset), judgeable(fit)
-    held = list(_held(found, fit.dataset))
+    held = list(_held(found, fit.dataset, len(material.definition.too_short)))
     advice = _advice(found, effects)
     count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
     best = f" What would help most: {advice[0].trial}." if advice else ""
@@ -70,11 +70,12 @@ def _judged(one: Judgeable) -> JudgedEffect:
     )
 
 
-def _held(found: lab.Coverage, dataset: Dataset) -> Iterator[Held]:
+def _held(found: lab.Coverage, dataset: Dataset, left_out: int) -> Iterator[Held]:
     unit = dataset.facts.position_unit
+    short = f"; {left_out} more too short for the filter at {dataset.cutoff_hz:.3g} Hz" if left_out else ""
     yield Held(
         quantity="trials",
-        found=f"{found.trials}, {found.duration_s:.0f} s, {found.usable:.0%} of the samples usable",
+        found=f"{found.trials}, {found.duration_s:.0f} s, {found.usable:.0%} of the samples usable{short}",
         lacking="" if found.trials > 2 else "too few to leave one out: what a model is worth elsewhere is not sure",
     )
     yield Held(

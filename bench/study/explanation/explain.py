@@ -32,7 +32,7 @@ from bench.study.report.model_sections import (
     worst_trial,
 )
 from bench.study.report.wording import in_words
-from bench.study.search import search
+from bench.study.search import search_and_diagnose
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
 
@@ -143,17 +143,16 @@ def _searched(store: Store, study_id: int, first: int) -> tuple[int, Diagnosis, 
     Where no formula follows what is missing, a free curve fills the gap, if it predicts other trials better for sure;
     then the search goes on beside it: what the curve cannot be, as what differs by direction, shows only then.
     """
-    found = search(store, study_id, first)
+    found, last = search_and_diagnose(store, study_id, first)
     steps = [*found.steps]
-    last = diagnose(store, study_id, found.model_id)
     for _ in range(MOST_CURVES):
         curve = last.provisional
         if curve is None or curve.gain_low <= 0.0 or curve.gain < LEAST_GAIN:
             break
         filled = add_effect(store, study_id, curve.effect, last.model_id)
-        found = search(store, study_id, filled.model_id)
+        dropped = {one.effect for one in steps if one.change == "drop"}
+        found, last = search_and_diagnose(store, study_id, filled.model_id, without=dropped)
         steps += found.steps
-        last = diagnose(store, study_id, found.model_id)
     kept = model_of(store, study_id, found.model_id).effects
     added = {one.effect: one for one in steps if one.rivals and one.effect in kept}
     return found.model_id, last, [_confused(one) for one in added.values()]

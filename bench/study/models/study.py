@@ -33,6 +33,7 @@ class Study(StudyModel):
     cutoff_hz: float = Field(description="low-pass to which effort and motion are filtered alike [Hz]")
     rows: str = Field(description="which rows count: sliding, moving or all")
     trials: list[StudyTrial]
+    left_out: list[str] = Field(description="names of trials that are too short for the low-pass")
     models: list[ModelName] = Field(description="in the order in which they were made")
     model_id: int = Field(description="the base model at creation, the newest model later")
 

@@ -8,7 +8,7 @@ from scipy.special import stdtrit
 from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit, fit_breakaway, held_out_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.effects.catalogue import catalogue
-from compensator.lab.effects.effect import Effect
+from compensator.lab.effects.effect import Effect, Parameter, shape_parameters
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import CONFIDENCE, ParameterEstimate
 from compensator.lab.model.linear import solve
@@ -82,13 +82,15 @@ def breakaway_estimates(fit: BreakawayFit) -> list[ParameterEstimate]:
                 )
             )
             index += 1
-        for name, number in zip(_shape_names(effect), share.shape, strict=False):
-            found.append(ParameterEstimate(share.name, name, "shape", number, float("nan"), float("nan"), ""))
+        for one, number in zip(_shape_parameters(effect), share.shape, strict=False):
+            shown = one.unit_in(unit, facts.position_unit)
+            found.append(ParameterEstimate(share.name, one.name, shown, number, float("nan"), float("nan"), ""))
     return found
 
 
-def _shape_names(effect: Effect | None) -> tuple[str, ...]:
-    return effect.breakaway.shape_names if effect is not None and effect.breakaway is not None else ()
+def _shape_parameters(effect: Effect | None) -> list[Parameter]:
+    share = None if effect is None else effect.breakaway
+    return [] if share is None else shape_parameters(share.shape_names, share.shape_units)
 
 
 def _note(name: str, kept: bool) -> str:

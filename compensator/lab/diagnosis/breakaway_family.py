@@ -20,6 +20,7 @@ from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE,
 from compensator.lab.diagnosis.families import EXAMINED, Answer
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.pictures import picture_of_breakaway
+from compensator.lab.diagnosis.wording import named_in_words
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.errors import NotApplicableError
@@ -208,9 +209,8 @@ def _candidate(
 
 
 def _sentence(best: Candidate, p_value: float, starts: int, units: int) -> str:
-    also = f"; these starts cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
     return (
-        f"{best.effect.title} is missing{also}: over {starts} starts from rest ({units} of them independent), adding "
+        f"{named_in_words(best, 'starts')}: over {starts} starts from rest ({units} of them independent), adding "
         f"it changes the held-out error of the breakaway effort from {best.before:.2%} to {best.after:.2%} "
         f"({best.gain.in_words(best.before, best.after, 0)}; {chance_in_words(p_value)})."
     )

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import SIGNIFICANT
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.left_over.bursts import Bursts
 from compensator.lab.left_over.constancy import Change
 from compensator.lab.left_over.constants import DRY_FRICTION
@@ -48,13 +49,24 @@ def answer_in_words(
             f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
             f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
         )
-    title = best.effect.title
-    also = f"; these trials cannot tell it from {', '.join(best.rivals)}" if best.rivals else ""
     gain = best.gain.in_words(best.before, best.after, 0)
+    sure = "" if best.gain.low > 0.0 else ", but not for sure"
     return (
-        f"{title} is missing{also}: adding it changes the held-out error from {best.before:.2%} to "
-        f"{best.after:.2%} ({gain}; {chance_in_words(p_value)})."
+        f"{named_in_words(best, 'trials')}: adding it changes the held-out error from {best.before:.2%} to "
+        f"{best.after:.2%}{sure} ({gain}; {chance_in_words(p_value)})."
     )
+
+
+def named_in_words(best: Candidate, of: str) -> str:
+    """That an effect is missing, or likely, where its gain on other trials is not sure; and what it may be instead.
+
+    Args:
+        best: the effect.
+        of: what cannot tell it from others: "trials", or "starts" from rest.
+    """
+    missing = "is missing" if best.gain.low > 0.0 else "is likely missing"
+    others = ", ".join(effect_named(name).title.lower() for name in best.rivals)
+    return f"{best.effect.title} {missing}" + (f"; these {of} cannot tell it from {others}" if others else "")
 
 
 def problem_in_words(problem: str) -> str:

@@ -176,6 +176,11 @@ class Parameter:
         return self.unit.format(effort=effort_unit, position=position_unit)
 
 
+def shape_parameters(names: Sequence[str], units: Sequence[str]) -> list[Parameter]:
+    """The values of a shape as parameters: those without a unit are numbers."""
+    return [Parameter(name, units[at] if at < len(units) else "1") for at, name in enumerate(names)]
+
+
 def _no_shapes(_: Motion) -> list[Shape]:
     return [()]
 
@@ -211,7 +216,8 @@ class BreakawayShare:
         columns: (onset, shape) -> array (k, e), one row per parameter.
         parameters: one per column.
         driver: the variable to plot breakaway against; a key of `compensator.lab.rows.drivers.DRIVERS`.
-        shapes: nonlinear shape values to scan, given all moments of the study; `shape_names` names them.
+        shapes: nonlinear shape values to scan, given all moments of the study; `shape_names` names them,
+            and `shape_units` has their units, as those of a `Parameter`.
         replaces_lag: the column that stands for seeing the motion late would absorb it, and is left out.
     """
 
@@ -220,6 +226,7 @@ class BreakawayShare:
     driver: str
     shapes: Callable[[Onset], list[Shape]] = _no_onset_shapes
     shape_names: tuple[str, ...] = ()
+    shape_units: tuple[str, ...] = ()
     replaces_lag: bool = False
 
 
@@ -237,7 +244,8 @@ class Effect:
         driver: the variable to plot residuals against; a key of `compensator.lab.rows.drivers.DRIVERS`.
         excited_by: what a trial must do so that the effect shows.
         source: paper or book.
-        shapes: nonlinear shape values to scan, given any trial's motion; `shape_names` names them.
+        shapes: nonlinear shape values to scan, given any trial's motion; `shape_names` names them, and
+            `shape_units` has their units, as those of a `Parameter`; none are numbers.
         smooth_shape: the shape is continuous, so a scan is refined between its values.
         channels: channels that the recordings must have.
         confused_with: effects that trials often cannot tell apart from it.
@@ -283,6 +291,7 @@ class Effect:
     source: str
     shapes: Callable[[Motion], list[Shape]] = _no_shapes
     shape_names: tuple[str, ...] = ()
+    shape_units: tuple[str, ...] = ()
     smooth_shape: bool = False
     channels: tuple[str, ...] = ()
     confused_with: tuple[str, ...] = ()

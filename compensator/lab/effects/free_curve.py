@@ -92,6 +92,7 @@ def _curve(name: str, variable: str, against: bool) -> Effect:
         shapes=lambda motion: [_knots([motion], over)],
         shape_over=lambda motions: _knots(motions, over),
         shape_names=tuple(f"{one} knot" for one in ("first", *_ORDINALS)),
+        shape_units=("as the variable",) * (len(_ORDINALS) + 1),
         channels=("temperature_c",) if variable == "temperature" else (),
         builds_on=over.builds_on,
         rows=over.rows,

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
+from compensator.lab.effects.effect import shape_parameters
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.validation import independent_units
@@ -59,8 +60,10 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
                 )
             )
             index += 1
-        for name, number in zip(term.effect.shape_names, term.shape, strict=True):
-            found.append(ParameterEstimate(term.effect.name, name, "shape", number, float("nan"), float("nan"), ""))
+        named = shape_parameters(term.effect.shape_names, term.effect.shape_units)
+        for one, number in zip(named, term.shape, strict=True):
+            shown = one.unit_in(unit, fit.dataset.facts.position_unit)
+            found.append(ParameterEstimate(term.effect.name, one.name, shown, number, float("nan"), float("nan"), ""))
     return found
 
 

@@ -17,7 +17,7 @@ from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.place_locked import place_locked_hz
-from compensator.lab.recordings.processing import Signals, make_signals, sample_rate_hz, shortest_samples
+from compensator.lab.recordings.processing import Signals, lowest_cutoff_hz, make_signals, sample_rate_hz
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 COHERENT = 0.5
@@ -34,7 +34,8 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
     """The final low-pass cut-off [Hz].
 
     Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the noise
-    corner; higher where the effort repeats with the place of the joint; within 2 Hz and a fifth of the sample rate.
+    corner; higher where the effort repeats with the place of the joint; so high that half of the longest recording is
+    left between the edges of the filter; within 2 Hz and a fifth of the sample rate.
 
     Raises:
         UnusableDataError: a recording with fewer than four samples a second, or one that `make_signals` refuses.
@@ -47,10 +48,12 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
         )
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
     highest_hz = 0.2 * slowest_hz
+    some = _long_enough(some, highest_hz) or some  # all, if none is, for the error to be raised
     wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)
     by_motion_hz = noise_corner_hz(some, effort, facts, wanted_hz)
     by_place_hz = min(PASSED * place_locked_hz(some, effort, facts), highest_hz)
-    return max(by_motion_hz, by_place_hz, LOWEST_HZ)
+    by_length_hz = min(2.0 * min(map(lowest_cutoff_hz, recordings)), highest_hz)
+    return max(by_motion_hz, by_place_hz, by_length_hz, LOWEST_HZ)
 
 
 def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
@@ -72,22 +75,17 @@ def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Fact
     edges = np.append(edges[edges < 0.99 * highest_hz], max(highest_hz, LOWEST_HZ))
     for low, high in pairwise(edges):
         signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, float(high))]
-        if _explained_share(signals, low, high) < COHERENT:
+        if signals and _explained_share(signals, low, high) < COHERENT:
             return float(low)
     return float(highest_hz)
 
 
 def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[Recording]:
-    """Those that can be filtered so low; all, if none can, for the error to be raised.
+    """Those that can be filtered so low.
 
     A quick start from rest is over in two seconds: beside longer motion it has no say in what is noise.
     """
-    kept = []
-    for recording in recordings:
-        rate_hz, time_s = sample_rate_hz(recording), recording.channels["time_s"]
-        if rate_hz * float(time_s[-1] - time_s[0]) >= shortest_samples(rate_hz, cutoff_hz):
-            kept.append(recording)
-    return kept or recordings
+    return [recording for recording in recordings if lowest_cutoff_hz(recording) <= cutoff_hz]
 
 
 def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -> float:

@@ -88,6 +88,13 @@ def shortest_samples(rate_hz: float, cutoff_hz: float) -> int:
     return int(np.ceil(2 * EDGE_PERIODS * rate_hz / cutoff_hz)) + 6 * FILTER_ORDER
 
 
+def lowest_cutoff_hz(recording: Recording) -> float:
+    """The lowest cut-off with which a recording can be filtered [Hz]; infinite for one of a few samples."""
+    time_s, rate_hz = recording.channels["time_s"], sample_rate_hz(recording)
+    inside = float(time_s[-1] - time_s[0]) * rate_hz - 6 * FILTER_ORDER - 1
+    return 2 * EDGE_PERIODS * rate_hz / inside if inside > 0.0 else float("inf")
+
+
 def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: float) -> Signals:
     """Resample, filter and differentiate one recording.
 

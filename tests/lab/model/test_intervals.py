@@ -52,7 +52,7 @@ def test_shapes_and_units_are_listed_and_absent_loads_are_not():
     found = estimates(fit_model(dataset, ["inertia", "gravity", "coulomb", "viscous", "stribeck"]))
     listed = [(one.effect, one.parameter, one.unit) for one in found]
     assert ("inertia", "inertia", "N m s2/rad") in listed
-    assert ("stribeck", "Stribeck speed", "shape") in listed
+    assert ("stribeck", "Stribeck speed", "rad/s") in listed
     assert "load inertia scale" not in [name for _, name, _ in listed]  # nothing hangs
     assert len(found) == 7
 

@@ -6,6 +6,7 @@ import pytest
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.bandwidth import LOWEST_HZ, choose_cutoff_hz, motion_bandwidth_hz, noise_corner_hz
 from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.processing import make_signals
 from compensator.lab.recordings.recording import Recording
 from tests.lab.synthetic import FACTS, Bench, Plan, recordings
 
@@ -54,5 +55,20 @@ def test_a_start_from_rest_of_two_seconds_has_no_say_in_what_is_noise():
     short = {name: values[:400] for name, values in made[0].channels.items()}  # too short to be filtered at 2.8 Hz
     both = [*made, Recording("start", "ramps", {}, short)]
     assert noise_corner_hz(both, effort, FACTS, 12.0) == noise_corner_hz(made, effort, FACTS, 12.0)
-    with pytest.raises(UnusableDataError, match="'start' has 400 samples; at least"):
-        noise_corner_hz(both[1:], effort, FACTS, 12.0)
+
+
+def test_half_of_the_longest_recording_is_left_between_the_edges_of_the_filter():
+    made, effort = swing(3.0, Bench(noise=5.0))  # as low as it may be, where the recordings are long
+    short = [Recording("short", "swing", {}, {name: values[:300] for name, values in made[0].channels.items()})]
+    cutoff_hz = choose_cutoff_hz(short, effort, FACTS)
+    assert cutoff_hz > LOWEST_HZ == choose_cutoff_hz(made, effort, FACTS)
+    usable = make_signals(short[0], effort, FACTS, cutoff_hz).usable
+    assert 0.4 < usable.mean() < 0.6
+    assert choose_cutoff_hz([*made, *short], effort, FACTS) == LOWEST_HZ
+
+
+def test_what_no_cut_off_leaves_anything_of_is_refused():
+    made, effort = swing(3.0, Bench())
+    nothing = [Recording("nothing", "swing", {}, {name: values[:20] for name, values in made[0].channels.items()})]
+    with pytest.raises(UnusableDataError, match="'nothing' has 20 samples; at least"):
+        choose_cutoff_hz(nothing, effort, FACTS)

@@ -28,7 +28,8 @@ export class BenchState extends EventTarget {
   get now() {
     const now_ms = performance.now();
     const { status, heard_ms, retry_ms } = this.live;
-    const fresh = now_ms - heard_ms <= STALE_MS;
+    // the first that is heard need not be the status: nothing is known until that has come
+    const fresh = status !== null && now_ms - heard_ms <= STALE_MS;
     return {
       status, fresh, running: fresh && status?.state === "running", silent_s: (now_ms - heard_ms) / 1000, retry_s: Math.max(0, retry_ms - now_ms) / 1000,
       message: messageOf(this.#stop, { status, fresh, heard_ms, now_ms }),

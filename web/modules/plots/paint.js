@@ -4,7 +4,7 @@ import { label, ticks, widened } from "./axis.js";
 import { extremes, thinned } from "./thin.js";
 import { columns, drawTrace, points } from "./trace.js";
 
-const LEFT = 66;
+const LEFT = 78;
 const RIGHT = 10;
 const TOP = 8;
 const BOTTOM = 34;

@@ -58,8 +58,11 @@ function errors({ error, effort }) {
 function driverPlot(place, driver, { effort, linked, ask }) {
   const { unit, factor } = shownUnit(driver.unit);
   const chart = new Chart(place, { label: `Residual against ${nameOf(driver.driver)}`, height: 250, moves: false });
-  const shown = driver.groups.map((group) => ({ ...group, colour: DIRECTIONS[group.direction] ?? "blue", x: group.x.map((value) => factor * value) }));
-  chart.show({ rows: [{ title: `residual [${effort.unit}]` }], xTitle: `${nameOf(driver.driver)}${unit ? ` [${unit}]` : ""}`,
+  const small = milli(Math.max(...driver.groups.flatMap((group) => [...group.low, ...group.high]).map(Math.abs)), effort.unit);
+  const scaled = (values) => values.map((value) => small.factor * value);
+  const shown = driver.groups.map((group) => ({ mean: scaled(group.mean), low: scaled(group.low), high: scaled(group.high), direction: group.direction,
+    colour: DIRECTIONS[group.direction] ?? "blue", x: group.x.map((value) => factor * value) }));
+  chart.show({ rows: [{ title: `residual [${small.unit}]` }], xTitle: `${nameOf(driver.driver)}${unit ? ` [${unit}]` : ""}`,
     lines: shown.map((group) => ({ row: 0, name: group.direction, x: group.x, y: group.mean, colour: group.colour, dots: true, dash: group.direction === "backward" ? [6, 4] : undefined })),
     bands: shown.map((group) => ({ row: 0, x: group.x, low: group.low, high: group.high, colour: group.colour })) });
   chart.addEventListener("choose", () => ask(...spotOf(driver, chart.chosen)));

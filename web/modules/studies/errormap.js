@@ -12,7 +12,7 @@ const DARKEST_PERCENT = 45;
 export function errorMap(place, map, ask, linked) {
   const highest = Math.max(...map.rms.flat().filter((value) => value !== null), 0);
   const effort = milli(highest, map.effort.unit);
-  const head = h("tr", {}, h("th", { scope: "col" }, `${titleOf(map.down)} ↓, ${titleOf(map.across)} →`),
+  const head = h("tr", {}, h("td", {}),
     middles(map.across_edges).map((value) => h("th", { scope: "col", class: "number" }, number(value * shownUnit(map.across.unit).factor, 2))));
   const rows = map.rms.map((cells, down) => h("tr", {}, h("th", { scope: "row", class: "number" }, number(middles(map.down_edges)[down] * shownUnit(map.down.unit).factor, 3)),
     cells.map((value, across) => cell(map, { down, across, value, highest, effort }, { ask, linked }))));
@@ -21,7 +21,7 @@ export function errorMap(place, map, ask, linked) {
     for (const [down, row] of rows.entries()) for (const [across, one] of [...row.querySelectorAll("td")].entries()) one.classList.toggle("here", Boolean(at) && down === at[0] && across === at[1]);
   });
   replace(place,
-    h("p", { class: "soft" }, `Root mean square of the residual [${effort.unit}]; the darker, the more. Choose a cell to see the worst of its moments.`),
+    h("p", { class: "soft" }, `Root mean square of the residual [${effort.unit}]: across over ${titleOf(map.across)}, down over ${titleOf(map.down)}. Choose a cell to see the worst of its moments.`),
     h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Error over speed and load" },
       h("table", { class: "heat" }, h("thead", {}, head), h("tbody", {}, [...rows].reverse()))));
 }

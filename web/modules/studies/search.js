@@ -3,7 +3,7 @@
 import { post } from "../app/api.js";
 import { patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
-import { percent } from "../ui/format.js";
+import { percent, spoken } from "../ui/format.js";
 
 // done(model_id): the search ended at this model
 export function searchButton(place, path, model_id, done) {
@@ -18,9 +18,9 @@ export function searchButton(place, path, model_id, done) {
 }
 
 function told(place, found) {
-  replace(place, h("div", { class: "good", role: "status" }, found.steps.length ? `${found.steps.length} steps. ${found.sentence}` : found.sentence),
+  replace(place, h("div", { class: "good", role: "status" }, found.steps.length ? `${found.steps.length} steps. ${spoken(found.sentence)}` : spoken(found.sentence)),
     found.steps.length > 0 && table("Steps of the search", [
-      { title: "Step", cell: (step) => step.sentence },
+      { title: "Step", cell: (step) => spoken(step.sentence) },
       { title: "Held-out before", number: true, cell: (step) => percent(step.before) },
       { title: "after", number: true, cell: (step) => percent(step.after) },
     ], found.steps));

@@ -2,6 +2,7 @@
 
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
+import { milli } from "../ui/units.js";
 
 const AROUND_S = 1.5;
 const numbers = (values) => Float64Array.from(values, (value) => value ?? NaN);
@@ -62,7 +63,8 @@ export class SeriesPlot {
     const unit = this.effort.unit;
     const called = (what, which) => (which ? `${what} ${which}` : what);
     const { before: then, now } = this.names;
-    const line = (source, key, extra) => ({ x: numbers(source.time_s), y: numbers(source[key]), ...extra });
+    const small = milli(Math.max(...(before ?? one).residual.map(Math.abs), ...one.residual.map(Math.abs)), unit);
+    const line = (source, key, extra) => ({ x: numbers(source.time_s), y: numbers(source[key]).map((value) => (extra.row ? small.factor : 1) * value), ...extra });
     const lines = [
       line(one, "measured", { row: 0, name: "measured", colour: "blue" }),
       before && line(before, "predicted", { row: 0, name: called("predicted", then), colour: "purple", dash: [2, 3] }),
@@ -70,7 +72,7 @@ export class SeriesPlot {
       before && line(before, "residual", { row: 1, name: called("residual", then), colour: "purple", dash: [2, 3] }),
       line(one, "residual", { row: 1, name: called("residual", now), colour: "red" }),
     ].filter(Boolean);
-    this.#content = { rows: [{ title: `effort [${unit}]` }, { title: `residual [${unit}]` }], lines, xTitle: "time in the trial [s]" };
+    this.#content = { rows: [{ title: `effort [${unit}]` }, { title: `residual [${small.unit}]` }], lines, xTitle: "time in the trial [s]" };
     this.#shades = shades;
     this.brush([]);
     this.chart.showAll();

@@ -214,7 +214,14 @@ class Study {
   }
 }
 
+const MANY = 12; // trials: as a list they would push what can be done about them off the screen
+
 function trialTable(study) {
+  const list = trialList(study);
+  return study.trials.length > MANY ? h("details", {}, h("summary", {}, `${study.trials.length} trials`), list) : list;
+}
+
+function trialList(study) {
   return table("Trials of the study", [
     { title: "Trial", number: true, cell: (one) => h("a", { href: `#trials/${one.trial_id}` }, String(one.trial_id)) },
     { title: "Name", cell: (one) => one.name },

@@ -4,7 +4,7 @@
 import { post } from "../app/api.js";
 import { attempt, patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
-import { nameOf, number, quantity } from "../ui/format.js";
+import { nameOf, number, quantity, spoken } from "../ui/format.js";
 
 // model_id(): the model that is shown; extended(sentence): the study has more trials now
 export function suggestions(place, path, model_id, extended) {
@@ -18,7 +18,7 @@ export function suggestions(place, path, model_id, extended) {
   round.addEventListener("click", async () => {
     const made = await patiently(answer, "round", "Adding what was recorded, diagnosing, and simulating what each trial would tell …", (signal) => post(`${path}/rounds`, {}, 0, { signal }), { button: round });
     if (!made) return;
-    const told = `${made.suggested.diagnosis} ${made.suggested.sentence} ${queued(made.item_ids.length)}`;
+    const told = `${spoken(made.suggested.diagnosis)} ${spoken(made.suggested.sentence)} ${queued(made.item_ids.length)}`;
     if (made.extended) await extended(`${made.extended.sentence} ${told}`);
     else replace(answer, h("div", { class: "good", role: "status" }, told), ...keptOut(made.suggested));
   });
@@ -48,10 +48,10 @@ function show(place, path, found, extended) {
     const result = await patiently(added, "fit", "Fitting …", (signal) => post(`${path}/trials`, {}, 0, { signal }), { button });
     if (result) await extended(result.sentence);
   } }, "Add the recorded trials to the study");
-  replace(place, h("p", { class: "sentence", role: "status" }, found.sentence), found.trials.length > 0 && table("Suggested trials", [
+  replace(place, h("p", { class: "sentence", role: "status" }, spoken(found.sentence)), found.trials.length > 0 && table("Suggested trials", [
     { title: "Trial", cell: (one) => [one.kind, h("div", { class: "hint" }, words(one.parameters))] },
     { title: "Minutes", number: true, cell: (one) => number(one.minutes, 2) },
-    { title: "Why", cell: (one) => one.sentence },
+    { title: "Why", cell: (one) => spoken(one.sentence) },
     { title: "", cell: (one) => h("button", { type: "button", class: "small", "aria-label": `Start ${one.kind}: ${words(one.parameters)}`, onclick: start(one) }, "Start") },
   ], found.trials), found.trials.length > 0 && h("div", { class: "row" }, queue, add), ...keptOut(found), started, added);
 }

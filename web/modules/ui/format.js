@@ -38,6 +38,12 @@ export function number(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// always as many places, and never "−0.000"
+export function fixed(value, places) {
+  const text = value.toFixed(places);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+}
+
 // a value whose name tells its unit, in the units that are shown
 export function quantity(name, value) {
   return typeof value === "number" ? withShownUnit(value, unitOf(name)) : number(value);
@@ -61,9 +67,11 @@ export function capital(text) {
   return /^[a-z]+[ ,;:]/.test(text) ? text[0].toUpperCase() + text.slice(1) : text;
 }
 
-// a sentence of the lab in the words and signs of the page
+const MADE_FOR_PROGRAMS = /(?<![\w./-])[a-z]+(?:_[a-z]+)+(?![\w/-])(?!\.\w)/g;
+
+// a sentence of the lab in the words and signs of the page: names such as viscous_asymmetry are words here
 export function spoken(text) {
-  return text.replace(/\bvelocity\b/g, "speed").replace(/(\d)%/g, "$1 %").replace(/(\d(?: %)?) \.\. (?=[-−\d])/g, "$1 to ").replaceAll("<=", "≤");
+  return text.replace(MADE_FOR_PROGRAMS, nameOf).replace(/\bvelocity\b/g, "speed").replace(/(\d)%/g, "$1 %").replace(/(\d(?: %)?) \.\. (?=[-−\d])/g, "$1 to ").replaceAll("<=", "≤");
 }
 
 // a time as people say it

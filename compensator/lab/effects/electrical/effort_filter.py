@@ -49,6 +49,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("time constant",),
+    shape_units=("s",),
     confused_with=("measurement_delay", "inertia"),
     builds_on="effort",
     pipeline=True,

@@ -35,6 +35,7 @@ BREAKAWAY = BreakawayShare(
     driver="rest",
     shapes=onset_shapes,
     shape_names=("rest that makes half the rise",),
+    shape_units=("s",),
 )
 
 EFFECT = Effect(
@@ -54,6 +55,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("distance that forgets the rest",),
+    shape_units=("{position}",),
     confused_with=("stribeck", "pre_sliding"),
     standing_in=frozenset({"slow_sign", "fast_sign"}),
     rows="moving",

@@ -34,6 +34,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("speed over which friction falls",),
+    shape_units=("{position}/s",),
     confused_with=("inertia", "pre_sliding"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",

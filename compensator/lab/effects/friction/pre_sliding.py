@@ -35,6 +35,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("pre-sliding distance",),
+    shape_units=("{position}",),
     confused_with=("backlash", "frictional_lag", "measurement_delay"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",

@@ -27,6 +27,7 @@ BREAKAWAY = BreakawayShare(
     driver="effort_rate",
     shapes=onset_shapes,
     shape_names=("rate that makes half the fall",),
+    shape_units=("{effort}/s",),
     replaces_lag=True,
 )
 

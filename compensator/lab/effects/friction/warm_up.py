@@ -38,6 +38,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("warm-up time",),
+    shape_units=("s",),
     confused_with=("coulomb_temperature",),
     varies_with="session_s",
     dry_friction=True,

@@ -43,6 +43,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("free play",),
+    shape_units=("{position}",),
     confused_with=("pre_sliding", "elasticity"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     builds_on="load",

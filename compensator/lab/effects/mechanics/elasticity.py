@@ -67,6 +67,7 @@ EFFECT = Effect(
     shapes=shapes,
     smooth_shape=True,
     shape_names=("anti-resonance of the arm without load", "its damping, of critical"),
+    shape_units=("Hz", "1"),
     source="Spong 1987; Janot, Gautier, Brunot 2019",
     confused_with=("measurement_delay", "inertia"),
     builds_on="load",
