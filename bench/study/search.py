@@ -1,7 +1,5 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
-from collections.abc import Collection
-
 from bench.store import Store
 from bench.study.diagnose import answer_of
 from bench.study.errors import lab_errors
@@ -30,27 +28,14 @@ def search(store: Store, study_id: int, model_id: int | None = None, most: int =
 
 
 def search_and_diagnose(
-    store: Store,
-    study_id: int,
-    model_id: int | None = None,
-    most: int = MOST_EFFECTS,
-    without: Collection[str] = (),
+    store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS
 ) -> tuple[Searched, Diagnosis]:
-    """As `search`, and what its last model lacks beside the effects that other trials did not bear out.
-
-    Args:
-        store: as in `search`.
-        study_id: as in `search`.
-        model_id: as in `search`.
-        most: as in `search`.
-        without: effects that an earlier search dropped.
-    """
+    """As `search`, and what its last model lacks beside the effects that other trials did not bear out."""
     material = load(store, study_id)
     first = model_of(store, study_id, model_id)
     fit = material.fit_of(first)
     with lab_errors():
-        known = None if without else diagnosis_of_model(material, first, fit)
-        found = search_from(fit, most, known, without)
+        found = search_from(fit, most, diagnosis_of_model(material, first, fit))
     parent, before = first.id, kept_of(first).held_out
     steps: list[SearchStep] = []
     for step in found.steps:

@@ -150,8 +150,7 @@ def _searched(store: Store, study_id: int, first: int) -> tuple[int, Diagnosis, 
         if curve is None or curve.gain_low <= 0.0 or curve.gain < LEAST_GAIN:
             break
         filled = add_effect(store, study_id, curve.effect, last.model_id)
-        dropped = {one.effect for one in steps if one.change == "drop"}
-        found, last = search_and_diagnose(store, study_id, filled.model_id, without=dropped)
+        found, last = search_and_diagnose(store, study_id, filled.model_id)
         steps += found.steps
     kept = model_of(store, study_id, found.model_id).effects
     added = {one.effect: one for one in steps if one.rivals and one.effect in kept}

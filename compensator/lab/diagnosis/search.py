@@ -9,7 +9,6 @@ each formula but one. So what is of no name is searched further from the likelie
 where two or more of them leave nothing.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -73,24 +72,22 @@ class Search:
         return tuple(name for name in self.fit.names if name not in self.start.names)
 
 
-def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None, without: Iterable[str] = ()) -> Search:
+def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -> Search:
     """Add effects while a diagnosis names one, and keep the earlier ones honest.
 
     Args:
         fit: the model to begin with; its own effects stay.
         most: effects that are added at most.
         first: diagnosis of that model, where it is known.
-        without: effects that are no candidates: an earlier search dropped them.
 
     Raises:
         UnusableDataError: as `diagnose`.
     """
-    with withheld(without):
-        found = _forward(fit, most, first or diagnose(fit))
-        if found.last.verdict != "unknown-effect":
-            return found
-        room = most - len(found.added)
-        further = _past_curve(found.fit, room, found.last) if room > 1 else None
+    found = _forward(fit, most, first or diagnose(fit))
+    if found.last.verdict != "unknown-effect":
+        return found
+    room = most - len(found.added)
+    further = _past_curve(found.fit, room, found.last) if room > 1 else None
     return found if further is None else Search(fit, (*found.steps, *further.steps), further.last)
 
 
@@ -104,11 +101,11 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
         swapped = _swaps(start, steps[-1].fit)
         dropped = _drops(start, (swapped or steps)[-1].fit, last_too=bool(swapped))
         steps += [*swapped, *dropped]
-        undecided |= {step.effect for step in dropped}  # other trials are not predicted better with it: not added again
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
             undecided.add(name)  # the same model again: the trials do not decide, and the search goes on without it
         fit = steps[-1].fit
-        with withheld(undecided):
+        # what other trials are not predicted better with is not added again before the model has something else
+        with withheld(undecided | {step.effect for step in dropped}):
             diagnosis = diagnose(fit)
     return Search(start, tuple(steps), diagnosis)
 
