@@ -54,6 +54,8 @@ def test_a_reading_of_nothing_has_no_sign_and_noise_at_rest_is_not_drawn_as_moti
     page = open_page()
     read = f"{imported('bench/liveplot')}.then((m) => [m.readingText(-1e-5, 'rad'), m.readingText(-0.5, 'A')])"
     assert page.evaluate(read) == ["0.00°", "−0.500 A"]
+    words = "m.words({ position_rad: 0, current_a: -0.001 })"
+    assert page.evaluate(f"{imported('joint/drawing')}.then((m) => {words})") == "0°  0.00 A"
     drawn = """{
       const height = (least) => {
         const canvas = Object.assign(document.createElement("canvas"), { width: 400, height: 300 });

@@ -4,7 +4,7 @@ import { readingNote } from "../app/state.js";
 import { liveJoint } from "../joint/livejoint.js";
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
-import { axisTitle, number } from "../ui/format.js";
+import { axisTitle, fixed, number } from "../ui/format.js";
 import { shownUnit } from "../ui/units.js";
 import { LatestTrials } from "./latesttrials.js";
 import { around, HALF, LOAD, loadBands, newest } from "./load.js";
@@ -136,10 +136,8 @@ function readingsOf(values, load) {
   return [...read, ...(load ? [["load current, as last found", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
 }
 
-// always as many places, and never "−0.000"
 export function readingText(value, si) {
   const { unit, factor } = shownUnit(si);
   const places = Math.max(0, Math.ceil(-Math.log10(STEPS[si] * factor) - 1e-9));
-  const text = (value * factor).toFixed(places);
-  return `${Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−")}${unit.startsWith("°") && unit !== "°C" ? unit : unit && ` ${unit}`}`;
+  return `${fixed(value * factor, places)}${unit.startsWith("°") && unit !== "°C" ? unit : unit && ` ${unit}`}`;
 }

@@ -1,6 +1,7 @@
 // The joint as one sees it from the side: arm and load at the measured angle, the motor side with its free play, the
 // target, and the current as colour and arrow. Angle 0 hangs straight down; positive turns anticlockwise.
 
+import { fixed } from "../ui/format.js";
 import { withShownUnit } from "../ui/units.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -57,7 +58,7 @@ export class JointDrawing {
 }
 
 export function words({ position_rad, current_a }) {
-  const parts = [Number.isFinite(position_rad) && withShownUnit(position_rad, "rad", 3), Number.isFinite(current_a) && `${current_a.toFixed(2).replace("-", "−")} A`];
+  const parts = [Number.isFinite(position_rad) && withShownUnit(position_rad, "rad", 3), Number.isFinite(current_a) && `${fixed(current_a, 2)} A`];
   return parts.filter(Boolean).join("  ");
 }
 

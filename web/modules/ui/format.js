@@ -38,6 +38,12 @@ export function number(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// always as many places, and never "−0.000"
+export function fixed(value, places) {
+  const text = value.toFixed(places);
+  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+}
+
 // a value whose name tells its unit, in the units that are shown
 export function quantity(name, value) {
   return typeof value === "number" ? withShownUnit(value, unitOf(name)) : number(value);
