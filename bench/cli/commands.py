@@ -100,7 +100,7 @@ COMMANDS = (
     CommandEntry(
         "record",
         "bench.cli.records.record:record",
-        "Record a servo that another program moves (LeRobot, a vendor's tool): it opens the port that is offered here.",
+        "Record a servo or an actuator that another program moves (LeRobot, ROS 2, a vendor's tool).",
     ),
     CommandEntry(
         "export",

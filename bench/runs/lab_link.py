@@ -22,6 +22,7 @@ from bench.store.backend import shown
 from bench.store.errors import StoreError
 from bench.store.tables.benches import BenchWord, SeenBench
 from bench.store.tables.queue import WAITING
+from bench.store.upkeep.hand_in import HandIn
 
 PERIOD_S = 5.0
 LAST_S = 2.0  # how long the end waits for what is under way: what is not handed in by then is handed in later
@@ -80,6 +81,7 @@ class LabLink:
         self._state = LinkState()
         self._store, self._url, self._word, self._period_s, self._shares = store, url, word, period_s, shares
         self._lab: Store | None = None
+        self._hand: HandIn | None = None
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._run, name="laboratory", daemon=True)
 
@@ -124,13 +126,14 @@ class LabLink:
             return
         if self._lab is None:
             self._lab = Store.open(self._url)
-        hand = self._store.hand_in_to(self._lab, self._word(0).name)
-        waiting = hand.waiting()
+        if self._hand is None:
+            self._hand = self._store.hand_in_to(self._lab, self._word(0).name)
+        waiting = self._hand.waiting()
         self._tell(self._lab, len(waiting))
         for done, experiment_id in enumerate(waiting, 1):
             if self._closed.is_set():
                 return
-            hand.hand_in(experiment_id)
+            self._hand.hand_in(experiment_id)
             self._tell(self._lab, len(waiting) - done)
 
     def _tell(self, lab: Store, waiting: int) -> None:

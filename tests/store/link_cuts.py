@@ -114,7 +114,7 @@ def cut_often(folder: Path, server: PostgresqlServer, cuts: int, seed: int) -> t
         for one in benches:
             one.stop_recording()
         lab = stack.enter_context(Store.open(url))
-        wait_until_in([one.store.hand_in_to(lab, one.name).waiting for one in benches])
+        wait_until_in(benches, lab)
         time.sleep(5 * PERIOD_S)  # whoever hands in twice does it now
         found = [compared(one.store, lab, one.name) for one in benches]
         rows = sum(trial.rows for trial in lab.trials())
@@ -122,9 +122,10 @@ def cut_often(folder: Path, server: PostgresqlServer, cuts: int, seed: int) -> t
     return sum(lost for lost, _ in found), sum(doubled for _, doubled in found), told
 
 
-def wait_until_in(waiting: list) -> None:  # type: ignore[type-arg]
+def wait_until_in(benches: list[RecordingBench], lab: Store) -> None:
+    """Until the laboratory says that it has all of each; asked anew each time."""
     end_s = time.monotonic() + PATIENCE_S
-    while any(one() for one in waiting):
+    while any(one.store.hand_in_to(lab, one.name).waiting() for one in benches):
         if time.monotonic() > end_s:
             raise TimeoutError(f"not everything was handed in within {PATIENCE_S:g} s of the last cut")
         time.sleep(0.05)

@@ -17,11 +17,11 @@ def experiments(
     as_json: Json = False,
 ) -> None:
     """List what has been run or imported, newest first."""
-    from bench.service.records import experiment_record
-
     with session_of(context).open_store() as store:
         found = store.experiments(kind=kind, outcome=outcome, tag=tag, limit=limit)
     if as_json:
+        from bench.service.records import experiment_record
+
         print_json([experiment_record(one).model_dump(mode="json") for one in found])
         return
     rows = [

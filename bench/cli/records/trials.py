@@ -18,13 +18,13 @@ def trials(
     as_json: Json = False,
 ) -> None:
     """List trials in the order in which they were made."""
-    from bench.service.records import trial_record
-
     with session_of(context).open_store() as store:
         if experiment is not None:
             store.experiment(experiment)  # says so where there is none
         found = store.trials(experiment, kind, outcome, limit=limit)
     if as_json:
+        from bench.service.records import trial_record  # here: its models take longer to make than a list to print
+
         print_json([trial_record(one) for one in found])
         return
     rows = [

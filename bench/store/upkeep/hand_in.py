@@ -9,6 +9,7 @@ is cut while it commits leaves no doubt that asking again does not settle.
 from collections.abc import Generator
 from contextlib import closing
 from dataclasses import dataclass
+from datetime import datetime
 
 from sqlalchemy import Connection, RowMapping, Table, func, insert, select, update
 
@@ -43,6 +44,8 @@ class HandIn:
 
     def __init__(self, bench: Database, lab: Database, name: str) -> None:
         self._bench, self._lab, self._name = bench, lab, name
+        # asked for once: a laboratory of a thousand benches would do little else than list what it has
+        self._there: set[tuple[int, datetime]] | None = None
 
     def waiting(self) -> list[int]:
         """Experiments that have ended and are not in the laboratory yet, oldest first.
@@ -52,13 +55,18 @@ class HandIn:
         """
         own = EXPERIMENT.c
         ended = select(own.id, own.started_utc).where(own.outcome.not_in(("running", *HIDDEN))).order_by(own.id)
-        mine = HANDED_IN.c
-        there = select(mine.origin_id, mine.started_utc).where(mine.bench == self._name, mine.complete)
         with self._bench.reading() as connection:
             found = [(row.id, row.started_utc) for row in connection.execute(ended)]
-        with self._lab.reading() as connection:
-            known = {(row.origin_id, row.started_utc) for row in connection.execute(there)}
-        return [number for number, started_utc in found if (number, started_utc) not in known]
+        there = self._known()
+        return [number for number, started_utc in found if (number, started_utc) not in there]
+
+    def _known(self) -> set[tuple[int, datetime]]:
+        if self._there is None:
+            mine = HANDED_IN.c
+            query = select(mine.origin_id, mine.started_utc).where(mine.bench == self._name, mine.complete)
+            with self._lab.reading() as connection:
+                self._there = {(row.origin_id, row.started_utc) for row in connection.execute(query)}
+        return self._there
 
     def hand_in(self, experiment_id: int) -> int:
         """Copy one, or the rest of it. Does nothing where it is there. Returns its number in the laboratory.
@@ -69,12 +77,12 @@ class HandIn:
         origin = self._read(experiment_id)
         with self._lab.writing() as connection:
             there, complete = self._begin(connection, origin)
-        if complete:
-            return there
-        trials = {trial["id"]: self._copy_trial(trial, there) for trial in origin.trials}
-        with self._lab.writing() as connection:
-            if not self._begin(connection, origin)[1]:  # another process of this bench may have been faster
-                self._finish(connection, origin, there, trials)
+        if not complete:
+            trials = {trial["id"]: self._copy_trial(trial, there) for trial in origin.trials}
+            with self._lab.writing() as connection:
+                if not self._begin(connection, origin)[1]:  # another process of this bench may have been faster
+                    self._finish(connection, origin, there, trials)
+        self._known().add((experiment_id, origin.row["started_utc"]))
         return there
 
     def _read(self, experiment_id: int) -> _Origin:
