@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,7 @@ class Motions:
                 return found
             if not self._was_late(found, bench):
                 break
+            request = replace(request, hung=None)  # what it has left on the arm is asked for
         raise CommissionError(f"{kind} (experiment {number}): {found.outcome}: {found.reason}")
 
     def lost_cycles(self, ran: Experiment, bench: BenchConfiguration) -> int:

@@ -19,9 +19,10 @@ class Ended:
     """A store of experiments that ended so; and what runs them, one after the other."""
 
     def __init__(self, *endings):
-        self._endings, self.ran = endings, 0
+        self._endings, self.ran, self.hung = endings, 0, []
 
-    def to_its_end(self, *_arguments):
+    def to_its_end(self, _runner, request, *_arguments):
+        self.hung.append(request.hung)
         self.ran += 1
         return self.ran
 
@@ -49,6 +50,7 @@ def run(monkeypatch, *endings):
 def test_a_late_host_is_no_reason_to_give_up(monkeypatch, ending):
     found, ended = run(monkeypatch, ending, ("completed", {}))
     assert (found.id, ended.ran) == (2, 2)
+    assert ended.hung == [(0.0, False), None], "what the spoilt one has left on the arm is not known"
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from schemathesis import GenerationMode
 
-from tests.fuzz.asking import CHECKS, HEADERS, LONGEST_S, count, described, stand_still
+from tests.fuzz.asking import CHECKS, HEADERS, LONGEST_S, as_http, count, described, stand_still
 from tests.fuzz.effort import effort
 
 EXAMPLES = 4  # of a route, either way
@@ -49,7 +49,7 @@ def ask(operation, mode, recorded) -> None:
     @effort(EXAMPLES)
     def send(case) -> None:
         try:
-            response = case.call(headers=HEADERS, timeout=LONGEST_S)
+            response = as_http(case).call(headers=HEADERS, timeout=LONGEST_S)
             count(response)
             case.validate_response(response, headers=HEADERS, checks=CHECKS)
         finally:

@@ -25,8 +25,9 @@ from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.roboclaw.device import MEASURED, RoboClaw
 from tests.commission.wires import CanWire, SerialWire, VirtualWire, plugged_in
-from tests.drivers.hidden import KINDS as ACTUATORS
-from tests.drivers.hidden import USB_BYTE_S, device_of, on_bench
+from tests.drivers.hidden import on_bench
+from tests.drivers.virtual_devices import KINDS as ACTUATORS
+from tests.drivers.virtual_devices import USB_BYTE_S, device_of
 from tests.fuzz.edits import spoilt_by
 from tests.fuzz.seals import SEALS
 from tests.queue.over_wires import WIRES, wired
