@@ -154,8 +154,12 @@ class SessionClaim:
     def __init__(self, connection: Connection) -> None:
         key = secrets.randbits(62) | 2**40
         self.token = f"{CLAIM_PREFIX}{key:x}"
-        self._connection = connection.execution_options(isolation_level="AUTOCOMMIT")
-        self._connection.execute(text("SELECT pg_advisory_lock(:key)"), {"key": key})
+        try:
+            self._connection = connection.execution_options(isolation_level="AUTOCOMMIT")
+            self._connection.execute(text("SELECT pg_advisory_lock(:key)"), {"key": key})
+        except DBAPIError:
+            connection.close()
+            raise
 
     def holds(self) -> bool:
         """Whether the session is still there."""

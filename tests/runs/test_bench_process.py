@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -16,7 +17,8 @@ from bench.config.channels import RECORDED
 from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.errors import BusyError, LimitError, ParameterError, PromptError, UnknownKindError
 from bench.runs.bench_process import RemoteRunner, process
-from bench.runs.bench_process.errors import BenchProcessError
+from bench.runs.bench_process.child import Child
+from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
 from bench.runs.bench_process.messages import error_of, failure_of
 from bench.runs.bench_process.stop_line import LineStop, StopLine
 from bench.runs.runner import Runner
@@ -250,6 +252,23 @@ def test_a_store_that_the_bench_process_cannot_open_is_named(tmp_path):
         pytest.raises(StoreFileError, match="gone does not exist"),
     ):
         runner.start("steps", {})
+
+
+def test_a_process_that_hangs_up_before_it_is_greeted_is_waited_for(monkeypatch):
+    started, start = [], subprocess.Popen
+
+    def noted(*words, **options):
+        started.append(start(*words, **options))
+        return started[-1]
+
+    def hung_up(*_):
+        raise NotBegunError("the bench process has ended")
+
+    monkeypatch.setattr(subprocess, "Popen", noted)
+    monkeypatch.setattr(Child, "_send", hung_up)
+    with tempfile.TemporaryFile() as stop_file, pytest.raises(NotBegunError):
+        Child(stop_file.fileno(), None)
+    assert started[0].returncode is not None
 
 
 def test_close_stops_and_nothing_starts_afterwards(tmp_path):

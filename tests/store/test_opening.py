@@ -11,9 +11,10 @@ from sqlalchemy import inspect, text
 
 from bench.store import Store
 from bench.store.database import Database
-from bench.store.errors import StoreFileError, StoreVersionError
+from bench.store.errors import StoreFileError, StoreStateError, StoreVersionError
 from bench.store.migration import HEAD, MIGRATIONS
 from bench.store.schema import METADATA
+from tests.store.examples import begin
 
 
 def test_the_migrations_make_the_tables_of_the_schema(store_url: str) -> None:
@@ -76,3 +77,13 @@ def test_a_database_of_another_program_is_left_alone(url: str) -> None:
     with database.reading() as connection:
         assert inspect(connection).get_table_names() == ["bookmarks"]
     database.close()
+
+
+def test_a_closed_store_runs_nothing_more(store_url: str) -> None:
+    with Store.open(store_url) as store:
+        begin(store)
+        store.close()
+        with pytest.raises(StoreStateError, match="was closed; open it again"):
+            begin(store)
+    with Store.open(store_url) as again:
+        assert [one.outcome for one in again.experiments()] == ["interrupted"]

@@ -43,7 +43,11 @@ class Child:
                 raise
         self._connection = Connection(ours.detach())
         self._sending = threading.Lock()
-        self._send(VERSION, hello)
+        try:
+            self._send(VERSION, hello)
+        except BenchProcessError:
+            self.reap()  # nobody else will: there is no child to be asked
+            raise
 
     @property
     def process_id(self) -> int:

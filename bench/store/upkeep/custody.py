@@ -5,6 +5,7 @@ claim's file beside the database, which has the room for it from the start. It i
 at the next possibility: before the next experiment, when the store is closed, or by whoever opens it next.
 """
 
+import threading
 from contextlib import suppress
 from dataclasses import replace
 from typing import TypeVar
@@ -38,13 +39,24 @@ class Custody:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._claim: Claim | None = None
+        self._claiming = threading.Lock()
+        self._closed = False
         self._unwritten: dict[int, End] = {}
 
     def token(self) -> str:
-        """The token under which this store runs experiments. Called inside a transaction that writes."""
-        if self._claim is None or not self._claim.holds():
-            self._claim = self._database.claim()
-        return self._claim.token
+        """The token under which this store runs experiments. Called inside a transaction that writes.
+
+        Raises:
+            StoreStateError: the store was closed: nobody would let go of a claim.
+        """
+        with self._claiming:
+            if self._closed:
+                raise StoreStateError(f"store '{self._database.where}' was closed; open it again")
+            if self._claim is not None and not self._claim.holds():
+                self._claim.release(keep_note=True)  # the server ended its session
+                self._claim = None
+            self._claim = self._claim or self._database.claim()
+            return self._claim.token
 
     def note(self, experiment_id: int, outcome: str, reason: str) -> None:
         """Keep an end that the database did not take."""
@@ -81,6 +93,8 @@ class Custody:
 
     def close(self) -> None:
         """End what this store left running, and let go of the claim. Safe to call twice."""
+        with self._claiming:
+            self._closed = True
         if self._claim is None:
             return
         with suppress(StoreError):  # a full or locked database: the next to open it does this
