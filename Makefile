@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: help demo paper serve test test-timed test-services test-drivers test-others steady check format docs report \
+.PHONY: help demo paper serve test test-services test-drivers test-others steady check format docs report \
         screenshots pictures benchmark kills fuzz test-vm dist dist-test audit sbom hashes clean
 
 help:            ## this list
@@ -33,21 +33,18 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 
 # To work on it
 
-test: $(STAMP)   ## the tests: those that the wall clock times, which mostly wait, and beside them all others
-	@$(MAKE) --jobs=2 --keep-going --output-sync=target --no-print-directory test-timed test-others
+test: $(STAMP)   ## the tests: first those that only compute, then those that the wall clock times, beside nothing else
+	@failed=0; for part in test-others test-services test-drivers; do $(MAKE) --no-print-directory $$part || failed=1; done; \
+	    exit $$failed
 
-test-timed: $(STAMP)  ## those that the wall clock times, one part after the other
-	@failed=0; for part in test-services test-drivers; do $(MAKE) --no-print-directory $$part || failed=1; done; exit $$failed
-
-test-services: $(STAMP)  ## of these, services and browsers
+test-services: $(STAMP)  ## those that the wall clock times: services and browsers
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers
 
-test-drivers: $(STAMP)  ## of these, drivers: they wait for most of their time, so there are more processes than cores
-	$(BIN)/pytest --numprocesses 6 --no-loadscope-reorder -m wall_clock tests/drivers
+test-drivers: $(STAMP)  ## of these, drivers: one by one, as a cycle that is late is a fault there
+	$(BIN)/pytest -m wall_clock tests/drivers
 
-# they take whatever the timed ones leave, so each may last several times as long as alone
-test-others: $(STAMP)  ## the tests that only compute, on all cores, making way for whatever else runs
-	nice -n 19 $(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock'
+test-others: $(STAMP)  ## the tests that only compute, on all cores
+	$(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock'
 
 steady: $(STAMP) ## the tests that the wall clock times, 20 times in a row: which of them fails when
 	$(BIN)/python -m tests.steady 20
