@@ -46,8 +46,9 @@ class MoteusActuator:
         self._counts_per_turn = joint.counts_per_turn
         self._brakes = False
         self.switch_off()
-        self.identity = self._identify()
+        # first of all: with two of one id the answer to one question may be taken for that to the next
         check_alone(settings.device, f"servo_id ({settings.servo_id})", self._answers)
+        self.identity = self._identify()
         self._be_off_after_silence()
 
     @property
