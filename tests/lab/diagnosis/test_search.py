@@ -8,10 +8,12 @@ from dataclasses import replace
 
 import pytest
 
+from bench.study.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import Search, search
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.diagnosis.wording import answer_in_words
+from compensator.lab.effects.catalogue import candidates, default_effects, effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
@@ -116,3 +118,39 @@ def test_past_a_curve_only_what_helps_for_sure_is_tried_and_only_where_two_may_b
     unknown = replace(found, verdict="unknown-effect", remains=True, candidates=candidates)
     monkeypatch.setattr(search_module, "diagnose", lambda _: pytest.fail("a formula was tried"))
     assert search(fit, most, first=unknown).added == ()
+
+
+def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else(monkeypatch):
+    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    named, asked_without = diagnose(fit), []
+    everything = {effect.name for effect in candidates(default_effects(FACTS), FACTS)}
+    then = [named, replace(named, verdict="nothing", remains=False)]
+
+    def diagnosed(_):
+        asked_without.append(everything - {effect.name for effect in candidates(default_effects(FACTS), FACTS)})
+        return then.pop(0)
+
+    monkeypatch.setattr(search_module, "diagnose", diagnosed)
+    found = search(fit, first=replace(named, classes=(("viscous_asymmetry",),)))
+    dropped = {step.effect for step in found.steps if step.change == "drop"}
+    assert dropped
+    assert asked_without == [set(), dropped]
+
+
+@pytest.mark.parametrize(("low", "said"), [(0.01, " is missing:"), (-0.01, " is likely missing:")])
+def test_a_gain_that_other_trials_do_not_bear_out_is_said_to_be_likely_only(low, said):
+    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
+    found = diagnose(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)))
+    best = replace(found.candidates[0], gain=Gain(0.1, low, 0.2), rivals=())
+    sentence = answer_in_words("missing", 0.001, [best], None)
+    assert said in sentence
+    assert ("but not for sure" in sentence) == (low < 0.0)
+    code = conclusion_of(replace(found, candidates=[best])).code
+    assert code == ("likely" if low < 0.0 else "missing")
+
+
+def test_a_sensor_whose_gains_differ_by_more_than_a_lost_shunt_cannot_be():
+    ((low, high),) = effect_named("current_gain_asymmetry").ranges_in("torque")
+    assert (1.0 + high) / (1.0 - high) == pytest.approx(2.0)
+    assert low == -high
