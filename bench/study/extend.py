@@ -14,6 +14,8 @@ from bench.study.keep import keep_model, kept_of
 from bench.study.material import Definition, facts_of, load, material_of, model_of
 from bench.study.models.base import StudyModel
 from bench.study.selection import Criterion
+from bench.study.stages import CHANGE, FITTING, JUDGING
+from compensator.lab import progress
 from compensator.lab.rows.assembly import usable
 
 
@@ -42,6 +44,7 @@ def note_for(study_id: int) -> str:
     return f"suggested by study {study_id}"
 
 
+@progress.stages(CHANGE)
 def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()) -> Extended:
     """Add trials to a study and refit its newest model to all of them.
 
@@ -72,7 +75,9 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     before = model_of(store, study_id, None)
     longer = _with(definition, numbers, trials)
     material = material_of(store, study_id, row.name, longer)
+    progress.enter(FITTING)
     fit = material.fit(before.effects)  # before anything is kept
+    progress.enter(JUDGING)
     store.change_study(study_id, longer.to_json())
     model_id = keep_model(store, study_id, before.id, fit)
     errors = kept_of(before).held_out, kept_of(store.model(model_id)).held_out

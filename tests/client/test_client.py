@@ -143,3 +143,16 @@ def test_a_study_names_what_is_missing(bench, study):
     assert changed.after.held_out < changed.before.held_out
     assert [len(rung.effects) for rung in study.ladder().rungs][:2] != []
     assert study.compare().model_id == changed.model_id
+
+
+def test_a_record_is_removed_for_a_reason(bench, service):
+    run = bench.start("steps", repeats=1).wait()
+    made = bench.new_study("to be removed", [run])
+    with pytest.raises(Refused, match="uses"):
+        run.remove("wrong arm")
+    made.remove("made twice")
+    run.remove("wrong arm")
+    assert [
+        service.client.get(path).status_code
+        for path in (f"/studies/{made.study_id}", f"/experiments/{run.experiment_id}")
+    ] == [404, 404]

@@ -59,6 +59,9 @@ class Samples(BaseModel):
     trial_id: int
     rows_recorded: int
     rows_returned: int
+    gaps: list[tuple[float, float]] = Field(
+        default=[], description="from, to [s]: nothing was recorded in between; told of what was imported"
+    )
     channels: dict[str, list[float | None]]
 
 
@@ -179,7 +182,9 @@ def samples(
     share = max(LEAST_PER_CHANNEL, points // len(names))
     stretch = None if from_s is None and to_s is None else (_or(from_s, -math.inf), _or(to_s, math.inf))
     reduced = store.samples_reduced(trial_id, names, share, stretch)
-    return Response(samples_json(trial_id, found.rows, reduced), media_type="application/json", headers=headers)
+    # our own control loop records at one period
+    gaps = store.time_gaps(trial_id) if store.experiment(found.experiment_id).source == "imported" else []
+    return Response(samples_json(trial_id, found.rows, reduced, gaps), media_type="application/json", headers=headers)
 
 
 def _or(value: float | None, otherwise: float) -> float:

@@ -7,9 +7,11 @@ from bench.store import Store
 from bench.study.errors import NothingNewError
 from bench.study.extend import Extended, extend_study
 from bench.study.models.base import StudyModel
+from bench.study.stages import ROUND, SUGGESTING
 from bench.study.suggestion.rounds import AT_ONCE
 from bench.study.suggestion.suggest import suggest
 from bench.study.suggestion.suggested import Suggested
+from compensator.lab import progress
 
 
 class NextRound(StudyModel):
@@ -19,6 +21,7 @@ class NextRound(StudyModel):
     suggested: Suggested
 
 
+@progress.stages(ROUND)
 def next_round(store: Store, study_id: int, configuration: BenchConfiguration, trials: int = AT_ONCE) -> NextRound:
     """Add what was recorded for a study since the last round, and suggest trials by what all of it tells.
 
@@ -35,4 +38,5 @@ def next_round(store: Store, study_id: int, configuration: BenchConfiguration, t
         extended = extend_study(store, study_id)
     except NothingNewError:
         extended = None
+    progress.enter(SUGGESTING)
     return NextRound(extended=extended, suggested=suggest(store, study_id, configuration, None, trials))
