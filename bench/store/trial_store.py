@@ -140,8 +140,9 @@ class TrialStore:
             NotFoundError: no such trial.
         """
         time_s = self.samples(trial_id, ["time_s"])["time_s"]
-        before = np.flatnonzero(is_before_gap(time_s)) if len(time_s) > 1 else []
-        return [(float(time_s[row]), float(time_s[row + 1])) for row in before]
+        if len(time_s) < 2:
+            return []
+        return [(float(time_s[row]), float(time_s[row + 1])) for row in np.flatnonzero(is_before_gap(time_s))]
 
     def samples_reduced(
         self, trial_id: int, channels: Sequence[str] | None, points: int, between_s: Stretch | None = None
