@@ -6,7 +6,7 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import Material, load, model_of
 from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
-from bench.study.stages import CHANGE, FITTING, JUDGING
+from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named

@@ -14,7 +14,7 @@ from bench.study.keep import kept_of, stored
 from bench.study.material import Material, load_model
 from bench.study.models.closed_loop import ClosedLoop, Coefficient, LoopError, Motion, Refined, TrialInLoop
 from bench.study.models.kept import KeptMotion
-from bench.study.stages import CLOSED_LOOP, FITTING, MOVING
+from bench.study.models.stages import CLOSED_LOOP, FITTING, MOVING
 from bench.study.suggestion.dynamics import drive_of
 from compensator.lab import progress
 from compensator.lab.closed_loop import loop_comparison as lab

@@ -17,8 +17,8 @@ from bench.study.models.comparison import (
     ResidualAgainst,
     TrialError,
 )
+from bench.study.models.stages import COMPARING, COMPARISON, FITTING, INTERVALS
 from bench.study.plots.series import series_of
-from bench.study.stages import COMPARING, COMPARISON, FITTING, INTERVALS
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
 from compensator.lab.at_rest.rest_comparison import Side, at_rest_in_words

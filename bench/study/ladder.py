@@ -7,7 +7,7 @@ from bench.study.keep import kept_of
 from bench.study.material import load
 from bench.study.models.kept import KeptMotion
 from bench.study.models.ladder import Ladder, Rung, RungMotion
-from bench.study.stages import LOADED
+from bench.study.models.stages import LOADED
 from compensator.lab import progress
 
 

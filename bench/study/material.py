@@ -14,8 +14,8 @@ from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import kept_of
 from bench.study.models.base import EffortName
+from bench.study.models.stages import FILTERING, READING
 from bench.study.models.study import StudyTrial
-from bench.study.stages import FILTERING, READING
 from compensator.lab import progress
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_model

@@ -8,7 +8,7 @@ from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep
 from bench.study.models.diagnosis import Diagnosis
-from bench.study.stages import DIAGNOSING, LOADED
+from bench.study.models.stages import DIAGNOSING, LOADED
 from compensator.lab import progress
 from compensator.lab.diagnosis.search import MOST_EFFECTS, Step, stages_of
 from compensator.lab.diagnosis.search import search as search_from

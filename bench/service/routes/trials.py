@@ -9,7 +9,6 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field, FiniteFloat
 
-from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
 from bench.service.http.downloads import attachment, samples_json
@@ -207,6 +206,8 @@ def _or(value: float | None, otherwise: float) -> float:
 )
 def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
     """The same file that a recording set holds for the trial: numbers are exact."""
+    from bench.recording_set import csv_chunks, stream_of_trial  # imported when needed: the service starts without it
+
     found = store.trial(trial_id)
     headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
     return StreamingResponse(
@@ -222,6 +223,8 @@ def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingRespons
 )
 def parquet(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
     """One column per channel and condition; null where not measured. 422 where pyarrow is not installed."""
+    from bench.recording_set import parquet_chunks, stream_of_trial
+
     found = store.trial(trial_id)
     headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
     chunks = parquet_chunks([stream_of_trial(store, found)])

@@ -3,38 +3,18 @@
 from dataclasses import dataclass
 
 import numpy as np
-from pydantic import Field
 
-from bench.json_types import Numbers
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import Material, load
-from bench.study.models.base import StudyModel
 from bench.study.models.comparison import Series
+from bench.study.models.over_time import DriversOverTime, DriverValues
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset, IntArray
 from compensator.lab.rows.drivers import DRIVERS, available
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
-
-
-class DriverValues(StudyModel):
-    """One driving variable over time."""
-
-    driver: str = Field(examples=["velocity"])
-    title: str
-    unit: str
-    values: Numbers
-
-
-class DriversOverTime(StudyModel):
-    """The driving variables of one trial, at the times of its series; all lists have the same length."""
-
-    study_id: int
-    trial_id: int
-    time_s: Numbers
-    drivers: list[DriverValues]
 
 
 def series_of(material: Material, fit: Fit) -> list[Series]:

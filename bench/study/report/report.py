@@ -9,6 +9,7 @@ from bench.study.compare import compare
 from bench.study.create import describe
 from bench.study.diagnose import diagnose
 from bench.study.ladder import ladder
+from bench.study.models.stages import DIAGNOSING, MOVING, REPORT, SUGGESTING
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section, suggestion_section
 from bench.study.report.head_section import head_section
 from bench.study.report.model_sections import (
@@ -21,7 +22,6 @@ from bench.study.report.model_sections import (
     residual_section,
 )
 from bench.study.report.wording import in_words
-from bench.study.stages import DIAGNOSING, MOVING, REPORT, SUGGESTING
 from bench.study.suggestion.suggest import suggest
 from compensator.lab import progress
 

@@ -10,7 +10,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import Equipment, is_simulated
 from bench.errors import BenchError
 from bench.runs.in_memory import InMemoryBench
-from bench.study.stages import CHOOSING, SIMULATING
+from bench.study.models.stages import CHOOSING, SIMULATING
 from bench.study.suggestion.dynamics import dynamics_of
 from bench.study.suggestion.options import Choice
 from bench.study.suggestion.twin import Twin

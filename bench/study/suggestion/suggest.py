@@ -7,11 +7,11 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
 from bench.store import Experiment, Store
 from bench.study.errors import StudyError, lab_errors
-from bench.study.extend import note_for
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
+from bench.study.models.extended import note_for
+from bench.study.models.stages import DIAGNOSING, FITTING, SUGGESTION
 from bench.study.selection import Criterion
-from bench.study.stages import DIAGNOSING, FITTING, SUGGESTION
 from bench.study.suggestion.earlier_trials import kept_out, without
 from bench.study.suggestion.options import Choice, choices
 from bench.study.suggestion.predict import choose
