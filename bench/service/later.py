@@ -5,7 +5,7 @@ process that calls it first.
 """
 
 from dataclasses import dataclass
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Later:
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """What it returns; the first call imports it."""
-        return getattr(import_module(f"bench.study.{MODULES[self.name]}"), self.name)(*args, **kwargs)
+        return resolve_name(f"bench.study.{MODULES[self.name]}:{self.name}")(*args, **kwargs)
 
 
 def __getattr__(name: str) -> Later:

@@ -9,8 +9,8 @@ from bench.store.records import Trial
 from bench.study.errors import NothingNewError, StudyError
 from bench.study.keep import keep_model, kept_of
 from bench.study.material import Definition, facts_of, load, material_of, model_of
-from bench.study.models.extended import AddedTrial, Extended, note_for
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
+from bench.study.models.study import AddedTrial, Extended, note_for
 from bench.study.selection import Criterion
 from compensator.lab import progress
 from compensator.lab.rows.assembly import usable

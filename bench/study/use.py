@@ -13,8 +13,7 @@ from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.keep import kept_of, stored
 from bench.study.material import Material, facts_of, load_model
-from bench.study.models.kept import KeptBench
-from bench.study.models.used import Used
+from bench.study.models.kept import KeptBench, Used
 from compensator.lab.model.fitted import Fit
 from compensator.lab.online import left_out, works_online
 

@@ -11,7 +11,14 @@ import pytest
 from bench.service import later
 from bench.service.later import MODULES, Later
 
-HEAVY = ("scipy", "numba", "compensator.lab.model", "compensator.lab.diagnosis", "compensator.lab.effects", "plotly")
+HEAVY = (
+    "scipy",
+    "numba",
+    "compensator.lab.model",
+    "compensator.lab.diagnosis.diagnose",
+    "compensator.lab.effects.catalogue",
+    "plotly",
+)
 
 
 def test_neither_the_lab_nor_scipy_is_imported_by_the_service():

@@ -10,7 +10,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.json_types import Json
     from bench.study.models.change import Searched
     from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
-    from bench.study.models.extended import Extended
+    from bench.study.models.study import Extended
     from bench.study.suggestion.suggested import Suggested
 
 

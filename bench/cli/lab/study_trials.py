@@ -17,7 +17,7 @@ from bench.store import Experiment
 from bench.study import diagnose, extend
 from bench.study.errors import StudyError
 from bench.study.models.diagnosis import Diagnosis
-from bench.study.models.extended import Extended
+from bench.study.models.study import Extended
 from bench.study.suggestion import suggest
 from bench.study.suggestion.earlier_trials import in_words, what_came
 from bench.study.suggestion.rounds import Ended, in_rounds

@@ -15,9 +15,8 @@ from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study.models.change import Changed, Searched
-from bench.study.models.extended import Extended
-from bench.study.models.study import Study, StudyName
-from bench.study.models.used import Used
+from bench.study.models.kept import Used
+from bench.study.models.study import Extended, Study, StudyName
 from bench.study.suggestion.suggested import Suggested
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])

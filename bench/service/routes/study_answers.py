@@ -14,10 +14,8 @@ from bench.service.services import RunnerOf, StoreOf
 from bench.study.models.closed_loop import ClosedLoop
 from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis
-from bench.study.models.error_map import ErrorMap
 from bench.study.models.ladder import Ladder
-from bench.study.models.moments import Action, Moments
-from bench.study.models.over_time import DriversOverTime
+from bench.study.models.plots import Action, DriversOverTime, ErrorMap, Moments
 from bench.study.models.study import Study
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}

@@ -16,7 +16,7 @@ from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import RUNNING, WAITING
-from bench.study.models.extended import note_for
+from bench.study.models.study import note_for
 from bench.study.suggestion.suggested import NextRound
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])

@@ -3,7 +3,7 @@
 from bench.store import Store
 from bench.study.errors import lab_errors
 from bench.study.material import load_model
-from bench.study.models.error_map import Axis, ErrorMap
+from bench.study.models.plots import Axis, ErrorMap
 from compensator.lab.comparison import error_map as lab
 from compensator.lab.rows.drivers import DRIVERS
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from bench.store import Store
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, load_model
-from bench.study.models.moments import Action, GainedMoment, Moment, Moments
+from bench.study.models.plots import Action, GainedMoment, Moment, Moments
 from bench.study.plots.series import series_of
 from compensator.lab.comparison import moments as lab
 from compensator.lab.effects.catalogue import effect_named

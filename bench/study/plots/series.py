@@ -8,7 +8,7 @@ from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import Material, load
 from bench.study.models.comparison import Series
-from bench.study.models.over_time import DriversOverTime, DriverValues
+from bench.study.models.plots import DriversOverTime, DriverValues
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset, IntArray

@@ -9,8 +9,8 @@ from bench.store import Experiment, Store
 from bench.study.errors import StudyError, lab_errors
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
-from bench.study.models.extended import note_for
 from bench.study.models.stages import DIAGNOSING, FITTING, SUGGESTION
+from bench.study.models.study import note_for
 from bench.study.selection import Criterion
 from bench.study.suggestion.earlier_trials import kept_out, without
 from bench.study.suggestion.options import Choice, choices

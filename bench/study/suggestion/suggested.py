@@ -4,7 +4,7 @@ from pydantic import Field
 
 from bench.json_types import Json, Number
 from bench.study.models.base import StudyModel
-from bench.study.models.extended import Extended
+from bench.study.models.study import Extended
 
 
 class PairOfRivals(StudyModel):

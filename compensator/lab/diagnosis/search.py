@@ -14,9 +14,8 @@ from typing import Literal
 
 from compensator.lab import progress
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, explained_part
 from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.slight import explained_part, slight_one
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
@@ -130,7 +129,7 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search
 
 
 def _is_to_add(diagnosis: Diagnosis, explained: float) -> bool:
-    return diagnosis.verdict == "missing" and slight_one(diagnosis, explained) is None
+    return diagnosis.verdict == "missing" and diagnosis.slight_one(explained) is None
 
 
 def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Search | None:

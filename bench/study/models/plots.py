@@ -1,10 +1,51 @@
-"""Moments of a study: when the joint was somewhere, or where an effect that the model lacks would act."""
+"""What the plots of a study show over time, where a model is wrong, and the moments behind it."""
 
 from pydantic import Field
 
-from bench.json_types import Number
+from bench.json_types import Number, Numbers
 from bench.study.models.base import EffortName, StudyModel
 from bench.study.models.comparison import Series
+
+
+class DriverValues(StudyModel):
+    """One driving variable over time."""
+
+    driver: str = Field(examples=["velocity"])
+    title: str
+    unit: str
+    values: Numbers
+
+
+class DriversOverTime(StudyModel):
+    """The driving variables of one trial, at the times of its series; all lists have the same length."""
+
+    study_id: int
+    trial_id: int
+    time_s: Numbers
+    drivers: list[DriverValues]
+
+
+class Axis(StudyModel):
+    """One side of the map."""
+
+    driver: str = Field(description="to be used in `where` of /moments", examples=["velocity"])
+    title: str
+    unit: str
+
+
+class ErrorMap(StudyModel):
+    """Error in cells; the first index counts along `down`, the second along `across`. Null: too few rows."""
+
+    study_id: int
+    model_id: int
+    effort: EffortName
+    across: Axis
+    down: Axis
+    across_edges: list[float]
+    down_edges: list[float]
+    rms: list[Numbers] = Field(description="of the residual, in the unit of the effort")
+    mean: list[Numbers] = Field(description="of the residual, in the unit of the effort")
+    count: list[list[int]]
 
 
 class Moment(StudyModel):
