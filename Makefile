@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: help demo paper serve test test-services test-drivers test-others steady check format docs report \
+.PHONY: help demo paper serve test test-services test-drivers test-virtual test-others steady check format docs report \
         screenshots pictures benchmark kills fuzz test-vm dist dist-test audit sbom hashes clean
 
 help:            ## this list
@@ -33,18 +33,21 @@ serve: $(STAMP)  ## the service and the page on the simulated bench
 
 # To work on it
 
-test: $(STAMP)   ## the tests: first those that only compute, then those that the wall clock times, beside nothing else
-	@failed=0; for part in test-others test-services test-drivers; do $(MAKE) --no-print-directory $$part || failed=1; done; \
+test: $(STAMP)   ## the tests: first those that only compute or run in virtual time, then those that the wall clock times, alone
+	@failed=0; for part in test-others test-virtual test-services test-drivers; do $(MAKE) --no-print-directory $$part || failed=1; done; \
 	    exit $$failed
 
 test-services: $(STAMP)  ## those that the wall clock times: services and browsers
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers
 
-test-drivers: $(STAMP)  ## of these, drivers: one by one, as a cycle that is late is a fault there
+test-drivers: $(STAMP)  ## of these, drivers on real ports: one by one, as a cycle that is late is a fault there
 	$(BIN)/pytest -m wall_clock tests/drivers
 
+test-virtual: $(STAMP)  ## drivers and simulated devices in one process, in virtual time: a busy machine changes nothing
+	$(BIN)/pytest -p tests.virtual.plugin --numprocesses auto -m virtual_time tests/drivers
+
 test-others: $(STAMP)  ## the tests that only compute, on all cores
-	$(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock'
+	$(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock and not virtual_time'
 
 steady: $(STAMP) ## the tests that the wall clock times, 20 times in a row: which of them fails when
 	$(BIN)/python -m tests.steady 20

@@ -16,6 +16,7 @@ if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_I
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HERE = Path(__file__).parent
+CONFORMANCE = "drivers/conformance/"
 # devices, services and browsers in processes of their own: they mostly wait, and run after the others
 WALL_CLOCK = (
     "browser",
@@ -30,10 +31,25 @@ WALL_CLOCK = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what the wall clock times."""
+    """Mark what the wall clock times, and what virtual time does."""
     for item in items:
-        if item.path.relative_to(HERE).as_posix().startswith(WALL_CLOCK):
+        path = item.path.relative_to(HERE).as_posix()
+        is_virtual = _is_virtual(item, path)
+        if is_virtual:
+            item.add_marker(pytest.mark.virtual_time)
+        if path.startswith(WALL_CLOCK) and (not is_virtual or item.get_closest_marker("real_wire")):
             item.add_marker(pytest.mark.wall_clock)
+
+
+def _is_virtual(item: pytest.Item, path: str) -> bool:
+    if item.get_closest_marker("virtual_time") is not None:
+        return True
+    if item.get_closest_marker("wall_clock") is not None or not path.startswith(CONFORMANCE):
+        return False
+    from tests.drivers.conformance.benches import VIRTUAL
+    from tests.spread import bench_of
+
+    return bench_of(item.name) in VIRTUAL
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -27,6 +27,8 @@ from sim_backend.devices.side_channel_client import SideChannelClient
 from tests.devices.turns import DEVICE, ask_for_turns, no_turns
 
 START_S = 90.0  # the first start on a machine compiles the plant
+IS_VIRTUAL = False  # `pytest -p tests.virtual.plugin`
+Thread = threading.Thread  # there it shares virtual time with the test
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ from bench.store import Store
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 from tests.cli.conftest import command  # noqa: F401  a fixture
 
+pytestmark = pytest.mark.virtual_time
+
 
 @pytest.fixture
 def device():
@@ -48,6 +50,7 @@ def test_what_doctor_has_seen_is_in_the_record_of_each_run_after(on_device, tmp_
     assert watchdogs(tmp_path)[0] == "proven"
 
 
+@pytest.mark.real_wire
 def test_a_drive_that_goes_on_is_not_moved_any_further(on_device, device, monkeypatch):
     monkeypatch.setattr(device.device, "_watch", lambda: None)
     found = on_device("doctor", "--move")

@@ -17,8 +17,10 @@ from sim_backend.devices.modbus.serve import ModbusSettings as SimulatedModbus
 from sim_backend.devices.modbus.serve import serve_modbus
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 from tests.control.fake_drive import FakeDrive
+from tests.devices.device_process import IS_VIRTUAL
 from tests.drivers.libmodbus_server import libmodbus_server, library
 
+pytestmark = pytest.mark.virtual_time
 PERIOD_S = 0.02
 REGISTERS = """
 name = "registers that keep what is written"
@@ -74,6 +76,8 @@ def proven(**section):
         drive.close()
 
 
+@pytest.mark.real_wire
+@pytest.mark.skipif(IS_VIRTUAL, reason="its server is a process")
 @pytest.mark.skipif(library() is None, reason="libmodbus is not installed (apt-get install libmodbus5)")
 def test_a_server_of_libmodbus_has_no_watchdog_and_is_not_taken_for_one_that_has():
     with libmodbus_server() as port:
@@ -93,16 +97,16 @@ def roboclaw():
 
 
 def modbus():
-    return serve_modbus(SimulatedModbus(transport="tcp"))
+    return serve_modbus(SimulatedModbus())
 
 
 def section_of(device):
     if device.device.report()["kind"] == "roboclaw":
         return {"kind": "roboclaw", "port": device.path}
-    host, port = device.path.split(":")
-    return {"kind": "modbus", "map": "friction-bench", "transport": "tcp", "host": host, "port": port}
+    return {"kind": "modbus", "map": "friction-bench", "transport": "rtu", "port": device.path}
 
 
+@pytest.mark.real_wire
 @pytest.mark.parametrize("serve", [roboclaw, modbus])
 def test_a_watchdog_that_stops_the_motor_is_proven_at_the_drive(serve):
     with serve() as device:

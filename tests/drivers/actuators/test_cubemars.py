@@ -9,6 +9,8 @@ from sim_backend.devices.cubemars.motor import CubemarsMotor
 from sim_backend.devices.mit.serve import MitSimulation, serve_mit
 from tests.drivers.actuators.kinds import CUBEMARS, PERIOD_S
 
+pytestmark = pytest.mark.virtual_time
+
 
 @pytest.fixture(scope="module")
 def kind():

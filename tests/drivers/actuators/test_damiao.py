@@ -9,6 +9,8 @@ from drivers.errors import DriveConfigurationError, DriveFault
 from tests.devices.device_process import device_process
 from tests.drivers.actuators.kinds import DAMIAO, PERIOD_S
 
+pytestmark = pytest.mark.virtual_time
+
 
 @pytest.fixture(scope="module")
 def kind():

@@ -9,6 +9,7 @@ from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveFault
 from tests.drivers.actuators.kinds import KINDS, MIT, PERIOD_S
 
+pytestmark = pytest.mark.virtual_time
 OFF, PUSH = Command(Mode.OFF), Command(Mode.TORQUE, 0.015)
 EXPECTED = {"torque_n_m": (0.015, 0.002), "current_a": (0.3, 0.04), "supply_v": (24.0, 0.2), "temperature_c": (30, 15)}
 each_kind = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name, indirect=True)

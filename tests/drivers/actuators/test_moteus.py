@@ -11,6 +11,7 @@ from drivers.moteus.drive import MoteusDrive
 from drivers.moteus.settings import MoteusSettings
 from tests.drivers.actuators.kinds import JOINT, MOTEUS, PERIOD_S
 
+pytestmark = pytest.mark.virtual_time
 PUSH = Command(Mode.TORQUE, 0.015)
 
 

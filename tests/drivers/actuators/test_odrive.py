@@ -7,6 +7,8 @@ from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveFault, WatchdogError
 from tests.drivers.actuators.kinds import ODRIVE, PERIOD_S
 
+pytestmark = pytest.mark.virtual_time
+
 
 @pytest.fixture(scope="module")
 def kind():

@@ -5,6 +5,8 @@ import pytest
 from drivers.errors import DriveConfigurationError
 from tests.drivers.actuators.kinds import PERIOD_S, ROBSTRIDE
 
+pytestmark = pytest.mark.virtual_time
+
 
 @pytest.fixture(scope="module")
 def kind():

@@ -18,7 +18,7 @@ from bench.control.loop import joint_loop
 from bench.control.servo import current_servo, torque_constant_n_m_a
 from drivers.contract import Drive
 from tests.control.fake_drive import ListSink
-from tests.devices.device_process import DeviceProcess, device_process
+from tests.devices.device_process import IS_VIRTUAL, DeviceProcess, device_process
 
 PERIOD_S = 0.01
 ANSWER_TIMEOUT_S = 0.3
@@ -123,9 +123,16 @@ def set_up(kind: DriveKind[Any], variant: ConformanceBench, *device_options: str
             yield Bench(variant.name, configured(**device.drive | variant.settings), device, variant)
 
 
+_VARIANTS = [(kind, variant) for kind in drive_kinds().values() for variant in kind.conformance]
+
+VIRTUAL = frozenset(variant.name for kind, variant in _VARIANTS if variant.has_link)
+"""Benches that `make test-virtual` runs; the time of the others, over TCP, is the operating system's."""
+
 # of every kind that is installed: another package's driver is held to the contract by the same tests
 BENCHES: dict[str, Callable[..., Any]] = {
-    variant.name: partial(set_up, kind, variant) for kind in drive_kinds().values() for variant in kind.conformance
+    variant.name: partial(set_up, kind, variant)
+    for kind, variant in _VARIANTS
+    if variant.name in VIRTUAL or not IS_VIRTUAL
 }
 
 

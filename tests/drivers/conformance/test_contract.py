@@ -26,6 +26,7 @@ def cycles(drive, command, count):
     return samples
 
 
+@pytest.mark.real_wire
 def test_it_says_who_it_is_and_what_it_can(bench):
     with bench.opened() as drive:
         found = drive.describe()
@@ -47,6 +48,7 @@ def test_it_says_who_it_is_and_what_it_can(bench):
     assert found.longest_call_s < 10.0
 
 
+@pytest.mark.real_wire
 def test_a_sample_has_what_is_measured_and_nan_for_the_rest(bench):
     with bench.opened() as drive:
         samples = cycles(drive, OFF, 20)
@@ -74,6 +76,7 @@ def test_si_units(bench):
         assert 15.0 < sample.temperature_c < 45.0
 
 
+@pytest.mark.real_wire
 def test_a_positive_demand_turns_the_joint_to_positive_angles(bench):
     with bench.opened() as drive:
         mode = push_mode(drive)
@@ -121,6 +124,7 @@ def test_a_quick_stop_ends_in_power_off(bench):
     assert Status.ENABLED not in statuses[1:]
 
 
+@pytest.mark.real_wire
 def test_closing_takes_the_power_away_and_it_opens_again(bench):
     with bench.drive() as drive:
         for _ in range(2):
@@ -198,6 +202,7 @@ def knows_that_it_is_off(drive, command):
         return True
 
 
+@pytest.mark.real_wire
 def test_a_silent_host_is_switched_off_by_the_drive_itself(watched):
     with watched.opened() as drive:
         mode = push_mode(drive)

@@ -12,12 +12,13 @@ import pytest
 
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveError, WatchdogError
-from tests.devices.device_process import device_process
+from tests.devices.device_process import IS_VIRTUAL, device_process
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PATIENT, PERIOD_S, Bench, configured
 from tests.drivers.conformance.campaign import A_PER_KG, STEP_LOAD_KG, Campaign
 from tests.drivers.conformance.test_trials import TOLERANCE_A
 
-DEVICE = ("modbus", "--map", "roboteq", "--transport", "tcp")
+pytestmark = pytest.mark.virtual_time
+DEVICE = ("modbus", "--map", "roboteq", "--transport", "rtu" if IS_VIRTUAL else "tcp", "--baud", "0")
 CURRENT_STEP_A = 0.1
 OFF = Command(Mode.OFF)
 
@@ -52,6 +53,7 @@ def test_trials(tmp_path):
         assert row["load_current_a"] == pytest.approx(row["load_kg"] * A_PER_KG, abs=tolerance_a)
 
 
+@pytest.mark.real_wire
 def test_its_own_watchdog_stops_it(bench):
     with bench.opened() as drive:
         drive.enable(Mode.DUTY)

@@ -10,6 +10,8 @@ from tests.drivers.dictionaries.fault_reset import TICKS_MS, resets
 from tests.drivers.dictionaries.traits import TRAITS
 from tests.drivers.dictionaries.two_hosts import WAYS, Running
 
+pytestmark = pytest.mark.virtual_time
+
 
 @pytest.fixture
 def sheet(tmp_path):
@@ -26,6 +28,7 @@ def test_two_hosts_on_one_bus_are_refused_or_both_guarded(sheet, way) -> None:
     assert way(sheet, f"test-{way.__name__}").is_safe
 
 
+@pytest.mark.real_wire
 def test_a_second_host_is_named_before_anything_moves(sheet) -> None:
     with device(sheet) as running, host(running) as first, host(running, node=6) as second:
         first.open(PERIOD_S)

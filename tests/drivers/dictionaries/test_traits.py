@@ -10,6 +10,7 @@ from sim_backend.devices.canopen.conduct import Conduct
 from tests.drivers.dictionaries.attempt import PERIOD_S, attempt, device, host
 from tests.drivers.dictionaries.traits import TRAITS
 
+pytestmark = pytest.mark.virtual_time
 MANNERS = {
     "looks-every-20-ms": Conduct(look_s=0.02),
     "mode-shown-late": Conduct(mode_shown_enabled=True),
@@ -19,7 +20,9 @@ MANNERS = {
 }
 
 
-@pytest.mark.parametrize("name", TRAITS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.real_wire] * (name == "plain")) for name in TRAITS]
+)
 def test_a_drive_with_this_trait_runs_or_is_refused_for_safety(name, tmp_path) -> None:
     trait = TRAITS[name]
     result = attempt(trait.write(tmp_path, name), **trait.settings)

@@ -1,6 +1,5 @@
 """Two hosts and two drives on one bus: is one host refused, or is each drive guarded by its own host alone?"""
 
-import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -11,6 +10,7 @@ from drivers.canopen import CanopenDrive
 from drivers.contract import Command, Mode
 from drivers.errors import DriveError
 from sim_backend.devices.canopen.drive import ServoDrive
+from tests.devices.device_process import Thread
 from tests.drivers.dictionaries.attempt import NODE, OFF, PERIOD_S, WATCHDOG_S, device, host
 
 PUSH = Command(Mode.CURRENT, 0.2)
@@ -42,8 +42,8 @@ class Running:
     def __init__(self, drive: CanopenDrive) -> None:
         self.drive = drive
         self.error = ""
-        self._over = threading.Event()
-        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._is_over = False
+        self._thread = Thread(target=self._run, daemon=True)
 
     def start(self) -> None:
         """Begin."""
@@ -51,14 +51,15 @@ class Running:
 
     def end(self) -> None:
         """End, without a word to the drive."""
-        self._over.set()
+        self._is_over = True
         self._thread.join()
 
     def _run(self) -> None:
         try:
             self.drive.enable(Mode.CURRENT)
-            while not self._over.wait(PERIOD_S):
+            while not self._is_over:
                 self.drive.exchange(PUSH)
+                time.sleep(PERIOD_S)
         except DriveError as error:
             self.error = str(error)
 
@@ -97,10 +98,7 @@ def both_open_at_once(sheet: Path, channel: str) -> Meeting:
     """Two operators, one moment."""
     with both(sheet, channel) as (hosts, drives):
         errors: list[str] = []
-        threads = [
-            threading.Thread(target=lambda one=one: errors.append(_refusal(lambda: one.open(PERIOD_S))))
-            for one in hosts
-        ]
+        threads = [Thread(target=lambda one=one: errors.append(_refusal(lambda: one.open(PERIOD_S)))) for one in hosts]
         for thread in threads:
             thread.start()
         for thread in threads:

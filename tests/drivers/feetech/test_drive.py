@@ -12,6 +12,7 @@ from drivers.joint import JointScale
 from drivers.wraps import Turns
 from tests.devices.device_process import device_process
 
+pytestmark = pytest.mark.virtual_time
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
 OFF = Command(Mode.OFF)
 PERIOD_S = 0.01
