@@ -150,7 +150,7 @@ def test_a_record_is_removed_for_a_reason(bench, service):
     made = bench.study(int(study_path(service, "to be removed").split("/")[-1]))
     trial = service.client.get(f"/trials/{made.facts.trials[0].trial_id}").json()
     run = bench.run(trial["experiment_id"])
-    with pytest.raises(Refused, match="uses"):
+    with pytest.raises(Refused, match="Remove a study first"):
         run.remove("wrong arm")
     made.remove("made twice")
     run.remove("wrong arm")
