@@ -34,22 +34,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark what the wall clock times, and what virtual time does."""
     for item in items:
         path = item.path.relative_to(HERE).as_posix()
-        is_virtual = _is_virtual(item, path)
-        if is_virtual:
+        if path.startswith(CONFORMANCE) and item.get_closest_marker("wall_clock") is None:
             item.add_marker(pytest.mark.virtual_time)
-        if path.startswith(WALL_CLOCK) and (not is_virtual or item.get_closest_marker("real_wire")):
+        if path.startswith(WALL_CLOCK) and (
+            item.get_closest_marker("virtual_time") is None or _is_on_a_real_wire(item)
+        ):
             item.add_marker(pytest.mark.wall_clock)
 
 
-def _is_virtual(item: pytest.Item, path: str) -> bool:
-    if item.get_closest_marker("virtual_time") is not None:
-        return True
-    if item.get_closest_marker("wall_clock") is not None or not path.startswith(CONFORMANCE):
-        return False
-    from tests.drivers.conformance.benches import VIRTUAL
+def _is_on_a_real_wire(item: pytest.Item) -> bool:
+    """Whether it is run in real time, too: always, or on the benches that its marker names."""
     from tests.spread import bench_of
 
-    return bench_of(item.name) in VIRTUAL
+    return any(not one.args or bench_of(item.name) in one.args for one in item.iter_markers("real_wire"))
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -38,9 +38,12 @@ def main() -> None:
         print(f"from the first page to the explained effect: {time.monotonic() - begin_s:.0f} s")
         print(f"{len(walker.clicks)} clicks: {', '.join(walker.clicks)}")
         page.close()
-        for width, height, scheme in SIZES:
-            page = open_page(chromium, service.url, width, scheme, height=height)
-            _every_view(page, folder, f"{width}-{scheme}")
+        pages = {
+            f"{width}-{scheme}": open_page(chromium, service.url, width, scheme, height=height)
+            for width, height, scheme in SIZES
+        }
+        for view in VIEWS:
+            _view(pages, view, folder)
     print(f"{len(list(folder.glob('*.png')))} pictures in {folder}")
 
 
@@ -65,13 +68,14 @@ def _camera(page: Any, folder: Path) -> Callable[[str], None]:
     return shot
 
 
-def _every_view(page: Any, folder: Path, name: str) -> None:
-    for view in VIEWS:
+def _view(pages: dict[str, Any], view: str, folder: Path) -> None:
+    for page in pages.values():
         page.evaluate("(hash) => { location.hash = hash; }", view)
+    for page in pages.values():
         page.locator("main :is(.panel, .door)").first.wait_for()
-        page.wait_for_timeout(2500)  # plots are drawn one after the other
+    page.wait_for_timeout(4000)  # plots are drawn one after the other, in all pages at once
+    for name, page in pages.items():
         page.screenshot(path=folder / f"{view[1:].replace('/', '-')}-{name}.png", full_page=True)
-    page.close()
 
 
 if __name__ == "__main__":

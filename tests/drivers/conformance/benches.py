@@ -125,14 +125,14 @@ def set_up(kind: DriveKind[Any], variant: ConformanceBench, *device_options: str
 
 _VARIANTS = [(kind, variant) for kind in drive_kinds().values() for variant in kind.conformance]
 
-VIRTUAL = frozenset(variant.name for kind, variant in _VARIANTS if variant.has_link)
-"""Benches that `make test-virtual` runs; the time of the others, over TCP, is the operating system's."""
+SERIAL, ADAPTER, TCP = ("roboclaw", "modbus-rtu"), ("canopen",), ("modbus-tcp", "canopen-socketcand")
+"""One or two benches of each way to a drive, for `real_wire`: a serial port, an adapter on one, and the network."""
 
 # of every kind that is installed: another package's driver is held to the contract by the same tests
 BENCHES: dict[str, Callable[..., Any]] = {
     variant.name: partial(set_up, kind, variant)
     for kind, variant in _VARIANTS
-    if variant.name in VIRTUAL or not IS_VIRTUAL
+    if variant.has_link or not IS_VIRTUAL  # the others are on TCP, whose time is the operating system's
 }
 
 

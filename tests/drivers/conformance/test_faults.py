@@ -23,12 +23,13 @@ from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError, DriveError
 from tests.devices.device_process import Thread
 from tests.devices.turns import no_turns
-from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured, run
+from tests.drivers.conformance.benches import ADAPTER, ANSWER_TIMEOUT_S, BENCHES, PERIOD_S, SERIAL, TCP, configured, run
 
 PUSH_A = 0.25
 GENTLE_PUSH_A = 0.11  # just above static friction
 HALF_SWING_S = 0.2
 MARGIN_S = 0.4  # of the device: its tick, its thread on a busy machine
+KILLED = ("roboclaw", "canopen", "modbus-tcp")  # that a silent host is seen by each, `test_contract` says
 LAST_WORDS_S = 2.0 * ANSWER_TIMEOUT_S  # the host asks twice before it gives up; the watchdog counts from then on
 
 
@@ -99,7 +100,10 @@ def opens_again(bench, drive):
             time.sleep(0.1)
 
 
-@pytest.mark.parametrize("name", [pytest.param("disconnect", marks=pytest.mark.real_wire), "silent", "drop"])
+@pytest.mark.real_wire(*TCP)
+@pytest.mark.parametrize(
+    "name", [pytest.param("disconnect", marks=pytest.mark.real_wire(*SERIAL, *ADAPTER)), "silent", "drop"]
+)
 def test_the_cable_comes_out_in_mid_motion(watched, name):
     with watched.opened() as drive:
         outcome, on_s = broken(watched, drive, "link", name=name)
@@ -123,6 +127,7 @@ def _corrupt_three(bench, drive):
     return None if swinging.outcome.outcome == "stopped" else swinging.outcome
 
 
+@pytest.mark.real_wire(*TCP)
 def test_one_corrupted_packet_does_not_end_the_run(wired):
     if not wired.variant.is_checked:
         pytest.skip(f"{wired.name}: the line's packets have no check of their own")
@@ -130,6 +135,7 @@ def test_one_corrupted_packet_does_not_end_the_run(wired):
         assert _corrupt_three(wired, drive) is None
 
 
+@pytest.mark.real_wire(*TCP)
 def test_a_corrupted_packet_of_a_line_without_a_check_at_most_trips_a_limit(wired):
     """A flipped bit may read as another value. What the limits allow goes on, what they do not ends in power-off."""
     if wired.variant.is_checked is not False:
@@ -142,6 +148,7 @@ def test_a_corrupted_packet_of_a_line_without_a_check_at_most_trips_a_limit(wire
         opens_again(wired, drive)
 
 
+@pytest.mark.real_wire(*TCP)
 def test_a_line_that_corrupts_everything_ends_in_power_off(watched):
     with watched.opened() as drive:
         outcome, on_s = broken(watched, drive, "link", name="corrupt")
@@ -209,7 +216,7 @@ def test_a_wrong_address_is_an_error_that_names_it(wired):
     assert time.monotonic() - began_s < drive.describe().longest_open_s + 5.0
 
 
-@pytest.mark.real_wire
+@pytest.mark.real_wire(*SERIAL, *ADAPTER, *TCP)
 def test_every_call_is_bounded_while_the_device_is_silent(wired):
     with wired.opened() as drive:
         longest_s = drive.describe().longest_call_s
@@ -224,6 +231,7 @@ def test_every_call_is_bounded_while_the_device_is_silent(wired):
 
 
 @pytest.mark.wall_clock  # it is a process
+@pytest.mark.parametrize("running", [name for name in BENCHES if name in KILLED], indirect=True)
 def test_a_host_that_is_killed_in_mid_motion(watched, tmp_path):
     """SIGKILL: nobody says good-bye. The drive stops by itself; the record says so when the store is opened again."""
     url = f"sqlite:///{tmp_path / 'bench.sqlite'}"

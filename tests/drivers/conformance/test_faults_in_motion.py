@@ -14,7 +14,7 @@ from bench.control.ending import StopRequest
 from bench.experiments.kinds.commissioning import CommissioningParameters, commission
 from drivers.contract import Command, Mode
 from drivers.errors import DriveConfigurationError, DriveError
-from tests.drivers.conformance.benches import PERIOD_S, configured, run
+from tests.drivers.conformance.benches import PERIOD_S, TCP, configured, run
 from tests.drivers.conformance.test_faults import GENTLE_PUSH_A, LAST_WORDS_S, MARGIN_S, Swinging, opens_again
 
 RAMP_A_S, RAMP_S = 0.2, 1.0
@@ -78,6 +78,7 @@ class Halfway:
         return {}
 
 
+@pytest.mark.real_wire(*TCP)
 def test_answers_that_come_late_trip_the_limit_of_the_samples_age(wired):
     """Each answer is late, and none too late: the feedback is stale. What is old must not be acted on."""
     strict = wired.configuration.limits.model_copy(update={"sample_age_s": FRESH_S})
@@ -94,6 +95,7 @@ def test_answers_that_come_late_trip_the_limit_of_the_samples_age(wired):
         opens_again(wired, drive)
 
 
+@pytest.mark.real_wire(*TCP)
 def test_answers_that_come_too_late_are_no_answers(watched):
     with watched.opened() as drive:
         swinging = Swinging(watched, drive, GENTLE_PUSH_A)  # the demand stands: a hard push ends at a limit

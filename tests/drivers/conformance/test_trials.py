@@ -9,13 +9,11 @@ one within 25 mA (5 g at the tip), and two drivers differ by no more.
 
 import pytest
 
-from tests.drivers.conformance.benches import BENCHES, PATIENT
+from tests.drivers.conformance.benches import BENCHES, PATIENT, TCP
 from tests.drivers.conformance.campaign import A_PER_KG, LOADS_KG, STEP_LOAD_KG, Campaign
 
 TOLERANCE_A = 0.025
-ON_REAL_WIRES = ("roboclaw", "canopen")  # beside those over TCP: a serial port, and an adapter on one
-NAMES = [pytest.param(name, marks=[pytest.mark.real_wire] * (name in ON_REAL_WIRES)) for name in BENCHES]
-ON_A_WIRE = [one for one in NAMES if one.values != ("sim",)]
+pytestmark = pytest.mark.real_wire("roboclaw", *TCP)
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +30,7 @@ def campaigns(tmp_path_factory):
     return of
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", BENCHES)
 def test_each_trial_comes_to_its_end(campaigns, name):
     found = campaigns(name)
     for experiment in (found.commissioning, found.steps, found.sweep):
@@ -40,7 +38,7 @@ def test_each_trial_comes_to_its_end(campaigns, name):
         assert experiment.provenance["drive"]["product"]
 
 
-@pytest.mark.parametrize("name", ON_A_WIRE)
+@pytest.mark.parametrize("name", [name for name in BENCHES if name != "sim"])
 def test_a_drive_on_a_wire_has_to_be_commissioned_and_its_load_hung(campaigns, name):
     found = campaigns(name)
     assert "friction-bench doctor --move" in found.refusal
@@ -52,7 +50,7 @@ def test_a_drive_on_a_wire_has_to_be_commissioned_and_its_load_hung(campaigns, n
     ]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", BENCHES)
 def test_the_load_is_found_behind_friction(campaigns, name):
     found = campaigns(name)
     assert found.steps.results["mean_load_current_a"] == pytest.approx(STEP_LOAD_KG * A_PER_KG, abs=TOLERANCE_A)
@@ -60,7 +58,7 @@ def test_the_load_is_found_behind_friction(campaigns, name):
     assert currents_a == pytest.approx({load_kg: load_kg * A_PER_KG for load_kg in LOADS_KG}, abs=TOLERANCE_A)
 
 
-@pytest.mark.parametrize("name", ON_A_WIRE)
+@pytest.mark.parametrize("name", [name for name in BENCHES if name != "sim"])
 def test_results_are_those_of_the_in_process_simulation(campaigns, name):
     found, reference = campaigns(name), campaigns("sim")
     for row, wanted in zip(found.sweep.results["rows"], reference.sweep.results["rows"], strict=True):

@@ -27,7 +27,9 @@ def opened_at_last(drive):
             time.sleep(0.1)
 
 
-@pytest.mark.parametrize("name", ["silent", pytest.param("disconnect", marks=pytest.mark.real_wire), "drop", "corrupt"])
+@pytest.mark.parametrize(
+    "name", ["silent", pytest.param("disconnect", marks=pytest.mark.real_wire("feetech")), "drop", "corrupt"]
+)
 def test_a_line_that_fails_ends_the_run_with_the_true_reason_and_off_when_it_is_back(unwatched, name):
     with unwatched.opened() as drive:
         swinging = Swinging(unwatched, drive, GENTLE_A)
