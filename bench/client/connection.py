@@ -56,13 +56,13 @@ class Connection:
             return self._repeated("POST", path, json=body, headers={"Idempotency-Key": key}).json()
         return self._once("POST", path, json=body).json()
 
-    def send(self, method: str, path: str, body: Mapping[str, object] | None = None) -> None:
+    def send(self, method: str, path: str, body: Mapping[str, object] | None = None, **query: Any) -> None:
         """Something whose answer does not matter.
 
         Raises:
             Unreachable, Refused
         """
-        self._once(method, path, json=body)
+        self._once(method, path, json=body, params=_given(query))
 
     def items(self, path: str, **query: Any) -> Iterator[dict[str, Any]]:
         """All items of a list, page after page."""

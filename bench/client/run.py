@@ -86,6 +86,17 @@ class Run:
         if prompt is not None:
             self._continue(prompt["number"])
 
+    def remove(self, reason: str) -> None:
+        """Remove the experiment with its trials for good; takes an admin's token.
+
+        Args:
+            reason: why; the audit log keeps it, with who and when.
+
+        Raises:
+            Refused: it runs, or a study or a calibration uses it.
+        """
+        self._connection.send("DELETE", f"/experiments/{self.experiment_id}", reason=reason)
+
     def trials(self) -> list[Trial]:
         """Its trials, in the order in which they were made."""
         found = self._connection.items("/trials", experiment_id=self.experiment_id)

@@ -51,6 +51,17 @@ class Study:
         """Error of every model of the study, on the trials of the fit and on the others."""
         return Ladder.model_validate(self._get("/ladder"))
 
+    def remove(self, reason: str) -> None:
+        """Remove the study with its models for good, not its trials; takes an admin's token.
+
+        Args:
+            reason: why; the audit log keeps it, with who and when.
+
+        Raises:
+            Refused: a calibration carries a model of it.
+        """
+        self._connection.send("DELETE", f"/studies/{self.study_id}", reason=reason)
+
     def _get(self, path: str, **query: object) -> Any:
         return self._connection.get(f"/studies/{self.study_id}{path}", **query)
 

@@ -13,7 +13,7 @@ from compensator.lab.recordings.channel_checks import check_channels
 from compensator.lab.recordings.channels import CHANNELS
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import typical_step_s
+from compensator.lab.recordings.gaps import typical_step_s
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 FEWEST_ROWS = 20  # fewer are an example, and show nothing of a motion

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import ColumnTable
@@ -192,11 +191,17 @@ def _unwrapped(values: FloatArray, period: float) -> FloatArray:
     return found
 
 
+def _trapezoids(rate: FloatArray, time_s: FloatArray) -> FloatArray:
+    """The integral from the first sample to each, shape (n,)."""
+    steps = np.diff(time_s) * (rate[1:] + rate[:-1]) / 2.0
+    return np.append(np.zeros(min(1, len(rate))), np.cumsum(steps))
+
+
 def _integrate(channels: dict[str, FloatArray]) -> None:
     for speed, unit in SPEED_UNITS.items():
         if speed in channels and f"position_{unit}" not in channels:
             rate, time_s = channels[speed], channels[TIME]
             known = np.isfinite(rate)
             position = np.full(len(rate), np.nan)
-            position[known] = cumulative_trapezoid(rate[known], time_s[known], initial=0.0)
+            position[known] = _trapezoids(rate[known], time_s[known])
             channels[f"position_{unit}"] = position

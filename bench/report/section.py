@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import isfinite
+from math import isfinite, isnan
 
 from bench.json_types import Value
 from bench.report.wording import spoken
@@ -88,8 +88,13 @@ def _length(low: float, high: float) -> float | None:
     return high - low if isfinite(high - low) else None
 
 
+def _known(values: Sequence[float | None]) -> list[float | None]:
+    """What is not known as None: JSON has no NaN, and a line is interrupted there."""
+    return [None if value is None or isnan(value) else value for value in values]
+
+
 def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Value]:
-    common: dict[str, Value] = {"name": one.name, "x": list(one.x), "y": list(one.y)}
+    common: dict[str, Value] = {"name": one.name, "x": list(one.x), "y": _known(one.y)}
     if not isinstance(one, Bars):
         colour = one.colour or colour
     if isinstance(one, Line):

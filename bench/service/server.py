@@ -1,5 +1,6 @@
 """The process that serves: address, token, and an end that stops the joint first."""
 
+import gc
 import signal
 import socket
 from collections.abc import Callable
@@ -122,6 +123,8 @@ def serve_bench(
                         say(line)
                     facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}
                     event_log.note("service started", **facts, version=__version__)
+                    gc.freeze()
+                    gc.enable()
                     _serve(BenchServer(app, runner, tls), listener)
     event_log.note("service ended")
 

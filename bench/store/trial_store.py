@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from bench.config.channels import known_to_lab
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
@@ -13,6 +15,7 @@ from bench.store.tables.trial_search import TrialQuery
 from bench.store.tables.window import Stretch, reduced
 from bench.store.trial_writer import TrialWriter
 from bench.store.upkeep.custody import Custody
+from compensator.lab.recordings.gaps import is_before_gap
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 
@@ -129,6 +132,17 @@ class TrialStore:
         """
         with self._database.reading() as connection:
             return samples.read_part(connection, trial, first_row, rows)
+
+    def time_gaps(self, trial_id: int) -> list[Stretch]:
+        """Between which times [s] of a trial nothing was recorded, by the rule of the model lab.
+
+        Raises:
+            NotFoundError: no such trial.
+        """
+        time_s = self.samples(trial_id, ["time_s"])["time_s"]
+        if len(time_s) < 2:
+            return []
+        return [(float(time_s[row]), float(time_s[row + 1])) for row in np.flatnonzero(is_before_gap(time_s))]
 
     def samples_reduced(
         self, trial_id: int, channels: Sequence[str] | None, points: int, between_s: Stretch | None = None

@@ -6,12 +6,15 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import Material, load, model_of
 from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
+from bench.study.models.stages import CHANGE, FITTING, JUDGING
+from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
 
 
+@progress.stages(CHANGE)
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Changed:
     """Refit with one more effect and keep the child model.
 
@@ -32,6 +35,7 @@ def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = 
     return _change(store, load(store, study_id), parent, [*parent.effects, effect], f"Adding {effect}")
 
 
+@progress.stages(CHANGE)
 def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Changed:
     """Refit with one effect less and keep the child model. Arguments and errors as `add_effect`."""
     parent = model_of(store, study_id, model_id)
@@ -42,6 +46,7 @@ def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None =
 
 
 def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], what: str) -> Changed:
+    progress.enter(FITTING)
     fit = material.fit(effects)
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
@@ -49,6 +54,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     old = material.fit_of(parent, beside=effects)
     alike = bool((fit.training == old.training).all())
     new = fit if alike else material.fit(effects, fit.shapes, beside=parent.effects)
+    progress.enter(JUDGING)
     before, after = held_out(old, rows), held_out(new, rows)
     gain = held_out_gain(before, after)
     starts = held_out_both(old, new) if any(effect.breakaway for effect in changed) else None

@@ -14,7 +14,9 @@ from bench.study.keep import kept_of, stored
 from bench.study.material import Material, load_model
 from bench.study.models.closed_loop import ClosedLoop, Coefficient, LoopError, Motion, Refined, TrialInLoop
 from bench.study.models.kept import KeptMotion
+from bench.study.models.stages import CLOSED_LOOP, FITTING, MOVING
 from bench.study.suggestion.dynamics import drive_of
+from compensator.lab import progress
 from compensator.lab.closed_loop import loop_comparison as lab
 from compensator.lab.closed_loop.control_law import ControlLaw
 from compensator.lab.closed_loop.refinement import Refinement, refine
@@ -27,6 +29,7 @@ from compensator.lab.rows.dataset import Trial
 SERIES_POINTS = 300  # of each trial in the answer; the errors use all samples
 
 
+@progress.stages(CLOSED_LOOP)
 def simulate(store: Store, study_id: int, model_id: int | None = None, refined: bool = False) -> ClosedLoop:
     """Move a model's joint through the study's trials, under the servo that they ran under.
 
@@ -40,7 +43,9 @@ def simulate(store: Store, study_id: int, model_id: int | None = None, refined: 
         NotFoundError, StudyError: as `load_model`; or the model has no inertia.
     """
     material, model = load_model(store, study_id, model_id)
+    progress.enter(FITTING)
     fit = material.fit_of(model)
+    progress.enter(MOVING)
     laws = _laws(store, material, fit)
     with lab_errors():
         refinement = refine(fit, laws) if refined else None

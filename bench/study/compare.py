@@ -17,7 +17,9 @@ from bench.study.models.comparison import (
     ResidualAgainst,
     TrialError,
 )
+from bench.study.models.stages import COMPARING, COMPARISON, FITTING, INTERVALS
 from bench.study.plots.series import series_of
+from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates
 from compensator.lab.at_rest.rest_comparison import Side, at_rest_in_words
 from compensator.lab.chance import stated
@@ -30,6 +32,7 @@ from compensator.lab.model.validation import HeldOut
 from compensator.lab.rows.drivers import DRIVERS
 
 
+@progress.stages(COMPARISON)
 def compare(store: Store, study_id: int, model_id: int | None = None) -> Comparison:
     """Hold a model of a study against its trials.
 
@@ -42,8 +45,11 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
         StudyError: no such model, or the trials cannot be used.
     """
     material, model = load_model(store, study_id, model_id)
+    progress.enter(FITTING)
     fit = material.fit_of(model)
+    progress.enter(COMPARING)
     found = comparison.compare(fit)
+    progress.enter(INTERVALS)
     parameters = estimates(fit)
     return Comparison(
         study_id=study_id,

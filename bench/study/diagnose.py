@@ -1,7 +1,5 @@
 """What is missing from a model, for the page, the command line and reports."""
 
-import math
-
 from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.findings import conclusion_of, findings_of, not_judged
@@ -11,14 +9,12 @@ from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
+from compensator.lab.diagnosis.diagnosis import explained_part
 from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS
-
-SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
-SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 
 
 def diagnose(store: Store, study_id: int, model_id: int | None = None) -> Diagnosis:
@@ -49,7 +45,7 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
     """
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
     not_told = [not_judged(effect, reason) for effect, reason in found.left_out.items()]
-    advice = _advice(found, explained) if named else ""
+    advice = _advice(found, explained)
     curve = provisional(fit, found) if found.verdict == "unknown-effect" else None
     return Diagnosis(
         study_id=study_id,
@@ -71,26 +67,25 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
 
 def explained_by(store: Store, model: ModelRow) -> float:
     """What the effects explain that a study's first model had not: see `answer_of`."""
-    first = model
-    while first.parent_id is not None:
-        first = store.model(first.parent_id)
-    return _part(kept_of(first).held_out, kept_of(model).held_out)
+    return explained_part(outset_of(store, model), kept_of(model).held_out)
 
 
-def _part(before: float, after: float) -> float:
-    """What took an error from one to the other, root mean square; 0 where it rose."""
-    return math.sqrt(max(0.0, before**2 - after**2))
+def outset_of(store: Store, model: ModelRow) -> float:
+    """Held-out error of the first model of the lineage, relative, 0..1."""
+    while model.parent_id is not None:
+        model = store.model(model.parent_id)
+    return kept_of(model).held_out
 
 
 def _advice(found: diagnosis.Diagnosis, explained: float) -> str:
     """What to make of an effect that is named and slight; empty where it is not slight."""
-    one = found.candidates[0]
-    part = _part(one.before, one.after)
-    if one.gain.high >= SLIGHT_GAIN or part >= SLIGHT_PART * explained:
+    one = found.slight_one(explained)
+    if one is None:
         return ""
+    share = explained_part(one.before, one.after) / explained
     return (
         f"Next to nothing is left: {one.effect.title} would take {one.gain.value:.1%} of the held-out error away "
-        f"(90 % interval {one.gain.low:.1%} .. {one.gain.high:.1%}), {part / explained:.1%} of what the added effects "
+        f"(90 % interval {one.gain.low:.1%} .. {one.gain.high:.1%}), {share:.1%} of what the added effects "
         "explain. A formula that is nearly right leaves as much: this is no reason to add another effect."
     )
 

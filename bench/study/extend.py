@@ -3,45 +3,20 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pydantic import Field
-
 from bench.config.rig import Rig
-from bench.json_types import Number
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import NothingNewError, StudyError
 from bench.study.keep import keep_model, kept_of
 from bench.study.material import Definition, facts_of, load, material_of, model_of
-from bench.study.models.base import StudyModel
+from bench.study.models.stages import CHANGE, FITTING, JUDGING
+from bench.study.models.study import AddedTrial, Extended, note_for
 from bench.study.selection import Criterion
+from compensator.lab import progress
 from compensator.lab.rows.assembly import usable
 
 
-class AddedTrial(StudyModel):
-    """A trial that a study was given."""
-
-    trial_id: int
-    name: str
-
-
-class Extended(StudyModel):
-    """The study with more trials; errors are relative (0..1)."""
-
-    study_id: int
-    model_id: int = Field(description="the newest model, fitted to all trials")
-    added: list[AddedTrial]
-    left_out: list[str] = Field(description="trials too short for the study's filter, or without its effort")
-    trials: int
-    before: Number
-    after: Number
-    sentence: str
-
-
-def note_for(study_id: int) -> str:
-    """Kept with the record of an experiment that was run for a study: by it the study finds its trials again."""
-    return f"suggested by study {study_id}"
-
-
+@progress.stages(CHANGE)
 def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()) -> Extended:
     """Add trials to a study and refit its newest model to all of them.
 
@@ -72,7 +47,9 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     before = model_of(store, study_id, None)
     longer = _with(definition, numbers, trials)
     material = material_of(store, study_id, row.name, longer)
+    progress.enter(FITTING)
     fit = material.fit(before.effects)  # before anything is kept
+    progress.enter(JUDGING)
     store.change_study(study_id, longer.to_json())
     model_id = keep_model(store, study_id, before.id, fit)
     errors = kept_of(before).held_out, kept_of(store.model(model_id)).held_out

@@ -7,8 +7,11 @@ from bench.study.keep import kept_of
 from bench.study.material import load
 from bench.study.models.kept import KeptMotion
 from bench.study.models.ladder import Ladder, Rung, RungMotion
+from bench.study.models.stages import LOADED
+from compensator.lab import progress
 
 
+@progress.stages(LOADED)
 def ladder(store: Store, study_id: int) -> Ladder:
     """Every model of the study with its training and held-out error (relative, 0..1).
 

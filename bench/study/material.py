@@ -14,7 +14,9 @@ from bench.store.records import ModelRow, Trial
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import kept_of
 from bench.study.models.base import EffortName
+from bench.study.models.stages import FILTERING, READING
 from bench.study.models.study import StudyTrial
+from compensator.lab import progress
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
@@ -229,6 +231,8 @@ class _Source:
 
 @lru_cache(maxsize=4)  # finished trials never change; a study asks for the same rows at every step
 def _dataset(source: _Source, definition: Definition) -> Dataset:
-    recordings = [source.store.recording(trial_id) for trial_id in source.trial_ids]
+    progress.enter(READING)
+    recordings = [source.store.recording(trial_id) for trial_id in progress.each(source.trial_ids)]
+    progress.enter(FILTERING)
     with lab_errors():
         return make_dataset(recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows))

@@ -1,19 +1,21 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
 from bench.store import Store
-from bench.study.diagnose import answer_of
+from bench.study.diagnose import answer_of, explained_by, outset_of
 from bench.study.errors import lab_errors
 from bench.study.judged import diagnosis_of_model
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep
 from bench.study.models.diagnosis import Diagnosis
-from compensator.lab.diagnosis.search import MOST_EFFECTS, Step
+from bench.study.models.stages import DIAGNOSING, LOADED
+from compensator.lab import progress
+from compensator.lab.diagnosis.search import MOST_EFFECTS, Step, stages_of
 from compensator.lab.diagnosis.search import search as search_from
 
 
 def search(store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS) -> Searched:
-    """Add effects one after the other as long as a diagnosis names one; judge the earlier ones anew each time.
+    """Add effects one after the other as long as a diagnosis names one that is not slight; each time judge all anew.
 
     Args:
         store: with the study.
@@ -31,11 +33,17 @@ def search_and_diagnose(
     store: Store, study_id: int, model_id: int | None = None, most: int = MOST_EFFECTS
 ) -> tuple[Searched, Diagnosis]:
     """As `search`, and what its last model lacks beside the effects that other trials did not bear out."""
+    with progress.stages((*LOADED, DIAGNOSING, *stages_of(most))):
+        return _searched(store, study_id, model_id, most)
+
+
+def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> tuple[Searched, Diagnosis]:
     material = load(store, study_id)
+    progress.enter(DIAGNOSING)
     first = model_of(store, study_id, model_id)
     fit = material.fit_of(first)
     with lab_errors():
-        found = search_from(fit, most, diagnosis_of_model(material, first, fit))
+        found = search_from(fit, most, diagnosis_of_model(material, first, fit), outset_of(store, first))
     parent, before = first.id, kept_of(first).held_out
     steps: list[SearchStep] = []
     for step in found.steps:
@@ -54,15 +62,17 @@ def search_and_diagnose(
             )
         )
         parent, before = child, step.held_out.relative
+    last = answer_of(found.fit, found.last, study_id, parent, explained_by(store, model_of(store, study_id, parent)))
     searched = Searched(
         study_id=study_id,
         model_id=parent,
         added=list(found.added),
         steps=steps,
-        verdict=found.last.verdict,
-        sentence=found.last.sentence,
+        verdict=last.verdict,
+        slight=last.slight,
+        sentence=last.advice if last.slight else last.sentence,
     )
-    return searched, answer_of(found.fit, found.last, study_id, parent)
+    return searched, last
 
 
 _DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}

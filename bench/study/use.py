@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-from pydantic import Field
-
 from bench import calibration
 from bench.calibration import with_friction
 from bench.calibration.selection import in_use
@@ -15,21 +13,9 @@ from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.keep import kept_of, stored
 from bench.study.material import Material, facts_of, load_model
-from bench.study.models.base import StudyModel
-from bench.study.models.kept import KeptBench
+from bench.study.models.kept import KeptBench, Used
 from compensator.lab.model.fitted import Fit
 from compensator.lab.online import left_out, works_online
-
-
-class Used(StudyModel):
-    """The calibration that a model was kept as."""
-
-    calibration_id: int
-    study_id: int
-    model_id: int
-    effects: list[str] = Field(description="of the model, those at work")
-    left_out: list[str] = Field(description="effects that need more than the motion of the moment")
-    sentence: str
 
 
 def use(store: Store, study_id: int, configuration: BenchConfiguration, model_id: int | None = None) -> Used:

@@ -8,9 +8,8 @@ reading, too. Two of them differ by c counts or more only where their noise diff
 With sigma = 0 nothing beyond one count is ever noise. The bound holds for any x; the edge of a count nearly meets it.
 """
 
-from math import isfinite, sqrt
-
-from scipy.special import ndtr, ndtri
+from math import erfc, isfinite, sqrt
+from statistics import NormalDist
 
 from compensator.errors import ModelParameterError
 
@@ -37,11 +36,11 @@ def threshold_counts(noise_counts: float, false_alarms_per_hour: float, period_s
             f"{false_alarms_per_hour:g} false alarms per hour, one reading every {period_s:g} s; allowed is above 0 "
             "and less than one per reading"
         )
-    return max(LEAST_COUNTS, 1.0 + sqrt(2.0) * noise_counts * float(-ndtri(per_reading / 2.0)))
+    return max(LEAST_COUNTS, 1.0 + sqrt(2.0) * noise_counts * -NormalDist().inv_cdf(per_reading / 2.0))
 
 
 def false_alarms_per_hour(noise_counts: float, counts: float, period_s: float) -> float:
     """The inverse: the bound on false alarms at a threshold."""
     if noise_counts == 0.0:
         return 0.0 if counts > 1.0 else SECONDS_PER_HOUR / period_s
-    return float(2.0 * ndtr((1.0 - counts) / (sqrt(2.0) * noise_counts))) * SECONDS_PER_HOUR / period_s
+    return erfc((counts - 1.0) / (2.0 * noise_counts)) * SECONDS_PER_HOUR / period_s

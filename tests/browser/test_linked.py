@@ -10,6 +10,12 @@ from tests.service.recorded_joint import study_path
 
 pytestmark = pytest.mark.browser
 LEFT_PX = 78  # of the axis, in paint.js
+# a request that is never answered, and never sent: one that a test lets go of would reach the service after all
+HELD = """(ending) => {
+  const { fetch } = window;
+  window.fetch = (url, options) => !url.split("?")[0].endsWith(ending) ? fetch(url, options)
+    : new Promise((_, reject) => options.signal.addEventListener("abort", () => reject(options.signal.reason)));
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -77,14 +83,25 @@ def test_stretches_of_time_are_found_where_something_is_true(page):
     assert page.evaluate(call) == [{"from": 0, "to": 1}, {"from": 4, "to": 4}]
 
 
-def test_a_diagnosis_says_what_it_does_and_how_much_is_left_and_is_cancelled(page):
-    told = {"job": "b", "what": "diagnose", "state": "computing", "stage": "Judging the measuring chain", "share": 0.6,
+@pytest.mark.parametrize(
+    ("step", "button", "asked"),
+    [
+        ("3 Diagnose", "Diagnose", "/diagnose"),
+        ("4 Add", "Search by itself", "/search"),
+        ("2 Compare", "Simulate", "/closed-loop"),
+        ("2 Compare", "Report of study .*", "/report"),
+    ],
+)
+def test_what_takes_long_says_what_it_does_and_how_much_is_left_and_is_cancelled(page, step, button, asked):
+    told = {"job": "b", "what": "any", "state": "computing", "stage": "Judging the measuring chain", "share": 0.6,
             "stages_done": 4, "stages": 8, "passed_s": 3.0, "left_s": 2.0}  # fmt: skip
     body = f"event: progress\ndata: {json.dumps(told)}\n\n"
     page.route("**/live/jobs/*/stream", lambda route: route.fulfill(content_type="text/event-stream", body=body))
-    page.route("**/diagnose?*", lambda route: None)
-    page.get_by_role("link", name="3 Diagnose").click()
-    page.get_by_role("button", name="Diagnose").click()
+    page.evaluate(HELD, asked)
+    page.get_by_role("link", name=step).click()
+    if button == "Simulate":
+        page.locator("summary", has_text="In closed loop").click()
+    page.get_by_role("button", name=re.compile(f"^{button}$")).click()
     page.get_by_text(re.compile(r"Judging the measuring chain, 5 of 8\. \d+ s, about 2 s left")).wait_for()
     assert page.get_by_role("progressbar").evaluate("(bar) => bar.value") == pytest.approx(0.6)
     page.get_by_role("button", name="Cancel").click()

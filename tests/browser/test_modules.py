@@ -259,3 +259,25 @@ def test_every_module_is_imported_from_where_it_is(open_page):
     assert max(Counter(Path(name).parent for name in names).values()) <= 20
     for name in names:
         assert page.evaluate(f"{imported(name)}.then(() => true)"), name
+
+
+@pytest.mark.parametrize(
+    ("name", "schema", "example"),
+    [
+        ("load_kg", "{type: 'number', minimum: 0, maximum: 0.1}", "0, 50, 100"),
+        ("load_kg", "{type: 'number', minimum: 0, maximum: 0.05}", "0, 50"),
+        ("angle_rad", "{type: 'number', default: Math.PI / 2}", "45, 90, 135"),
+        ("repeats", "{type: 'integer', default: 3}", "3, 4, 5"),
+        ("balanced", "{type: 'boolean'}", "false, true"),
+    ],
+)
+def test_a_campaign_gives_an_example_in_the_unit_of_the_field(call, name, schema, example):
+    assert call("queue/grid", f"m.exampleOf('{name}', {schema})") == example
+
+
+def test_where_nothing_was_recorded_a_line_is_interrupted(call):
+    answer = "{channels: {time_s: [0, 1, 2, 7, 8], duty: [1, 2, 3, 4, 5]}, gaps: [[2, 7], [8, 9]]}"
+    assert call("trials/stretches", f"m.interrupted({answer})") == {
+        "time_s": [0, 1, 2, 4.5, 7, 8],
+        "duty": [1, 2, 3, None, 4, 5],
+    }

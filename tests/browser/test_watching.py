@@ -153,3 +153,19 @@ def test_the_token_stands_in_no_address(service, open_page):
     assert any("/recording-set" in url for url in asked)
     assert not [url for url in [page.url, *asked] if TOKEN in url]
     assert TOKEN not in page.evaluate("JSON.stringify(localStorage) + document.cookie")
+
+
+def test_the_lowest_of_the_live_plots_is_not_cut_by_its_card(service, open_page):
+    page = open_page("#bench", width=1440)
+    service.start("steps", repeats=1)
+    canvas = page.get_by_label("Live", exact=True).locator("canvas.chart")
+    canvas.wait_for()
+    page.evaluate(FRAME)
+    card = page.get_by_label("Live", exact=True)
+    assert card.evaluate("(one) => one.scrollHeight - one.clientHeight") <= 1
+    inside, plots = card.bounding_box(), canvas.bounding_box()
+    assert plots["y"] + plots["height"] <= inside["y"] + inside["height"]
+    assert plots["height"] >= 320  # four rows, each to be read
+    assert page.evaluate("document.querySelector('main canvas.chart').height / devicePixelRatio") == pytest.approx(
+        plots["height"], abs=1
+    )

@@ -7,8 +7,8 @@ import pytest
 
 from bench.cli.exit_codes import ExitCode
 from bench.errors import LimitError
-from bench.study.extend import AddedTrial, Extended
 from bench.study.models.diagnosis import Diagnosis
+from bench.study.models.study import AddedTrial, Extended
 from bench.study.suggestion.suggested import PairOfRivals, Suggested, SuggestedTrial
 from drivers.errors import DriveError
 

@@ -11,6 +11,7 @@ from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
 from tests.control.fake_drive import FakeDrive
+from tests.service.recorded_joint import study_path
 from tests.service.running_service import TOKEN
 
 
@@ -143,3 +144,15 @@ def test_a_study_names_what_is_missing(bench, study):
     assert changed.after.held_out < changed.before.held_out
     assert [len(rung.effects) for rung in study.ladder().rungs][:2] != []
     assert study.compare().model_id == changed.model_id
+
+
+def test_a_record_is_removed_for_a_reason(bench, service):
+    made = bench.study(int(study_path(service, "to be removed").split("/")[-1]))
+    trial = service.client.get(f"/trials/{made.facts.trials[0].trial_id}").json()
+    run = bench.run(trial["experiment_id"])
+    with pytest.raises(Refused, match="Remove a study first"):
+        run.remove("wrong arm")
+    made.remove("made twice")
+    run.remove("wrong arm")
+    for path in (f"/studies/{made.study_id}", f"/experiments/{run.experiment_id}"):
+        assert service.client.get(path).status_code == 404

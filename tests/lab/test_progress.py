@@ -1,5 +1,7 @@
 """How far a computation has come: told to whoever follows it, and to nobody else."""
 
+from contextlib import suppress
+
 from compensator.lab import progress
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.four_families import STAGES
@@ -33,3 +35,24 @@ def test_who_has_gone_is_told_nothing_more():
     with progress.stages(["one"]):
         progress.enter("one")
     assert len(told) == 4
+
+
+def test_stages_within_a_stage_are_parts_of_it():
+    told: list[progress.Stage] = []
+    with progress.followed(told.append), progress.stages(["one", "two"]):
+        with progress.stages(["a", "b"]):
+            progress.enter("b")
+        progress.enter("two")
+        progress.enter("one")  # has ended
+    assert [(one.name, one.part, one.within) for one in told] == [
+        ("one", 0.0, ""), ("one", 0.0, "a"), ("one", 0.5, "b"), ("one", 1.0, ""), ("two", 0.0, ""), ("", 0.0, ""),
+    ]  # fmt: skip
+
+
+def test_what_fails_within_leaves_the_stages_around_it():
+    told: list[progress.Stage] = []
+    with progress.followed(told.append), progress.stages(["one", "two"]):
+        with suppress(ValueError), progress.stages(["a"]):
+            raise ValueError
+        progress.enter("two")
+    assert [one.name for one in told] == ["one", "one", "two", ""]

@@ -15,9 +15,10 @@ from bench.study.compare import compare
 from bench.study.create import create_study, describe
 from bench.study.diagnose import diagnose
 from bench.study.errors import StudyError
-from bench.study.extend import extend_study, note_for
+from bench.study.extend import extend_study
 from bench.study.ladder import ladder
 from bench.study.material import load
+from bench.study.models.study import note_for
 from bench.study.suggestion.options import LONGEST_S, choices
 from bench.study.suggestion.predict import predicted
 from bench.study.suggestion.suggest import suggest

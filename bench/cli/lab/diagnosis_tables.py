@@ -8,9 +8,9 @@ from compensator.lab.chance import chance_cell
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.json_types import Json
-    from bench.study.extend import Extended
     from bench.study.models.change import Searched
     from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
+    from bench.study.models.study import Extended
     from bench.study.suggestion.suggested import Suggested
 
 

@@ -8,7 +8,7 @@ from bench.cli.output import Json, print_json, say, table
 from bench.errors import ParameterError
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.study.effects import Effect
+    from bench.study.models.effects import Effect
 
 
 def effects(

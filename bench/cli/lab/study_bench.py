@@ -13,7 +13,7 @@ from bench.cli.output import complain, say
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.configuration import BenchConfiguration
     from bench.store import Store
-    from bench.study.use import Used
+    from bench.study.models.kept import Used
 
 KIND = "sinusoid"  # accelerated motion and reversals: what a study is good for
 

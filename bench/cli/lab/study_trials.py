@@ -17,6 +17,7 @@ from bench.store import Experiment
 from bench.study import diagnose, extend
 from bench.study.errors import StudyError
 from bench.study.models.diagnosis import Diagnosis
+from bench.study.models.study import Extended
 from bench.study.suggestion import suggest
 from bench.study.suggestion.earlier_trials import in_words, what_came
 from bench.study.suggestion.rounds import Ended, in_rounds
@@ -64,7 +65,7 @@ class _Round(BaseModel):
 
     suggested: Suggested
     experiments: list[_Tried] = []
-    extended: extend.Extended | None = None
+    extended: Extended | None = None
     diagnosis: Diagnosis | None = None
     came: list[Came] | None = None
     end: str | None = None
@@ -75,7 +76,7 @@ class _Told(BaseModel):
 
     suggested: Suggested
     rounds: list[_Round]
-    extended: extend.Extended | None = None
+    extended: Extended | None = None
     diagnosis: Diagnosis | None = None
 
 

@@ -1,5 +1,6 @@
 """`friction-bench serve`: the REST interface and the page."""
 
+import gc
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -34,6 +35,8 @@ def serve(
     ] = None,
 ) -> None:
     """Serve the page and the REST interface for the bench, until Ctrl-C. Stops the joint when it ends."""
+    # what a start imports stays until the end: to look through it for garbage meanwhile takes a tenth of a second
+    gc.disable()
     from bench.service.auth.tls import certificate
     from bench.service.server import Address, serve_bench
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from scipy.io import loadmat, whosmat
 
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats import hdf5
@@ -23,6 +22,8 @@ def read(place: str, data: bytes) -> ColumnTable:
     """
     if data.startswith(_HDF5) or data[:8] == hdf5.SIGNATURE:
         return hdf5.read(place, data)
+    from scipy.io import loadmat, whosmat  # imported when needed: the service starts with this file
+
     try:
         check_unpacked(place, 8 * sum(math.prod(shape) for _, shape, _ in whosmat(io.BytesIO(data))))
         found = loadmat(io.BytesIO(data), squeeze_me=True, struct_as_record=False, simplify_cells=True)

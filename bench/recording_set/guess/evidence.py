@@ -7,7 +7,7 @@ import numpy as np
 from bench.recording_set.checks import HIGHEST_HZ, LOWEST_HZ
 from bench.recording_set.units import UNITS, Unit
 from compensator.lab.recordings.channel_checks import wrap_period
-from compensator.lab.recordings.processing import typical_step_s
+from compensator.lab.recordings.gaps import typical_step_s
 from compensator.lab.recordings.recording import FloatArray
 
 CLOCK_UNITS = ("s", "ms", "us", "ns")

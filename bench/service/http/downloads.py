@@ -4,7 +4,7 @@ Whoever writes JSON keeps the interpreter until it is written. Two million numbe
 or two, from STOP, too; between pieces others have their turn.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,15 +25,22 @@ def attachment(name: str) -> dict[str, Any]:
 AT_ONCE = 10_000  # numbers
 
 
-def samples_json(trial_id: int, rows_recorded: int, channels: Mapping[str, NDArray[np.float64]]) -> bytes:
+def samples_json(
+    trial_id: int,
+    rows_recorded: int,
+    channels: Mapping[str, NDArray[np.float64]],
+    gaps: Sequence[tuple[float, float]] = (),
+) -> bytes:
     """The same text as that of `Samples`.
 
     Args:
         trial_id: the trial.
         rows_recorded: of all of it.
         channels: what is answered of it, arrays of one length, `time_s` among them.
+        gaps: from, to [s].
     """
-    facts = {"trial_id": trial_id, "rows_recorded": rows_recorded, "rows_returned": len(channels["time_s"])}
+    rows = len(channels["time_s"])
+    facts = {"trial_id": trial_id, "rows_recorded": rows_recorded, "rows_returned": rows, "gaps": gaps}
     listed = b",".join(b"%b:[%b]" % (to_json(name), b",".join(_pieces(values))) for name, values in channels.items())
     return b'%b,"channels":{%b}}' % (to_json(facts).removesuffix(b"}"), listed)
 

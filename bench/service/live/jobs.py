@@ -76,7 +76,7 @@ class Job:
             job=self.name,
             what=self.what,
             state=self.state,
-            stage=stage.name,
+            stage=f"{stage.name}: {stage.within}" if stage.within else stage.name,
             stages_done=stage.done,
             stages=stage.of,
             share=share,
@@ -101,13 +101,13 @@ class Jobs:
 
     def __init__(self) -> None:
         self._jobs: OrderedDict[str, Job] = OrderedDict()
-        self._usual_s: dict[str, float] = {}
+        self._usual_s: dict[str, dict[str, float]] = {}  # of each function by itself
         self._lock = threading.Lock()
 
     def begin(self, name: str, what: str) -> Job:
         """A job of that name; an earlier one of the same name is forgotten."""
         with self._lock:
-            job = self._jobs[name] = Job(name, what, self._usual_s)
+            job = self._jobs[name] = Job(name, what, self._usual_s.setdefault(what, {}))
             while len(self._jobs) > MOST_KEPT:
                 self._jobs.popitem(last=False)
             return job

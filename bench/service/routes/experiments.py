@@ -12,7 +12,6 @@ from starlette.background import BackgroundTask
 
 from bench.experiments.registry import KINDS, find_kind
 from bench.json_types import Json
-from bench.recording_set import export_experiment, export_parquet
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
 from bench.service.auth.access import Operator, allow_read, require_operator
@@ -223,6 +222,8 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
 )
 def recording_set(store: StoreOf, request: Request, experiment_id: ExperimentId) -> FileResponse:
     """Written to a temporary file first, so that an error is an answer and not half a file. With an `ETag`."""
+    from bench.recording_set import export_experiment  # imported when needed: the service starts without it
+
     headers = _known(store, request, experiment_id)
     folder = tempfile.TemporaryDirectory(prefix="friction-bench-")
     path = FilePath(folder.name) / f"experiment-{experiment_id}.zip"
@@ -248,6 +249,8 @@ def recording_set(store: StoreOf, request: Request, experiment_id: ExperimentId)
 )
 def parquet(store: StoreOf, request: Request, experiment_id: ExperimentId) -> StreamingResponse:
     """Columns trial_id, trial, one per channel and condition. 422 where it has no rows, or pyarrow is not installed."""
+    from bench.recording_set import export_parquet
+
     headers = _known(store, request, experiment_id)
     chunks = export_parquet(store, experiment_id)
     headers["Content-Disposition"] = f'attachment; filename="experiment-{experiment_id}.parquet"'

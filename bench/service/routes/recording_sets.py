@@ -10,10 +10,6 @@ import anyio
 from fastapi import APIRouter, Depends, HTTPException, Query, Request
 from pydantic import BaseModel, Field
 
-from bench.recording_set import import_recording_set, read_recording_set
-from bench.recording_set.guess import Known, guess_of, mapping_text, read_said, rig_text
-from bench.recording_set.guess.names import UNITS_OF
-from bench.recording_set.units import units_of
 from bench.service.auth.access import require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_worker
@@ -134,11 +130,10 @@ async def guess_set(
 ) -> GuessedColumns:
     """Keeps nothing. Where no question is left, put `mapping` and `rig` into the zip as mapping.toml and rig.toml."""
     _check_is_zip(request)
-    known = Known(read_said(take or []), counts_per_turn, rate_hz, supply_v)
     with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
         path = Path(folder) / f"{_shortened(name)}.zip"
         await _receive(request.stream(), path)
-        return await in_worker(request, _guess, path, known)
+        return await in_worker(request, _guess, path, take or [], counts_per_turn, rate_hz, supply_v)
 
 
 def _check_is_zip(request: Request) -> None:
@@ -147,8 +142,17 @@ def _check_is_zip(request: Request) -> None:
         raise HTTPException(415, f"Content-Type is '{kind}'; wanted is application/zip")
 
 
-def _guess(path: Path, known: Known) -> GuessedColumns:
-    guess, rig, notes = guess_of([path], None, known)
+# what reads foreign files is imported when the first one comes: the service starts without it
+
+
+def _guess(
+    path: Path, take: list[str], counts_per_turn: float | None, rate_hz: float | None, supply_v: float | None
+) -> GuessedColumns:
+    from bench.recording_set.guess import Known, guess_of, mapping_text, read_said, rig_text
+    from bench.recording_set.guess.names import UNITS_OF
+    from bench.recording_set.units import units_of
+
+    guess, rig, notes = guess_of([path], None, Known(read_said(take), counts_per_turn, rate_hz, supply_v))
     return GuessedColumns(
         joint=guess.joint,
         columns=[GuessedColumn(**{**asdict(one), "outline": list(one.outline)}) for one in guess.taken],
@@ -178,6 +182,8 @@ async def _receive(chunks: AsyncIterator[bytes], path: Path) -> None:
 
 
 def _import(store: Store, path: Path, name: str) -> Imported:
+    from bench.recording_set import import_recording_set, read_recording_set
+
     recording_set = read_recording_set(path, None, None)
     experiment_id = import_recording_set(store, recording_set, name)
     rows = sum(len(recording) for recording in recording_set.recordings)

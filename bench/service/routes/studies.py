@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from bench.service import later
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
@@ -13,11 +14,9 @@ from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import NotFoundError
-from bench.study import changes, extend, search, use
-from bench.study.create import create_study
 from bench.study.models.change import Changed, Searched
-from bench.study.models.study import Study, StudyName
-from bench.study.suggestion.suggest import suggest
+from bench.study.models.kept import Used
+from bench.study.models.study import Extended, Study, StudyName
 from bench.study.suggestion.suggested import Suggested
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
@@ -116,7 +115,7 @@ async def create(request: Request, response: Response, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
     found = await in_lab(
         request,
-        create_study,
+        later.create_study,
         body.name,
         body.experiment_ids,
         hold_out=body.hold_out,
@@ -148,7 +147,7 @@ def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
 )
 async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
-    function = changes.add_effect if body.action == "add" else changes.drop_effect
+    function = later.add_effect if body.action == "add" else later.drop_effect
     found = await in_lab(request, function, study_id, body.effect, body.model_id)
     note(request, f"made model {found.model_id}: {body.action} {body.effect}")
     return found
@@ -163,7 +162,7 @@ async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
 )
 async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    found = await in_lab(request, search.search, study_id, body.model_id, body.most)
+    found = await in_lab(request, later.search, study_id, body.model_id, body.most)
     note(request, f"made {len(found.steps)} models, the last of them {found.model_id}")
     return found
 
@@ -176,7 +175,7 @@ async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) 
 )
 async def suggest_trials(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
     """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
-    return await in_lab(request, suggest, study_id, runner.configuration, body.model_id, body.trials)
+    return await in_lab(request, later.suggest, study_id, runner.configuration, body.model_id, body.trials)
 
 
 @router.post(
@@ -186,9 +185,9 @@ async def suggest_trials(request: Request, runner: RunnerOf, study_id: StudyId, 
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> extend.Extended:
+async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
-    return await in_lab(request, extend.extend_study, study_id, body.experiment_ids)
+    return await in_lab(request, later.extend_study, study_id, body.experiment_ids)
 
 
 @router.post(
@@ -198,9 +197,9 @@ async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> e
     dependencies=[Depends(require_token)],
     responses=problems(401, 404, 422),
 )
-async def use_model(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> use.Used:
+async def use_model(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
     """Kept as a calibration, which the bench uses from the next experiment on."""
-    return await in_lab(request, use.use, study_id, runner.configuration, body.model_id)
+    return await in_lab(request, later.use, study_id, runner.configuration, body.model_id)
 
 
 @router.delete(

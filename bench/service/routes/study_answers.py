@@ -4,26 +4,19 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
+from bench.service import later
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_lab
 from bench.service.http import conditional
 from bench.service.http.downloads import attachment
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
-from bench.study.closed_loop import simulate
-from bench.study.compare import compare
-from bench.study.create import describe
-from bench.study.diagnose import diagnose
-from bench.study.ladder import ladder
 from bench.study.models.closed_loop import ClosedLoop
 from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
+from bench.study.models.plots import Action, DriversOverTime, ErrorMap, Moments
 from bench.study.models.study import Study
-from bench.study.plots import error_map as study
-from bench.study.plots import moments as at
-from bench.study.plots.series import DriversOverTime, drivers_over_time
-from bench.study.report.report import report_html
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
@@ -53,7 +46,7 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
 )
 async def one_study(request: Request, study_id: StudyId) -> Study:
     """Its trials, their roles, and the newest model."""
-    return await in_lab(request, describe, study_id)
+    return await in_lab(request, later.describe, study_id)
 
 
 @router.get(
@@ -64,7 +57,7 @@ async def one_study(request: Request, study_id: StudyId) -> Study:
 )
 async def compare_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
     """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
-    return await in_lab(request, compare, study_id, model_id)
+    return await in_lab(request, later.compare, study_id, model_id)
 
 
 @router.get(
@@ -75,7 +68,7 @@ async def compare_model(request: Request, study_id: StudyId, model_id: ModelId =
 )
 async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return await in_lab(request, diagnose, study_id, model_id)
+    return await in_lab(request, later.diagnose, study_id, model_id)
 
 
 @router.get(
@@ -86,7 +79,7 @@ async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId 
 )
 async def all_models(request: Request, study_id: StudyId) -> Ladder:
     """Training and held-out error of every model of the study."""
-    return await in_lab(request, ladder, study_id)
+    return await in_lab(request, later.ladder, study_id)
 
 
 @router.get(
@@ -104,7 +97,7 @@ async def all_models(request: Request, study_id: StudyId) -> Ladder:
 )
 async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
     """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
-    page = await in_lab(request, report_html, study_id, runner.configuration)
+    page = await in_lab(request, later.report_html, study_id, runner.configuration)
     headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
     return Response(page, media_type="text/html", headers=headers)
 
@@ -119,13 +112,13 @@ async def closed_loop(
     request: Request, study_id: StudyId, model_id: ModelId = None, refine: Refine = False
 ) -> ClosedLoop:
     """Error of the motion beside that of the effort. Takes seconds."""
-    return await in_lab(request, simulate, study_id, model_id, refine)
+    return await in_lab(request, later.simulate, study_id, model_id, refine)
 
 
 @router.get("/{study_id}/error-map", summary="Error over speed and load", responses=problems(404, 422))
-async def error_map(request: Request, study_id: StudyId, model_id: ModelId = None) -> study.ErrorMap:
+async def error_map(request: Request, study_id: StudyId, model_id: ModelId = None) -> ErrorMap:
     """Where the model is wrong. Ask /moments with the edges of a cell to see when that was."""
-    return await in_lab(request, study.error_map, study_id, model_id)
+    return await in_lab(request, later.error_map, study_id, model_id)
 
 
 @router.get("/{study_id}/moments", summary="When the joint was somewhere", responses=problems(404, 422))
@@ -137,9 +130,9 @@ async def moments(
         Query(min_length=1, max_length=10, description="driver=low..high, all of them", examples=["velocity=0.5..1"]),
     ],
     model_id: ModelId = None,
-) -> at.Moments:
+) -> Moments:
     """Stretches of trials, with the residual's size during each; at most a dozen."""
-    return await in_lab(request, at.moments, study_id, where, model_id)
+    return await in_lab(request, later.moments, study_id, where, model_id)
 
 
 @router.get("/{study_id}/action", summary="Where a missing effect would act", responses=problems(404, 422))
@@ -148,9 +141,9 @@ async def action(
     study_id: StudyId,
     effect: Annotated[str, Query(max_length=100, description="its name", examples=["viscous_asymmetry"])],
     model_id: ModelId = None,
-) -> at.Action:
+) -> Action:
     """The moments in which it takes most of the residual away, and every trial predicted with it. Nothing is kept."""
-    return await in_lab(request, at.action, study_id, effect, model_id)
+    return await in_lab(request, later.action, study_id, effect, model_id)
 
 
 @router.get(
@@ -163,4 +156,4 @@ async def drivers(
     request: Request, study_id: StudyId, trial_id: Annotated[int, Query(ge=1, description="of the study")]
 ) -> DriversOverTime:
     """Speed, load, position and others of one trial, at the times of its series in /compare."""
-    return await in_lab(request, drivers_over_time, study_id, trial_id)
+    return await in_lab(request, later.drivers_over_time, study_id, trial_id)

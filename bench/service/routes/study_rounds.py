@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import BusyError
 from bench.runs.queue import Conductor, Order
+from bench.service import later
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench, in_lab
@@ -15,8 +16,8 @@ from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import RUNNING, WAITING
-from bench.study.extend import note_for
-from bench.study.suggestion.next_round import NextRound, next_round
+from bench.study.models.study import note_for
+from bench.study.suggestion.suggested import NextRound
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
@@ -54,7 +55,7 @@ async def begin_round(
 ) -> Round:
     """Trials that tripped are kept out. 409 while those of the round before wait or run. Takes seconds."""
     _refuse_while_recording(conductor, study_id)
-    found = await in_lab(request, next_round, study_id, runner.configuration, body.trials)
+    found = await in_lab(request, later.next_round, study_id, runner.configuration, body.trials)
 
     def take_in() -> Round:
         _refuse_while_recording(conductor, study_id)

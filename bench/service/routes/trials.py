@@ -9,7 +9,6 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field, FiniteFloat
 
-from bench.recording_set import csv_chunks, parquet_chunks, stream_of_trial
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
 from bench.service.http.downloads import attachment, samples_json
@@ -59,6 +58,9 @@ class Samples(BaseModel):
     trial_id: int
     rows_recorded: int
     rows_returned: int
+    gaps: list[tuple[float, float]] = Field(
+        default=[], description="from, to [s]: nothing was recorded in between; told of what was imported"
+    )
     channels: dict[str, list[float | None]]
 
 
@@ -179,7 +181,9 @@ def samples(
     share = max(LEAST_PER_CHANNEL, points // len(names))
     stretch = None if from_s is None and to_s is None else (_or(from_s, -math.inf), _or(to_s, math.inf))
     reduced = store.samples_reduced(trial_id, names, share, stretch)
-    return Response(samples_json(trial_id, found.rows, reduced), media_type="application/json", headers=headers)
+    # our own control loop records at one period
+    gaps = store.time_gaps(trial_id) if store.experiment(found.experiment_id).source == "imported" else []
+    return Response(samples_json(trial_id, found.rows, reduced, gaps), media_type="application/json", headers=headers)
 
 
 def _or(value: float | None, otherwise: float) -> float:
@@ -202,6 +206,8 @@ def _or(value: float | None, otherwise: float) -> float:
 )
 def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
     """The same file that a recording set holds for the trial: numbers are exact."""
+    from bench.recording_set import csv_chunks, stream_of_trial  # imported when needed: the service starts without it
+
     found = store.trial(trial_id)
     headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
     return StreamingResponse(
@@ -217,6 +223,8 @@ def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingRespons
 )
 def parquet(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
     """One column per channel and condition; null where not measured. 422 where pyarrow is not installed."""
+    from bench.recording_set import parquet_chunks, stream_of_trial
+
     found = store.trial(trial_id)
     headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
     chunks = parquet_chunks([stream_of_trial(store, found)])

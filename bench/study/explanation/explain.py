@@ -114,7 +114,8 @@ def explain(
     rungs = ladder(store, study_id)
     study = describe(store, study_id)
     pictures = [ladder_figure(rungs), measured_figure(before, now)]
-    head = head_section(study, rungs, last.sentence, store, pictures, confused)
+    left = last.advice if last.slight else last.sentence
+    head = head_section(study, rungs, left, store, pictures, confused)
     sections = [
         measured_section(study, store),
         coverage_section(told),
@@ -130,7 +131,7 @@ def explain(
     head, *rest = in_words([head, *sections], [one.name for one in study.trials])
     return Explained(
         study_id=study_id,
-        sentences=tuple(summary(study, rungs, last.sentence, confused)),
+        sentences=tuple(summary(study, rungs, left, confused)),
         rungs=rungs,
         coverage=told,
         html=html_page(f"What the model of {name} lacks", [head, *([came_in] if came_in else []), *rest]),

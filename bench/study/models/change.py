@@ -61,4 +61,5 @@ class Searched(StudyModel):
     added: list[str]
     steps: list[SearchStep]
     verdict: str
+    slight: bool = Field(description="what its last model lacks by the verdict is slight, and was not added")
     sentence: str

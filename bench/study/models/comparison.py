@@ -54,7 +54,7 @@ class RegimeError(StudyModel):
 
 
 class Series(StudyModel):
-    """Measured and predicted effort of one trial over time; all lists have the same length."""
+    """Measured and predicted effort of one trial over time: lists of one length; null where no row is used."""
 
     trial_id: int
     name: str

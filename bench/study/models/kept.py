@@ -1,4 +1,4 @@
-"""What the store keeps of a fitted model, as JSON; older versions kept less of it."""
+"""What the store keeps of a fitted model, as JSON, older versions less of it; what the bench is given of one."""
 
 from math import nan
 
@@ -41,3 +41,14 @@ class KeptModel(StudyModel):
     coefficients: dict[str, list[float]] = Field(default={})
     closed_loop: KeptMotion | None = None
     bench: KeptBench | None = None
+
+
+class Used(StudyModel):
+    """The calibration that a model was kept as."""
+
+    calibration_id: int
+    study_id: int
+    model_id: int
+    effects: list[str] = Field(description="of the model, those at work")
+    left_out: list[str] = Field(description="effects that need more than the motion of the moment")
+    sentence: str

@@ -1,37 +1,11 @@
 """Where a model is wrong, with its answers: cells of speed and load."""
 
-from pydantic import Field
-
-from bench.json_types import Numbers
 from bench.store import Store
 from bench.study.errors import lab_errors
 from bench.study.material import load_model
-from bench.study.models.base import EffortName, StudyModel
+from bench.study.models.plots import Axis, ErrorMap
 from compensator.lab.comparison import error_map as lab
 from compensator.lab.rows.drivers import DRIVERS
-
-
-class Axis(StudyModel):
-    """One side of the map."""
-
-    driver: str = Field(description="to be used in `where` of /moments", examples=["velocity"])
-    title: str
-    unit: str
-
-
-class ErrorMap(StudyModel):
-    """Error in cells; the first index counts along `down`, the second along `across`. Null: too few rows."""
-
-    study_id: int
-    model_id: int
-    effort: EffortName
-    across: Axis
-    down: Axis
-    across_edges: list[float]
-    down_edges: list[float]
-    rms: list[Numbers] = Field(description="of the residual, in the unit of the effort")
-    mean: list[Numbers] = Field(description="of the residual, in the unit of the effort")
-    count: list[list[int]]
 
 
 def error_map(store: Store, study_id: int, model_id: int | None = None) -> ErrorMap:

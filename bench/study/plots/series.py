@@ -1,14 +1,14 @@
 """What the plots of a study show over time: effort and prediction, and what drives them, at the same rows."""
 
-import numpy as np
-from pydantic import Field
+from dataclasses import dataclass
 
-from bench.json_types import Numbers
+import numpy as np
+
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import Material, load
-from bench.study.models.base import StudyModel
 from bench.study.models.comparison import Series
+from bench.study.models.plots import DriversOverTime, DriverValues
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset, IntArray
@@ -17,37 +17,19 @@ from compensator.lab.rows.drivers import DRIVERS, available
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 
 
-class DriverValues(StudyModel):
-    """One driving variable over time."""
-
-    driver: str = Field(examples=["velocity"])
-    title: str
-    unit: str
-    values: Numbers
-
-
-class DriversOverTime(StudyModel):
-    """The driving variables of one trial, at the times of its series; all lists have the same length."""
-
-    study_id: int
-    trial_id: int
-    time_s: Numbers
-    drivers: list[DriverValues]
-
-
 def series_of(material: Material, fit: Fit) -> list[Series]:
     """Measured and predicted effort of every trial."""
     series = []
     for index, trial in enumerate(material.trials):
-        chosen, time = _shown(fit.dataset, index)
+        shown = _shown(fit.dataset, index)
         series.append(
             Series(
                 trial_id=trial.id,
                 name=trial.name,
-                time_s=time.tolist(),
-                measured=fit.dataset.effort[chosen].tolist(),
-                predicted=fit.predicted[chosen].tolist(),
-                residual=fit.residual[chosen].tolist(),
+                time_s=shown.time_s.tolist(),
+                measured=shown.of(fit.dataset.effort),
+                predicted=shown.of(fit.predicted),
+                residual=shown.of(fit.residual),
             )
         )
     return series
@@ -69,27 +51,45 @@ def drivers_over_time(store: Store, study_id: int, trial_id: int) -> DriversOver
     if trial_id not in ids:
         raise StudyError(f"study {study_id} has no trial {trial_id}; its trials are: {', '.join(map(str, ids))}")
     dataset = material.dataset
-    chosen, time = _shown(dataset, ids.index(trial_id))
+    shown = _shown(dataset, ids.index(trial_id))
     unit, facts = dataset.effort_definition.unit, material.definition.facts
     return DriversOverTime(
         study_id=study_id,
         trial_id=trial_id,
-        time_s=time.tolist(),
+        time_s=shown.time_s.tolist(),
         drivers=[
             DriverValues(
                 driver=name,
                 title=DRIVERS[name].title,
                 unit=DRIVERS[name].unit_in(unit, facts),
-                values=values[chosen].tolist(),
+                values=shown.of(values),
             )
             for name, values in available(dataset).items()
         ],
     )
 
 
-def _shown(dataset: Dataset, index: int) -> tuple[IntArray, FloatArray]:
-    """Rows of a trial that are shown, and their times since its start [s]."""
+@dataclass(frozen=True)
+class _Shown:
+    """The rows of a trial that are shown; where rows between two of them are not used, a gap stands."""
+
+    rows: IntArray
+    gaps: IntArray  # before which of the rows
+    time_s: FloatArray  # since the start of the trial, the middle of a gap for it
+
+    def of(self, values: FloatArray) -> list[float]:
+        """Of values of all rows of the dataset those that are shown; NaN in a gap."""
+        shown: list[float] = np.insert(values[self.rows].astype(np.float64), self.gaps, np.nan).tolist()
+        return shown
+
+
+def _shown(dataset: Dataset, index: int) -> _Shown:
+    trial = dataset.trials[index]
     rows = np.flatnonzero(dataset.trial_index == index)
-    chosen = rows[:: max(1, len(rows) // SERIES_POINTS)]
-    time: FloatArray = dataset.time_of(dataset.trials[index])[chosen - rows[0]] if len(rows) else np.empty(0)
-    return chosen, time
+    at = np.arange(0, len(rows), max(1, len(rows) // SERIES_POINTS))
+    time = dataset.time_of(trial)[at]
+    # rows are picked at one step: where a longer one lies between two, nothing was measured, or it was of no use
+    steps = np.diff(trial.picked)
+    broken = np.concatenate([[0], np.cumsum(steps > (steps.min() if len(steps) else 0))])
+    gaps = np.flatnonzero(np.diff(broken[at])) + 1
+    return _Shown(rows[at], gaps, np.insert(time, gaps, (time[gaps - 1] + time[gaps]) / 2.0))

@@ -9,6 +9,7 @@ from bench.study.compare import compare
 from bench.study.create import describe
 from bench.study.diagnose import diagnose
 from bench.study.ladder import ladder
+from bench.study.models.stages import DIAGNOSING, MOVING, REPORT, SUGGESTING
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section, suggestion_section
 from bench.study.report.head_section import head_section
 from bench.study.report.model_sections import (
@@ -22,6 +23,7 @@ from bench.study.report.model_sections import (
 )
 from bench.study.report.wording import in_words
 from bench.study.suggestion.suggest import suggest
+from compensator.lab import progress
 
 
 def report_html(store: Store, study_id: int, configuration: BenchConfiguration | None = None) -> str:
@@ -39,19 +41,23 @@ def report_html(store: Store, study_id: int, configuration: BenchConfiguration |
     return html_page(*report(store, study_id, configuration))
 
 
+@progress.stages(REPORT)
 def report(store: Store, study_id: int, configuration: BenchConfiguration | None = None) -> tuple[str, list[Section]]:
     """Title and sections. Arguments and errors as `report_html`."""
     study, rungs = describe(store, study_id), ladder(store, study_id)
     first, newest = study.models[0].model_id, study.model_id
     now = compare(store, study_id, newest)
     before = now if first == newest else compare(store, study_id, first)
+    progress.enter(MOVING)
+    loop = _in_closed_loop(store, study_id, newest)
     sections = [
         measured_section(study, store),
         ladder_section(rungs),
         model_section(now),
         residual_section(before, now),
-        _in_closed_loop(store, study_id, newest),
+        loop,
     ]
+    progress.enter(DIAGNOSING)
     if first != newest:
         title = f"What was missing from the first model, {first}"
         sections.append(diagnosis_section(title, diagnose(store, study_id, first), before))
@@ -59,6 +65,7 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
     pictures = [ladder_figure(rungs), measured_figure(before, now)]
     sections.insert(0, head_section(study, rungs, last.sentence, store, pictures))
     sections.append(diagnosis_section(f"What is missing from the newest model, {newest}", last, now))
+    progress.enter(SUGGESTING)
     if configuration is not None:
         sections.append(_next(store, study_id, configuration))
     sections.append(provenance_section(study, store))

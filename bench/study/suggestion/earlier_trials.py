@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.json_types import Values
 from bench.store import Experiment, Store
-from bench.study.extend import note_for
+from bench.study.models.study import note_for
 from bench.study.suggestion.options import Choice
 from bench.study.suggestion.suggested import Came, Suggested
 from compensator.lab.effects.catalogue import effect_named

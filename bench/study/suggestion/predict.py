@@ -10,9 +10,11 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import Equipment, is_simulated
 from bench.errors import BenchError
 from bench.runs.in_memory import InMemoryBench
+from bench.study.models.stages import CHOOSING, SIMULATING
 from bench.study.suggestion.dynamics import dynamics_of
 from bench.study.suggestion.options import Choice
 from bench.study.suggestion.twin import Twin
+from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fitted import Fit
@@ -29,12 +31,13 @@ def predicted(fit: Fit, configuration: BenchConfiguration, found: Sequence[Choic
     Raises:
         StudyError: the model or the rig does not say how the joint moves.
     """
+    progress.enter(SIMULATING)
     dynamics = dynamics_of(fit, configuration.rig)
     cold = is_simulated(configuration)  # a simulated joint is made anew for each experiment
     twin = Twin(dynamics, configuration.rig, _temperature_c(fit.dataset, cold))
     options = []
     with InMemoryBench(configuration, Equipment(twin, twin)) as bench:
-        for choice in found:
+        for choice in progress.each(found):
             try:
                 recordings = [bench.record(plan, choice.kind) for plan in choice.plans]
             except (BenchError, DriveError):
@@ -65,7 +68,9 @@ def choose(
     Raises:
         StudyError, LabError: as `predicted` and `suggest`.
     """
-    suggestion = suggest(fit, diagnosis, predicted(fit, configuration, found, once), most)
+    options = predicted(fit, configuration, found, once)
+    progress.enter(CHOOSING)
+    suggestion = suggest(fit, diagnosis, options, most)
     by_name = {choice.name: choice for choice in found}
     return suggestion, [by_name[pick.name] for pick in suggestion.picks]
 

@@ -7,14 +7,16 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
 from bench.store import Experiment, Store
 from bench.study.errors import StudyError, lab_errors
-from bench.study.extend import note_for
 from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
+from bench.study.models.stages import DIAGNOSING, FITTING, SUGGESTION
+from bench.study.models.study import note_for
 from bench.study.selection import Criterion
 from bench.study.suggestion.earlier_trials import kept_out, without
 from bench.study.suggestion.options import Choice, choices
 from bench.study.suggestion.predict import choose
 from bench.study.suggestion.suggested import KeptOut, PairOfRivals, Suggested, SuggestedTrial
+from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.next_trial.confounded import shows_from_rest
@@ -23,6 +25,7 @@ from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
 MOST_TRIALS = 6
 
 
+@progress.stages(SUGGESTION)
 def suggest(
     store: Store,
     study_id: int,
@@ -56,7 +59,9 @@ def suggest(
             "of its bench with --config"
         )
     configuration = with_friction(store, configuration)
+    progress.enter(FITTING)
     fit = material.fit_of(model)
+    progress.enter(DIAGNOSING)
     diagnosis = diagnosis_of_model(material, model, fit)
     with lab_errors():
         if diagnosis.verdict == "data-problem":

@@ -4,6 +4,7 @@ from pydantic import Field
 
 from bench.json_types import Json, Number
 from bench.study.models.base import StudyModel
+from bench.study.models.study import Extended
 
 
 class PairOfRivals(StudyModel):
@@ -61,3 +62,10 @@ class Came(StudyModel):
     effect: str
     predicted: Number
     came: float | None = Field(description="null: it is no rival any more")
+
+
+class NextRound(StudyModel):
+    """What was picked up since the last round, and what is to be recorded next."""
+
+    extended: Extended | None = Field(description="null: nothing was recorded for the study since the last round")
+    suggested: Suggested

@@ -12,8 +12,9 @@ where two or more of them leave nothing.
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from compensator.lab import progress
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, explained_part
 from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
@@ -24,6 +25,8 @@ from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
 MOST_TRIED = 3  # in the place of a curve that has no name
+
+TRYING = "Trying formulas beside each other"
 
 Change = Literal["add", "swap", "drop"]
 
@@ -72,29 +75,43 @@ class Search:
         return tuple(name for name in self.fit.names if name not in self.start.names)
 
 
-def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None) -> Search:
-    """Add effects while a diagnosis names one, and keep the earlier ones honest.
+def stages_of(most: int) -> tuple[str, ...]:
+    """Stages of a search that adds so many effects at most, as whoever waits for it is told of them."""
+    return (*(_adding(number) for number in range(1, most + 1)), TRYING)
+
+
+def _adding(number: int) -> str:
+    return f"Adding effect {number}, and judging the others anew"
+
+
+def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None, outset: float | None = None) -> Search:
+    """Add effects while a diagnosis names one that is not slight, and keep the earlier ones honest.
 
     Args:
         fit: the model to begin with; its own effects stay.
         most: effects that are added at most.
         first: diagnosis of that model, where it is known.
+        outset: relative held-out error, 0..1, of the model that effects were added to before; None: of this one. What
+            they explain says what is slight.
 
     Raises:
         UnusableDataError: as `diagnose`.
     """
-    found = _forward(fit, most, first or diagnose(fit))
+    outset = held_out(fit).relative if outset is None else outset
+    found = _forward(fit, most, first or diagnose(fit), outset)
     if found.last.verdict != "unknown-effect":
         return found
     room = most - len(found.added)
-    further = _past_curve(found.fit, room, found.last) if room > 1 else None
+    further = _past_curve(found.fit, room, found.last, outset) if room > 1 else None
     return found if further is None else Search(fit, (*found.steps, *further.steps), further.last)
 
 
-def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
-    """As long as a diagnosis names an effect. Arguments as `search`."""
+def _forward(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search:
+    """As long as a diagnosis names an effect that is not slight. Arguments as `search`."""
     start, steps, undecided = fit, [], set[str]()
-    while diagnosis.verdict == "missing" and len(fit.names) < len(start.names) + most:
+    explained = explained_part(outset, held_out(fit).relative)
+    while _is_to_add(diagnosis, explained) and len(fit.names) < len(start.names) + most:
+        progress.enter(_adding(len(fit.names) - len(start.names) + 1))
         name, *rivals = diagnosis.classes[0]
         added = _step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training))
         steps.append(replace(added, rivals=tuple(rivals)))
@@ -104,13 +121,18 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis) -> Search:
         if set(steps[-1].fit.names) in [set(start.names), *(set(step.fit.names) for step in steps[:-1])]:
             undecided.add(name)  # the same model again: the trials do not decide, and the search goes on without it
         fit = steps[-1].fit
+        explained = explained_part(outset, steps[-1].held_out.relative)
         # what other trials are not predicted better with is not added again before the model has something else
         with withheld(undecided | {step.effect for step in dropped}):
             diagnosis = diagnose(fit)
     return Search(start, tuple(steps), diagnosis)
 
 
-def _past_curve(fit: Fit, most: int, unknown: Diagnosis) -> Search | None:
+def _is_to_add(diagnosis: Diagnosis, explained: float) -> bool:
+    return diagnosis.verdict == "missing" and diagnosis.slight_one(explained) is None
+
+
+def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Search | None:
     """From a model that seems to lack what has no name: the first way by formulas that leaves nothing; None without.
 
     A single formula is none: it was held against the curve already.
@@ -119,11 +141,13 @@ def _past_curve(fit: Fit, most: int, unknown: Diagnosis) -> Search | None:
         fit: the model.
         most: effects that are added at most.
         unknown: its diagnosis.
+        outset: as `search`.
     """
     sure = [one for one in _likely(unknown) if one.rows == "sliding" and one.gain.low > 0.0]
-    for one in sure[:MOST_TRIED]:
+    progress.enter(TRYING)
+    for one in progress.each(sure[:MOST_TRIED]):
         named = replace(unknown, verdict="missing", classes=[(one.effect.name,)])
-        found = _forward(fit, most, named)
+        found = _forward(fit, most, named, outset)
         if len(found.added) > 1 and _leaves_nothing(found.last):
             return found
     return None

@@ -8,7 +8,7 @@ import numpy as np
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS, typical_step_s
+from compensator.lab.recordings.gaps import LONGEST_GAP_PERIODS, typical_step_s
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 MOST_DUTY = 1.05  # rounding included

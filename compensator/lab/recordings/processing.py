@@ -14,12 +14,12 @@ from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.driven import driven_from_outside
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.gaps import is_before_gap, typical_step_s
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
 from compensator.lab.recordings.recording import FloatArray, Recording
 from compensator.lab.recordings.regimes import BoolArray
 
 DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
-LONGEST_GAP_PERIODS = 5.0
 REGULAR_SHARE = 0.05  # of the period: jitter that counts as regular sampling
 SATURATED_DUTY = 0.98
 EDGE_PERIODS = 3.0  # of the final cut-off, dropped at both ends of a trial, where the filter starts from nothing
@@ -66,21 +66,6 @@ def sample_rate_hz(recording: Recording) -> float:
             f"recording '{recording.name}' has {len(time)} sample(s); record longer, or leave it out"
         )
     return 1.0 / typical_step_s(time)
-
-
-def typical_step_s(time_s: FloatArray) -> float:
-    """The step between samples that half of the recorded time is not longer than.
-
-    A drive that is polled may answer twice at once and then not for a while, so that steps of 1 and 14 ms alternate:
-    their median is the one or the other by a hair, and every step of 14 ms would be a gap. Most of the time passes in
-    the long ones.
-
-    Args:
-        time_s: rising, at least two samples.
-    """
-    steps = np.sort(np.diff(time_s))
-    passed = np.cumsum(steps)
-    return float(steps[np.searchsorted(passed, 0.5 * passed[-1])])
 
 
 def shortest_samples(rate_hz: float, cutoff_hz: float) -> int:
@@ -177,8 +162,7 @@ def _usable(
     if "duty" in recording.channels:
         good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
     good &= ~driven_from_outside(raw_time, position, effort)
-    steps = np.diff(raw_time)
-    before_gap = np.append(steps > LONGEST_GAP_PERIODS * typical_step_s(raw_time), False)
+    before_gap = is_before_gap(raw_time)
     after_gap = np.roll(before_gap, 1)
     in_gap = before_gap[np.searchsorted(raw_time, time, side="right") - 1]
     edge_s = EDGE_PERIODS / cutoff_hz

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.processing import LONGEST_GAP_PERIODS, typical_step_s
+from compensator.lab.recordings.gaps import LONGEST_GAP_PERIODS, typical_step_s
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 SHORTEST_S = 0.1  # less is a sample or two that were lost and filled up with the last one

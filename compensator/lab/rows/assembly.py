@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from compensator.lab import progress
 from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.errors import NeverSlidesError, UnusableDataError
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
@@ -58,7 +59,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     noise = _velocity_noise(signals, facts, cutoff)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))
-    trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in signals])
+    trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in progress.each(signals)])
     plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
     settled = replace(plain, trials=_on_one_flank(trials), cache={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))

@@ -52,6 +52,16 @@ def test_what_was_added_first_and_helps_no_more_is_dropped():
     assert found.added == ("spring",)
 
 
+@pytest.mark.parametrize(("outset", "added"), [(None, ("spring",)), (0.2, ())])
+def test_what_is_slight_beside_what_was_added_before_is_not_added(outset, added):
+    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    found = diagnose(fit)
+    small = replace(found.candidates[0], before=0.0106, after=0.0103, gain=Gain(0.03, 0.01, 0.06))
+    first = replace(found, candidates=[small, *found.candidates[1:]])
+    assert search(fit, most=1, first=first, outset=outset).added == added
+
+
 @pytest.mark.parametrize("there", [False, True])
 def test_what_made_up_for_a_name_that_has_given_way_is_dropped(monkeypatch, there):
     laws = [PLANTED["load_friction"], PLANTED["position_periodic_friction"]][: 1 + there]

@@ -55,15 +55,19 @@ async function request(path, options = {}) {
 export async function get(path, query = {}, { timeout_ms = 0, signal, job } = {}) {
   const pairs = Object.entries(query).filter(([, value]) => value !== "" && value !== null && value !== undefined);
   const search = pairs.length ? `?${new URLSearchParams(pairs)}` : "";
-  return (await request(path + search, { headers: headers(job ? { "X-Job": job } : {}), signal: signal ?? timeLimit(timeout_ms) })).json();
+  return (await request(path + search, { headers: headers(named(job)), signal: signal ?? timeLimit(timeout_ms) })).json();
+}
+
+function named(job) {
+  return job ? { "X-Job": job } : {};
 }
 
 function timeLimit(timeout_ms) {
   return timeout_ms ? AbortSignal.timeout(timeout_ms) : undefined;
 }
 
-export async function post(path, body = {}, timeout_ms = 0, { signal = timeLimit(timeout_ms) } = {}) {
-  const options = { method: "POST", headers: headers({ "Content-Type": "application/json" }), body: JSON.stringify(body), signal };
+export async function post(path, body = {}, timeout_ms = 0, { signal = timeLimit(timeout_ms), job } = {}) {
+  const options = { method: "POST", headers: headers({ "Content-Type": "application/json", ...named(job) }), body: JSON.stringify(body), signal };
   return (await request(path, options)).json();
 }
 
@@ -83,8 +87,8 @@ export async function remove(path) {
 }
 
 // the file is fetched with the token and handed over as a blob: the token never stands in an address
-export async function download(path, name) {
-  const response = await request(path, { headers: headers() });
+export async function download(path, name, { signal, job } = {}) {
+  const response = await request(path, { headers: headers(named(job)), signal });
   save(name, await response.blob());
 }
 

@@ -36,7 +36,8 @@ export function livePlot(place, { live, state }) {
   const boxes = CHANNELS.map((one) => h("input", { type: "checkbox", checked: !one.off, value: one.name }));
   const freeze = h("input", { type: "checkbox", id: "freeze" });
   const seconds = h("select", { "aria-label": "Shown time" }, SECONDS.map(([value, text]) => h("option", { value }, text)));
-  const picture = h("div");
+  const picture = h("div", { class: "live-plots" });
+  place.className = "live";
   replace(place, progress, outcome, h("div", { class: "live-now" }, joint, h("div", {}, readings, age)), h("div", { class: "row centre" }, h("label", { class: "inline" }, freeze, "freeze"), seconds,
     h("details", {}, h("summary", {}, "Channels"), h("div", { class: "row centre" },
       CHANNELS.map((one, index) => h("label", { class: "inline" }, boxes[index], one.unit ? `${one.text} [${shownUnit(one.unit).unit}]` : one.text))))), picture, note, loads);

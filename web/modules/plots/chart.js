@@ -39,6 +39,7 @@ export class Chart extends EventTarget {
     gestures(this.canvas, this);
     this.observer = new ResizeObserver(() => {
       this.#width = this.canvas.clientWidth;
+      this.height = this.canvas.clientHeight || height; // where its card has no room for all of it
       this.#theme = null;
       this.redraw();
     });

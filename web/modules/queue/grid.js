@@ -2,8 +2,8 @@
 
 import { h, replace } from "../ui/dom.js";
 import { numberOrText, resolve } from "../ui/form.js";
-import { unitOf, withUnit } from "../ui/format.js";
-import { toSi } from "../ui/units.js";
+import { number, unitOf, withUnit } from "../ui/format.js";
+import { toShown, toSi } from "../ui/units.js";
 
 const FIRST = ["load_kg"];
 
@@ -12,7 +12,9 @@ export class Grid {
 
   // schema: of the kind's parameters. Those that are lists already are not varied
   constructor(schema) {
-    this.names = Object.entries(schema.properties ?? {}).filter(([, property]) => !["array", undefined].includes(resolve(property, schema).type)).map(([name]) => name);
+    const properties = Object.entries(schema.properties ?? {}).map(([name, property]) => [name, resolve(property, schema)]);
+    this.properties = Object.fromEntries(properties.filter(([, { type }]) => !["array", undefined].includes(type)));
+    this.names = Object.keys(this.properties);
     this.list = h("div", { class: "form" });
     this.more = h("button", { type: "button", class: "small", onclick: () => this.#add(this.#free()[0]) }, "Vary another one");
     this.element = h("div", {}, this.list, h("div", { class: "row" }, this.more));
@@ -32,11 +34,14 @@ export class Grid {
   }
 
   #add(name) {
-    const number = this.#rows.length + 1;
-    const choice = h("select", { "aria-label": `Parameter ${number}` }, this.names.map((one) => h("option", { value: one, selected: one === name }, withUnit(one))));
-    const input = h("input", { "aria-label": `Values of parameter ${number}`, placeholder: "values, such as 0, 0.05, 0.1", autocomplete: "off" });
+    const place = this.#rows.length + 1;
+    const choice = h("select", { "aria-label": `Parameter ${place}` }, this.names.map((one) => h("option", { value: one, selected: one === name }, withUnit(one))));
+    const input = h("input", { "aria-label": `Values of parameter ${place}`, autocomplete: "off" });
+    const example = () => Object.assign(input, { placeholder: `values, such as ${exampleOf(choice.value, this.properties[choice.value])}` });
+    choice.addEventListener("change", example);
+    example();
     const row = { choice, input };
-    const drop = h("button", { type: "button", class: "small", "aria-label": `Do not vary parameter ${number}`, onclick: () => {
+    const drop = h("button", { type: "button", class: "small", "aria-label": `Do not vary parameter ${place}`, onclick: () => {
       this.#rows.splice(this.#rows.indexOf(row), 1);
       this.#shown();
     } }, "×");
@@ -49,6 +54,16 @@ export class Grid {
     replace(this.list, this.#rows.map((row) => row.element));
     this.more.hidden = !this.#free().length;
   }
+}
+
+// three values of a parameter in the unit that its field names: about its default, within its limits
+export function exampleOf(name, { type, enum: choices, default: usual, minimum = -Infinity, maximum = Infinity }) {
+  if (choices) return choices.slice(0, 3).join(", ");
+  if (type === "boolean") return "false, true";
+  if (type === "integer") return [0, 1, 2].map((more) => Math.min((usual ?? Math.max(minimum, 1)) + more, maximum)).join(", ");
+  if (type !== "number") return "a, b";
+  const about = usual ? [0.5, 1, 1.5].map((share) => share * usual) : [0, 0.05, 0.1];
+  return about.filter((value) => value >= minimum && value <= maximum).map((value) => number(toShown(value, unitOf(name)), 3)).join(", ");
 }
 
 function inSiUnits(name, value) {

@@ -13,7 +13,7 @@ const TOLD = { bench: "the bench", recording: "set point and effort", "stand-in"
 export function closedLoop(place, path, { model_id, linked }) {
   const answer = h("div");
   const ask = async (button, refine, busy) => {
-    const found = await patiently(answer, "closed-loop", busy, (signal) => get(`${path}/closed-loop`, { model_id, refine }, { signal }), { button });
+    const found = await patiently(answer, "closed-loop", busy, (signal, job) => get(`${path}/closed-loop`, { model_id, refine }, { signal, job }), { button });
     if (found) show(answer, found, linked);
   };
   const simulate = h("button", { type: "button" }, "Simulate");

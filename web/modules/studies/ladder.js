@@ -6,6 +6,9 @@ import { interval, number, percent } from "../ui/format.js";
 import { colour } from "../ui/colours.js";
 import { draw } from "../plots/plotly.js";
 
+const AXIS_PX = 72; // what the axis at the left takes
+const WORD_PX = 76; // of the longest words of effects
+
 export async function ladderPlot(place, ladder, current) {
   const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });
   const floor = floorValue(ladder.floor);
@@ -21,7 +24,15 @@ export async function ladderPlot(place, ladder, current) {
   ];
   const shapes = floor === null ? [] : [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 100 * floor, y1: 100 * floor, line: { color: colour("green"), dash: "dot", width: 2 } }];
   const annotations = floor === null ? [] : [{ xref: "paper", x: 0.5, y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];
-  await draw(plot, traces, { height: 280, shapes, annotations, xaxis: { type: "category" }, yaxis: { title: { text: "relative error [%]" }, rangemode: "tozero" } });
+  await draw(plot, traces, { height: 280, shapes, annotations, xaxis: namesBeneath(plot, names), yaxis: { title: { text: "relative error [%]" }, rangemode: "tozero" } });
+}
+
+// half a place on both sides, and a line for each word, so that the last name ends within the picture; where there is
+// no room for words, the numbers of the models alone: the table beneath has their names
+function namesBeneath(plot, names) {
+  const room_px = (plot.clientWidth - AXIS_PX) / names.length;
+  const ticktext = names.map((name) => (room_px < WORD_PX ? name.split(":")[0] : name.replace(/(?<![+−]) /g, "<br>")));
+  return { type: "category", range: [-0.5, names.length - 0.5], tickvals: names, ticktext, tickangle: 0 };
 }
 
 function spread(rungs) {

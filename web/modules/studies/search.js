@@ -10,7 +10,7 @@ export function searchButton(place, path, model_id, done) {
   const answer = h("div");
   const button = h("button", { type: "button" }, "Search by itself");
   button.addEventListener("click", async () => {
-    const found = await patiently(answer, "search", "Adding effects until nothing is missing …", (signal) => post(`${path}/search`, { model_id: model_id() }, 0, { signal }), { button });
+    const found = await patiently(answer, "search", "Adding effects until nothing is missing …", (signal, job) => post(`${path}/search`, { model_id: model_id() }, 0, { signal, job }), { button });
     if (!found) return;
     await done(found.model_id, (target) => told(target, found));
   });

@@ -68,7 +68,7 @@ class Study {
   }
 
   async showLadder() {
-    const ladder = await attempt(this.parts.ladder, () => get(`${this.path}/ladder`));
+    const ladder = await patiently(this.parts.ladder, "ladder", "Reading the models …", (signal, job) => get(`${this.path}/ladder`, {}, { signal, job }));
     if (!ladder) return;
     const rung = ladder.rungs.find((one) => one.model_id === this.model);
     this.parts.verdict.textContent = verdict(ladder, this.model);
@@ -79,7 +79,7 @@ class Study {
 
   async showComparison() {
     const model_id = this.model;
-    const compared = await patiently(this.parts.compare, "compare", "Fitting, and comparing with every trial …", (signal) => get(`${this.path}/compare`, { model_id }, { signal }));
+    const compared = await patiently(this.parts.compare, "compare", "Fitting, and comparing with every trial …", (signal, job) => get(`${this.path}/compare`, { model_id }, { signal, job }));
     if (!compared || model_id !== this.model) return;
     this.compared = compared;
     this.linked?.close();
@@ -93,7 +93,7 @@ class Study {
     const button = h("button", { class: "primary", type: "button", id: "diagnose-now" }, "Diagnose");
     replace(diagnosed);
     button.addEventListener("click", async () => {
-      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal, job) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal, job }), { button, followed: true });
+      const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal, job) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal, job }), { button });
       await this.comparing; // its plots show where effects act
       if (found) diagnosis(diagnosed, found, { add: (effect, place) => this.add(effect, place), finish: await this.finish(), path: this.path, linked: this.linked, effort: this.study.effort });
     });
@@ -130,7 +130,7 @@ class Study {
   }
 
   async fitted(place, body) {
-    const result = await patiently(place, "fit", "Fitting …", (signal) => post(`${this.path}/models`, body, 0, { signal }));
+    const result = await patiently(place, "fit", "Fitting …", (signal, job) => post(`${this.path}/models`, body, 0, { signal, job }));
     if (result) await attempt(place, () => this.changed(result));
   }
 
@@ -235,5 +235,5 @@ function heading(study, path, undo) {
   const held = count("held_out") ? `${count("held_out")} held out` : "each left out in turn to judge";
   return h("div", { class: "row centre between" }, h("div", {}, h("h2", {}, `Study ${study.study_id}: ${study.name}`),
     h("p", { class: "soft" }, `${count("training")} training trials, ${held}. Effort: ${study.effort.name} [${study.effort.unit}]. `,
-      h("a", { href: "#study" }, "All studies"))), h("div", { class: "row centre" }, undo, withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`]])));
+      h("a", { href: "#study" }, "All studies"))), h("div", { class: "row centre" }, undo, withFiles([], [["Report", `Report of study ${study.study_id}`, `${path}/report`, `study-${study.study_id}.html`, "report"]])));
 }

@@ -11,12 +11,12 @@ export function suggestions(place, path, model_id, extended) {
   const answer = h("div");
   const button = h("button", { type: "button" }, "Suggest trials");
   button.addEventListener("click", async () => {
-    const found = await patiently(answer, "suggest", "Simulating what each trial would tell …", (signal) => post(`${path}/suggest`, { model_id: model_id() }, 0, { signal }), { button });
+    const found = await patiently(answer, "suggest", "Simulating what each trial would tell …", (signal, job) => post(`${path}/suggest`, { model_id: model_id() }, 0, { signal, job }), { button });
     if (found) show(answer, path, found, extended);
   });
   const round = h("button", { type: "button", title: "The joint moves when it is the queue's turn" }, "Record the next round");
   round.addEventListener("click", async () => {
-    const made = await patiently(answer, "round", "Adding what was recorded, diagnosing, and simulating what each trial would tell …", (signal) => post(`${path}/rounds`, {}, 0, { signal }), { button: round });
+    const made = await patiently(answer, "round", "Adding what was recorded, diagnosing, and simulating what each trial would tell …", (signal, job) => post(`${path}/rounds`, {}, 0, { signal, job }), { button: round });
     if (!made) return;
     const told = `${spoken(made.suggested.diagnosis)} ${spoken(made.suggested.sentence)} ${queued(made.item_ids.length)}`;
     if (made.extended) await extended(`${made.extended.sentence} ${told}`);
@@ -45,7 +45,7 @@ function show(place, path, found, extended) {
     if (queued) replace(started, h("div", { class: "good", role: "status" }, `${queued.item_ids.length} in the queue. When they have ended, add what was recorded.`));
   } }, "Queue all of them");
   const add = h("button", { type: "button", onclick: async ({ currentTarget: button }) => {
-    const result = await patiently(added, "fit", "Fitting …", (signal) => post(`${path}/trials`, {}, 0, { signal }), { button });
+    const result = await patiently(added, "fit", "Fitting …", (signal, job) => post(`${path}/trials`, {}, 0, { signal, job }), { button });
     if (result) await extended(result.sentence);
   } }, "Add the recorded trials to the study");
   replace(place, h("p", { class: "sentence", role: "status" }, spoken(found.sentence)), found.trials.length > 0 && table("Suggested trials", [

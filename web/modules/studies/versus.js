@@ -21,7 +21,8 @@ export function versusView(place, { rest }) {
     note({ view: "compare", rest: wanted.map(written) });
     if (wanted.some((one) => !one.model_id)) return;
     const models = await patiently(answer, "compare", "Fitting, and comparing with every trial …",
-      (signal) => Promise.all(wanted.map(({ study_id, model_id }) => get(`/studies/${study_id}/compare`, { model_id }, { signal }))));
+      // both at once: the second tells how far it has come
+      (signal, job) => Promise.all(wanted.map(({ study_id, model_id }, at) => get(`/studies/${study_id}/compare`, { model_id }, { signal, job: at > 0 ? job : undefined }))));
     if (!models) return;
     const [first, second] = models;
     replace(said, h("p", { class: "sentence", role: "status" }, verdict(first, second)));

@@ -6,6 +6,7 @@ import { attempt } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { outcome, withFiles } from "../ui/files.js";
 import { when } from "../ui/format.js";
+import { removeButton } from "../ui/removal.js";
 
 const EACH = 10;
 const NOTHING = "Nothing has been run yet. Start an experiment on the Bench, or import a recording set.";
@@ -21,7 +22,7 @@ export function experimentList(place, choose) {
   const refresh = () => attempt(list, async () => {
     const page = await get("/experiments", { tag, offset, limit: EACH });
     const nothing = tag ? `No experiment has the tag '${tag}'.` : NOTHING;
-    replace(list, page.items.length ? experimentTable(page.items, choose) : h("p", { class: "soft" }, nothing), pager(page, turn));
+    replace(list, page.items.length ? experimentTable(page.items, choose, refresh) : h("p", { class: "soft" }, nothing), pager(page, turn));
     return page.items;
   });
   const wanted = h("input", { type: "search", placeholder: "all", onchange: ({ target }) => {
@@ -39,7 +40,9 @@ function pager(page, turn) {
   return h("div", { class: "actions" }, button("Newer", newer), button("Older", page.next_offset));
 }
 
-function experimentTable(items, choose) {
+function experimentTable(items, choose, changed) {
+  const removal = ({ experiment_id: number }, place) => removeButton(place, { what: `experiment ${number}`, loses: "with its trials and all that was recorded in them",
+    path: `/experiments/${number}`, done: changed });
   return table("Experiments", [
     { title: "Experiment", number: true, cell: (one) => one.experiment_id },
     { title: "Kind", cell: (one) => one.kind },
@@ -48,7 +51,7 @@ function experimentTable(items, choose) {
     { title: "Outcome", cell: (one) => outcome(one) },
     { title: "Note and tags", cell: annotation },
     { title: "", cell: (one) => withFiles(
-      [h("button", { class: "small", type: "button", "aria-label": `Trials of experiment ${one.experiment_id}`, onclick: () => choose(one.experiment_id) }, "Trials")],
+      (place) => [h("button", { class: "small", type: "button", "aria-label": `Trials of experiment ${one.experiment_id}`, onclick: () => choose(one.experiment_id) }, "Trials"), removal(one, place)],
       [["Export", `Recording set of experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/recording-set`, `experiment-${one.experiment_id}.zip`],
         ["Parquet", `Parquet of experiment ${one.experiment_id}`, `/experiments/${one.experiment_id}/parquet`, `experiment-${one.experiment_id}.parquet`]]) },
   ], items);

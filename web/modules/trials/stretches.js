@@ -2,6 +2,7 @@
 // thins what it sends, so a shorter stretch of as many points shows more; the finest that covers a view is drawn.
 
 import { get } from "../app/api.js";
+import { firstFrom } from "../plots/thin.js";
 
 const POINTS = 4000; // of the whole trial; the extremes of each channel are among them
 const CLOSER_POINTS = 9000; // of a stretch: of a view and as much on both sides, so that it can be moved at once
@@ -11,6 +12,20 @@ const WIDE_CLOSER = 3.2; // and a stretch, which is read three times as wide
 
 const numbers = (values) => Float64Array.from(values, (value) => value ?? NaN);
 const covers = (one, [from, to], [low, high]) => one.from <= Math.max(from, low) && one.to >= Math.min(to, high);
+
+// where nothing was recorded, a row of which nothing is known: no line is drawn from one side to the other
+export function interrupted({ channels, gaps = [] }) {
+  const { time_s } = channels;
+  const inside = gaps.filter(([from, to]) => from >= time_s[0] && to <= time_s.at(-1));
+  if (!inside.length) return channels;
+  const whole = Object.fromEntries(Object.entries(channels).map(([name, values]) => [name, [...values]]));
+  for (const [from, to] of inside) {
+    const middle = (from + to) / 2;
+    const at = firstFrom(whole.time_s, middle);
+    for (const [name, values] of Object.entries(whole)) values.splice(at, 0, name === "time_s" ? middle : null);
+  }
+  return whole;
+}
 
 export class Stretches {
   #kept = []; // {from, to, whole, channels}; the newest last, the whole trial first
@@ -52,7 +67,7 @@ export class Stretches {
 
   async #read({ points, from_s, to_s }, signal) {
     const answer = await get(`/trials/${this.trial_id}/samples`, { channels: this.channels.join(","), points, from_s, to_s }, { signal });
-    const channels = Object.fromEntries(Object.entries(answer.channels).map(([name, values]) => [name, numbers(values)]));
+    const channels = Object.fromEntries(Object.entries(interrupted(answer)).map(([name, values]) => [name, numbers(values)]));
     // so few were asked for, or are there, that none was left out: nothing finer can be had
     const complete = answer.rows_returned >= answer.rows_recorded || answer.rows_returned < points / (2 * this.channels.length);
     return { channels, complete, from: from_s ?? channels.time_s[0] ?? 0, to: to_s ?? channels.time_s.at(-1) ?? 1 };

@@ -37,9 +37,9 @@ export async function attempt(place, action, { button = null, busy = "", again =
 const USUAL_S = { "challenge easy": 12, "challenge medium": 12, "challenge hard": 12, fit: 4, compare: 4, diagnose: 10, search: 30, suggest: 15, round: 30, "closed-loop": 10, report: 15, example: 2 };
 
 // runs what takes a while: `place` says what is done now, for how long it has run and about how long it still takes, and
-// cancels it. action(signal, job): the request; the service ends what it computes when the request is broken off. `followed`:
-// it goes under the name `job`, and the service tells how far it has come; of others it is known what they took the last time
-export async function patiently(place, key, words, action, { button = null, again = null, followed = false } = {}) {
+// cancels it. action(signal, job): the request; the service ends what it computes when the request is broken off. One that
+// goes under the name `job` is followed: the service tells how far it has come; of others it is known what they took last
+export async function patiently(place, key, words, action, { button = null, again = null } = {}) {
   const way = new AbortController();
   const expected_s = Number(localStorage.getItem(`took ${key}`)) || USUAL_S[key] || null;
   const begin_ms = performance.now();
@@ -58,7 +58,7 @@ export async function patiently(place, key, words, action, { button = null, agai
   show();
   const timer = setInterval(show, 1000);
   const job = `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}`;
-  if (followed) follow(job, way.signal, (found) => {
+  if (action.length > 1) follow(job, way.signal, (found) => {
     record = found;
     show();
   });
