@@ -65,7 +65,7 @@ def follow(settings: MoteusDriveSettings, rig: Rig, _link: Path, _period_s: floa
     Raises:
         ConfigurationError: it is on a serial port, which is the other program's.
     """
-    from drivers.moteus.follow import follow
+    from drivers.moteus.drive import follow
 
     if not settings.interface:
         raise ConfigurationError(
