@@ -281,3 +281,18 @@ def test_where_nothing_was_recorded_a_line_is_interrupted(call):
         "time_s": [0, 1, 2, 4.5, 7, 8],
         "duty": [1, 2, 3, None, 4, 5],
     }
+
+
+def test_what_is_read_has_a_minus_and_what_is_typed_a_hyphen(call):
+    assert call("ui/format", "[m.number(-0.5), m.number(-1e-7), m.number('triangle-2'), m.percent(-0.05)]") == [
+        "−0.5",
+        "−1e−7",
+        "triangle-2",
+        "−5.00 %",
+    ]
+    assert call("ui/format", "[m.plain(-0.5), m.plain(null)]") == ["-0.5", "–"]
+
+
+def test_a_channel_has_one_name_on_the_whole_page(call):
+    assert call("ui/format", "m.withUnit('current_estimate_a')") == "current from duty [A]"
+    assert call("ui/format", "m.withUnit('current_load_a')") == "load current [A]"

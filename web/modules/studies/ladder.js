@@ -23,7 +23,7 @@ export async function ladderPlot(place, ladder, current) {
       line: { color: colour("orange"), width: 2, dash: "dash" } },
   ];
   const shapes = floor === null ? [] : [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 100 * floor, y1: 100 * floor, line: { color: colour("green"), dash: "dot", width: 2 } }];
-  const annotations = floor === null ? [] : [{ xref: "paper", x: 0.5, y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];
+  const annotations = floor === null ? [] : [{ xref: "paper", x: 0, xanchor: "left", y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];
   await draw(plot, traces, { height: 280, shapes, annotations, xaxis: namesBeneath(plot, names), yaxis: { title: { text: "relative error [%]" }, rangemode: "tozero" } });
 }
 

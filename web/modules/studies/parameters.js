@@ -27,10 +27,17 @@ function breakawayTable({ breakaway }) {
 function parameterTable({ parameters }, title = "Parameters") {
   return table(title, [
     { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
-    { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
+    { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, digitsOf(one))) },
     { title: "Unit", cell: (one) => unitText(one.unit) },
     { title: "Note", cell: (one) => one.note },
   ], parameters);
+}
+
+// as many as its interval leaves to be read: two of half its width
+function digitsOf({ value, low, high }) {
+  const half = (high - low) / 2;
+  if (!(half > 0) || !value) return 3;
+  return Math.min(6, Math.max(3, 2 + Math.ceil(Math.log10(Math.abs(value) / half))));
 }
 
 // "N m s2/rad" -> "N m s²/rad"
