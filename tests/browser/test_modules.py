@@ -296,3 +296,17 @@ def test_what_is_read_has_a_minus_and_what_is_typed_a_hyphen(call):
 def test_a_channel_has_one_name_on_the_whole_page(call):
     assert call("ui/format", "m.withUnit('current_estimate_a')") == "current from duty [A]"
     assert call("ui/format", "m.withUnit('current_load_a')") == "load current [A]"
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "text"),
+    [
+        (0.019969, 0.019937, 0.020001, "0.01997 (0.01994 to 0.02000)"),
+        (-9.13e-5, -3.11e-4, 1.28e-4, "−0.00009 (−0.00031 to 0.00013)"),
+        (152.3, 140.0, 171.0, "152 (140 to 171)"),
+        (2.0, "null", "null", "2"),
+        (1.234567e-9, 1.2e-9, 1.3e-9, "1.23e−9 (1.2e−9 to 1.3e−9)"),
+    ],
+)
+def test_a_parameter_is_written_to_the_place_that_its_interval_leaves(call, value, low, high, text):
+    assert call("studies/parameters", f"m.written({{value: {value}, low: {low}, high: {high}}})") == text

@@ -105,7 +105,7 @@ function grid(context, box, range, view, theme, last) {
   }
   context.textAlign = "center";
   context.textBaseline = "top";
-  const along = ticks(...view, Math.max(2, Math.round((box.right - box.left) / 80)));
+  const along = ticks(...view, Math.max(2, Math.round((box.right - box.left) / 60)));
   for (const value of along) {
     const x = Math.round(xOf(value, view, box)) + 0.5;
     path(context, x, box.top, x, box.bottom, theme.line);
