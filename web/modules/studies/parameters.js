@@ -37,11 +37,15 @@ function parameterTable({ parameters }, title = "Parameters") {
 }
 
 // to the place that the interval leaves to be read: the first digit of half its width, and one more where that is small
-export function written({ value, low, high }) {
+export function written(one) {
+  return interval(one.value, one.low, one.high, writerOf(one));
+}
+
+// what writes the value, and the ends of its interval
+export function writerOf({ low, high }) {
   const half = (high - low) / 2;
   const places = Math.ceil(-Math.log10(half)) + (firstDigit(half) < FEW ? 1 : 0);
-  const show = half > 0 && places <= MOST_PLACES ? (one) => fixed(one, Math.max(0, places)) : (one) => number(one, 3);
-  return interval(value, low, high, show);
+  return half > 0 && places <= MOST_PLACES ? (one) => fixed(one, Math.max(0, places)) : (one) => number(one, 3);
 }
 
 function firstDigit(value) {
