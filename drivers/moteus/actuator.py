@@ -1,7 +1,6 @@
 """One moteus controller on its line: a torque with a time limit out, its registers in."""
 
 from collections.abc import Callable, Sequence
-from math import copysign, nan
 from time import perf_counter
 
 from drivers.actuator.open_buses import check_alone
@@ -9,7 +8,7 @@ from drivers.actuator.reading import Identity, Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from drivers.joint import JointScale
-from drivers.moteus.frames import POSITION, POWERED, Frames, fault_name, registers, state, text_of
+from drivers.moteus.frames import POSITION, Frames, fault_name, reading_of, registers, state, text_of
 from drivers.moteus.opening import Line
 from drivers.moteus.settings import MoteusSettings
 
@@ -126,13 +125,7 @@ class MoteusActuator:
             raise DriveConnectionError(
                 self._settings.device, f"an answer that has not what was asked for: {data.hex(' ')}; check the cable"
             )
-        # the sign of its phase current depends on how its output is set up, that of its torque does not
-        current_a = copysign(found.current_a, found.torque_n_m)
-        fault = fault_name(found)
-        return Reading(
-            asked_s, found.turns * self._counts_per_turn, found.turns_s * self._counts_per_turn, nan, current_a,
-            found.torque_n_m, found.supply_v, found.temperature_c, found.mode in POWERED, fault,
-        )  # fmt: skip
+        return reading_of(found, self._counts_per_turn, asked_s)
 
     def _identify(self) -> Identity:
         """Version and serial number.

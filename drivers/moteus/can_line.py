@@ -47,7 +47,7 @@ class MoteusCanLine:
             DriveConnectionError: one of them does not answer, or the adapter is gone.
         """
         began_s = time.perf_counter()
-        answers = {_answer_id(servo_id): servo_id for servo_id in questions}
+        answers = {answer_id(servo_id): servo_id for servo_id in questions}
         for _ in range(ATTEMPTS):
             self._port.drain()  # what comes late is no answer to this question
             before = {can_id: self._port.number(can_id) for can_id in answers}
@@ -73,14 +73,14 @@ class MoteusCanLine:
             DriveConnectionError: the adapter is gone.
         """
         self._port.drain()
-        before = {servo_id: self._port.number(_answer_id(servo_id)) for servo_id in questions}
+        before = {servo_id: self._port.number(answer_id(servo_id)) for servo_id in questions}
         for servo_id, data in questions.items():
             self._port.send_prepared(_message(servo_id, data, True))
             self._port.drain()
         self._port.wait_for([-1], wait_s)  # which never comes
         found: list[tuple[int, bytes]] = []
         for servo_id, number in before.items():
-            can_id = _answer_id(servo_id)
+            can_id = answer_id(servo_id)
             found += [(servo_id, self._data(can_id))] * (self._port.number(can_id) - number)
         return found
 
@@ -96,7 +96,8 @@ class MoteusCanLine:
         return b"" if heard is None else heard.data
 
 
-def _answer_id(servo_id: int) -> int:
+def answer_id(servo_id: int) -> int:
+    """Identifier of what a controller answers to the host with the id 0."""
     return servo_id << 8 | HOST
 
 

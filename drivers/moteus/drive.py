@@ -1,11 +1,16 @@
-"""The drive contract on one moteus controller."""
+"""The drive contract on one moteus controller, and what listens to one that another host drives."""
 
 from typing import Any
 
 from drivers.actuator.drive import ActuatorDrive, Family
+from drivers.actuator.reading import Reading
+from drivers.can_bus.follower import BusFollower
+from drivers.can_bus.port import EXTENDED, CanPort, Heard
+from drivers.can_bus.settings import BusSettings
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
+from drivers.moteus.can_line import answer_id
 from drivers.moteus.opening import on_line
 from drivers.moteus.settings import MoteusSettings
 
@@ -43,3 +48,24 @@ class MoteusDrive(ActuatorDrive[Any]):  # of MoteusActuator, which is imported w
             lambda: on_line(settings, lambda line, leave: MoteusActuator(line, settings, joint, leave)),
             exchange_all,
         )
+
+
+def follow(bus: BusSettings, servo_id: int, joint: JointScale) -> BusFollower:
+    """Listen to its answers to another host, on a CAN-FD bus. What that host does not ask for is not told.
+
+    Args:
+        bus: how it is reached.
+        servo_id: of the controller.
+        joint: scales and signs.
+
+    Raises:
+        DriveConnectionError: the bus does not open.
+    """
+    from drivers.moteus.frames import part_of_state, reading_of
+
+    def taken(_port: CanPort, heard: Heard) -> Reading | None:
+        found = part_of_state(heard.data)
+        return None if found is None else reading_of(found, joint.counts_per_turn, heard.at_s)
+
+    names = "moteus controller", f"{bus} servo {servo_id}"
+    return BusFollower(bus, answer_id(servo_id), names, taken, joint, state_bits=EXTENDED)

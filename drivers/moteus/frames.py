@@ -3,7 +3,7 @@
 Source: mjbots, "Register reference" of the moteus documentation.
 """
 
-from math import nan
+from math import copysign, nan
 from struct import error
 from typing import Any, NamedTuple
 
@@ -11,10 +11,13 @@ import moteus
 from moteus.moteus import parse_diagnostic_message
 from moteus.protocol import parse_reply
 
+from drivers.actuator.reading import Reading
+
 STOPPED, FAULT, POSITION, TIMEOUT, BRAKE = 0, 1, 10, 11, 15
 POWERED = frozenset({2, 3, 4, POSITION, BRAKE})  # 2 .. 4: about to begin
 LIMITING = 96  # a fault code from here on says what bounds the torque, and is no fault
 LONGEST_TEXT = 48
+_REGISTERS = (0x000, 0x001, 0x002, 0x003, 0x004, 0x00D, 0x00E, 0x00F)  # of `State`, in its order
 
 _FAULTS = {
     32: "calibration fault", 33: "motor driver fault", 34: "over-voltage", 35: "encoder fault",
@@ -88,12 +91,18 @@ def registers(data: bytes) -> dict[int, Any]:
 def state(data: bytes) -> State | None:
     """What an answer says; None where it is none to the question of a cycle."""
     found = registers(data)
-    if not {0x000, 0x001, 0x002, 0x003, 0x004, 0x00D, 0x00E, 0x00F} <= found.keys():
-        return None
-    return State(
-        int(found[0x000]), found[0x001], found[0x002], found[0x003], found[0x004], found[0x00D], found[0x00E],
-        int(found[0x00F]),
-    )  # fmt: skip
+    return _state(found) if set(_REGISTERS) <= found.keys() else None
+
+
+def part_of_state(data: bytes) -> State | None:
+    """What an answer to another host says, who may have asked for less; None where it tells no position or mode."""
+    found = registers(data)
+    return _state(found) if {0x000, 0x001} <= found.keys() else None
+
+
+def _state(found: dict[int, Any]) -> State:
+    mode, *values, fault = (found.get(register, nan) for register in _REGISTERS)
+    return State._make((int(mode), *values, 0 if fault != fault else int(fault)))
 
 
 def text_of(data: bytes) -> bytes:
@@ -105,6 +114,22 @@ def text_of(data: bytes) -> bytes:
     message: Any = Message()
     message.data = data
     return bytes(parse_diagnostic_message(message, 1) or b"")
+
+
+def reading_of(found: State, counts_per_turn: float, asked_s: float) -> Reading:
+    """An answer in SI.
+
+    Args:
+        found: what it says.
+        counts_per_turn: of the rig.
+        asked_s: when it was asked for [s].
+    """
+    # the sign of its phase current depends on how its output is set up, that of its torque does not
+    current_a = copysign(found.current_a, found.torque_n_m)
+    return Reading(
+        asked_s, found.turns * counts_per_turn, found.turns_s * counts_per_turn, nan, current_a, found.torque_n_m,
+        found.supply_v, found.temperature_c, found.mode in POWERED, fault_name(found),
+    )  # fmt: skip
 
 
 def fault_name(found: State) -> str:

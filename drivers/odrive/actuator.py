@@ -59,13 +59,14 @@ class OdriveActuator:
                 f"{settings.watchdog_s:g}, axis0.config.enable_watchdog = True, save_configuration()), and then set "
                 "drive.watchdog_is_set_in_drive = true; `doctor --move` tries it",
             )
-        self.identity = self._identify()
+        # first of all: with two of one id the answer to one question may be taken for that to the next
         version = can_id(settings.node_id, Command.GET_VERSION)  # it says that only where it is asked
         check_alone(
             settings.device,
             f"node_id ({settings.node_id})",
             lambda: port.answers(lambda: port.send(version, remote=True), version, settings.answer_timeout_s),
         )
+        self.identity = self._identify()
         self.switch_off()
         self._forgive_lost_host()
         for command in _SLOW:

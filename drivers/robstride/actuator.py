@@ -50,8 +50,9 @@ class RobstrideActuator(MitActuator):
         self.ranges = chosen_ranges(self.device, settings.model, protocol.MODELS, written)
         self._timeout = protocol.WORD.pack(round(settings.watchdog_s / protocol.TIMEOUT_STEP_S))
         self.switch_off()
-        self.identity = self._identify()
+        # first of all: with two of one id the answer to one question may be taken for that to the next
         self.check_alone()
+        self.identity = self._identify()
         self._check_ranges()
         self._set(Parameter.RUN_MODE, protocol.WORD.pack(protocol.OPERATION_MODE), DriveConfigurationError)
         self._set(Parameter.TIMEOUT, self._timeout, WatchdogError)

@@ -1,16 +1,15 @@
 """`friction-bench drives scan`: what is found on simulated devices, and that its section opens the drive."""
 
 import json
-import subprocess
-import sys
 
 import pytest
+from typer.testing import CliRunner
 
+from bench.cli.app import app
 from bench.cli.operation.drives import found_at
 from bench.control.drive_factory import make_equipment
 from sim_backend.devices.moteus.serve import MoteusBusSettings, serve_moteus
 from tests.devices.device_process import device_process
-from tests.devices.turns import no_turns
 from tests.drivers.conformance.benches import configured
 
 ACCEPTED = {
@@ -20,19 +19,21 @@ ACCEPTED = {
 }
 
 
+pytestmark = pytest.mark.virtual_time
+REAL = pytest.mark.real_wire
+
+
 def scan(*options):
-    words = [sys.executable, "-m", "bench.cli", "drives", "scan", *options]
-    with no_turns():  # as who looks for drives starts it
-        return subprocess.run(words, capture_output=True, text=True, timeout=60)
+    return CliRunner().invoke(app, ["drives", "scan", *options])
 
 
 @pytest.mark.parametrize(
     ("kind", "device", "key", "ids"),
     [
-        ("dynamixel", ("--id", "7", "--joints", "3", "--baud", "0"), "servo_id", [7, 8, 9]),
+        pytest.param("dynamixel", ("--id", "7", "--joints", "3", "--baud", "0"), "servo_id", [7, 8, 9], marks=REAL),
         ("feetech", ("--id", "250", "--joints", "2", "--baud", "0"), "servo_id", [250, 251]),
         ("roboclaw", ("--address", "130", "--baud", "0"), "address", [130]),
-        ("odrive", ("--node", "12"), "node_id", [12]),
+        pytest.param("odrive", ("--node", "12"), "node_id", [12], marks=REAL),
         ("damiao", ("--motor", "5", "--feedback", "37"), "motor_id", [5]),
         ("robstride", ("--motor", "9"), "motor_id", [9]),
         ("moteus", ("--id", "7", "--joints", "2"), "servo_id", [7, 8]),
@@ -45,7 +46,7 @@ def test_it_finds_them_and_what_it_prints_opens_them(kind, device, key, ids):
         bauds = ("--baud", "115200") if kind == "roboclaw" else ("--baud", "1000000")
         place = ("--port", running.port, *bauds) if is_serial else ("--bus", f"slcan:{running.port}")
         done = scan(*place, "--json")
-        assert done.returncode == 0, done.stderr
+        assert done.exit_code == 0, done.output
         found = json.loads(done.stdout)
         assert [one["drive"][key] for one in found if one["drive"]["kind"] == kind] == ids
         assert not running.truth()["powered"]
@@ -74,9 +75,9 @@ def test_nothing_there_is_said_so():
     with device_process("dynamixel", "--baud", "0") as running:
         running.side.ask("link", name="silent")
         found = scan("--port", running.port, "--baud", "1000000")
-    assert found.returncode != 0
-    assert "Nothing answers" in found.stdout + found.stderr
+    assert found.exit_code != 0
+    assert "Nothing answers" in found.output
 
 
 def test_a_place_is_wanted():
-    assert "--port PORT" in scan().stderr
+    assert "--port PORT" in scan().output

@@ -1,6 +1,7 @@
 """The moteus controller as a kind of drive."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import model_validator
@@ -11,7 +12,9 @@ from bench.config.drives.scanning import CanPlace, FoundDrive, SerialPlace
 from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig
+from bench.errors import ConfigurationError
 from drivers.contract import Drive
+from drivers.follower import Follower
 
 if TYPE_CHECKING:
     from drivers.can_bus.settings import BusSettings
@@ -54,6 +57,23 @@ def make(settings: MoteusDriveSettings, rig: Rig) -> Drive:
     place = [values.pop(name) for name in ("interface", "channel", "options")]
     bus = _bus(*place) if settings.interface else None
     return MoteusDrive(MoteusSettings(bus=bus, **values), joint_scale(settings, rig))
+
+
+def follow(settings: MoteusDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
+    """What listens to one that another host drives on the same bus.
+
+    Raises:
+        ConfigurationError: it is on a serial port, which is the other program's.
+    """
+    from drivers.moteus.drive import follow
+
+    if not settings.interface:
+        raise ConfigurationError(
+            f"drive.port is '{settings.port}': an adapter is one program's alone, and nothing is heard beside it. Give "
+            "drive.interface and drive.channel of a CAN-FD bus that is shared (socketcan)"
+        )
+    bus = _bus(settings.interface, settings.channel, settings.options)
+    return follow(bus, settings.servo_id, joint_scale(settings, rig))
 
 
 def simulate() -> Simulate:
@@ -111,6 +131,7 @@ KIND = DriveKind(
     settings=MoteusDriveSettings,
     make=make,
     simulate=simulate,
+    follow=follow,
     scan_serial=scan,
     scan_can=scan_can,
     conformance=(

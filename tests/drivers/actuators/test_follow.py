@@ -4,11 +4,14 @@ import asyncio
 import threading
 import time
 from contextlib import ExitStack, contextmanager
+from math import nan
 
 import can
 import damiao_motor
+import moteus
 import numpy as np
 import pytest
+from moteus.pythoncan_device import PythonCanDevice
 from odrive_can.odrive import ODriveCAN
 
 from bench.errors import ConfigurationError
@@ -23,6 +26,7 @@ from drivers.robstride import protocol as robstride
 from sim_backend.devices.cubemars.motor import CubemarsMotor
 from sim_backend.devices.damiao.motor import DamiaoMotor
 from sim_backend.devices.mit.serve import MitSimulation, serve_mit
+from sim_backend.devices.moteus.serve import MoteusBusSettings, serve_moteus
 from sim_backend.devices.odrive.serve import OdriveSimulation, serve_odrive
 from sim_backend.devices.robstride.motor import RobstrideMotor
 from tests.drivers.conformance.benches import configured
@@ -86,6 +90,27 @@ def odrive_host(bus):
     asyncio.run(drive())
 
 
+def moteus_host(bus):
+    """The library asks for what it does by default, and for the current."""
+
+    async def drive():
+        device = PythonCanDevice(interface="virtual", channel=bus.channel_id, ignore_config=True, disable_brs=True)
+        resolution = moteus.QueryResolution()
+        resolution.q_current = moteus.F32
+        controller = moteus.Controller(id=1, query_resolution=resolution, transport=moteus.Transport([device]))
+        await controller.set_stop()
+        for number in range(CYCLES):
+            await controller.set_position(
+                position=nan, velocity=0.0, kp_scale=0.0, kd_scale=0.0, watchdog_timeout=0.5, query=True,
+                feedforward_torque=TORQUE_N_M if number // 20 % 2 == 0 else -TORQUE_N_M,
+            )  # fmt: skip
+            await asyncio.sleep(PERIOD_S)
+        await controller.set_stop()
+        device.close()
+
+    asyncio.run(drive())
+
+
 def mit(motor, channel, top, motor_id=1):
     settings = MitSimulation(interface="virtual", channel=channel, ranges=top[:3], motor_id=motor_id)
     return lambda: serve_mit(motor, settings)
@@ -95,6 +120,7 @@ HOSTS = {
     "damiao": (damiao_host, mit(DamiaoMotor, "damiao", damiao.MODELS["DMH3510"]), {"model": "DMH3510"}),
     "cubemars": (cubemars_host, mit(CubemarsMotor, "cubemars", cubemars.MODELS["AK40-10"]), {"model": "AK40-10"}),
     "robstride": (robstride_host, mit(RobstrideMotor, "robstride", robstride.MODELS["RS02"], 127), {"model": "RS02"}),
+    "moteus": (moteus_host, lambda: serve_moteus(MoteusBusSettings(interface="virtual", channel="moteus")), {}),
     "odrive": (odrive_host, lambda: serve_odrive(OdriveSimulation(interface="virtual", channel="odrive")), {}),
 }
 
@@ -149,6 +175,11 @@ def test_a_bus_on_which_nothing_comes_is_said_so(tmp_path):
     with pytest.raises(ConfigurationError, match=r"0 samples .* drive it on the bus nobody, and have it answer"):
         record(follower, configuration, "nothing", {}, 1.0, lambda: next(asked))
     follower.close()
+
+
+def test_a_moteus_behind_an_adapter_of_another_program_cannot_be_heard(tmp_path):
+    with pytest.raises(ConfigurationError, match=r"drive\.port is '/dev/fdcanusb': .* drive\.interface"):
+        follower_of(configured(kind="moteus", port="/dev/fdcanusb"), tmp_path / "unused", 0.01)
 
 
 def test_a_serial_adapter_listens_only():

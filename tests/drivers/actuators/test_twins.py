@@ -6,6 +6,9 @@ import pytest
 
 from drivers.can_bus.settings import BusSettings
 from drivers.errors import DriveConfigurationError
+from drivers.moteus.actuator import MoteusActuator
+from drivers.odrive.actuator import OdriveActuator
+from drivers.robstride.actuator import RobstrideActuator
 from sim_backend.devices.cubemars.motor import CubemarsMotor
 from sim_backend.devices.damiao.motor import DamiaoMotor
 from sim_backend.devices.mit.serve import MitSimulation, serve_mit
@@ -47,6 +50,22 @@ def test_two_of_one_id_are_refused_before_motion(kind, serve, words):
         with pytest.raises(DriveConfigurationError, match=rf"\d+ answers came to one question: .*{words}"):
             drive.open(PERIOD_S)
         assert not any(one.device.axis.power.on for one in running)
+
+
+@pytest.mark.parametrize(
+    ("kind", "serve", "actuator"),
+    [
+        pytest.param(*case.values[:2], actuator, id=case.id)
+        for case, actuator in zip(CASES[2:], (RobstrideActuator, OdriveActuator, MoteusActuator), strict=True)
+    ],
+)
+def test_they_are_refused_before_one_is_asked_who_it_is(kind, serve, actuator, monkeypatch):
+    """The answer of one may be taken for that of the other to the next question."""
+    monkeypatch.setattr(actuator, "_identify", lambda _actuator: pytest.fail("it was asked who it is"))
+    with ExitStack() as stack:
+        _, drive = bus_of(kind, serve, 2, stack)
+        with pytest.raises(DriveConfigurationError, match="answers came to one question"):
+            drive.open(PERIOD_S)
 
 
 @pytest.mark.parametrize(("kind", "serve", "words"), CASES)

@@ -9,11 +9,11 @@ one within 25 mA (5 g at the tip), and two drivers differ by no more.
 
 import pytest
 
-from tests.drivers.conformance.benches import BENCHES, PATIENT, TCP
+from tests.drivers.conformance.benches import BENCHES, PATIENT
 from tests.drivers.conformance.campaign import A_PER_KG, LOADS_KG, STEP_LOAD_KG, Campaign
 
 TOLERANCE_A = 0.025
-pytestmark = pytest.mark.real_wire("roboclaw", *TCP)
+pytestmark = pytest.mark.real_wire("roboclaw", "canopen-socketcand")  # a serial port, and the network
 
 
 @pytest.fixture(scope="module")
