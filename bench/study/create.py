@@ -11,8 +11,10 @@ from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import keep_model
 from bench.study.material import Definition, Material, facts_of, load, material_of
+from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from bench.study.models.study import ModelName, Study, StudyName
 from bench.study.selection import keep, split
+from compensator.lab import progress
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.effort import choose_effort
@@ -22,6 +24,7 @@ from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.dataset import RowChoice
 
 
+@progress.stages(CHANGE)
 def create_study(
     store: Store,
     name: str,
@@ -66,7 +69,7 @@ def definition_of(
     trials = _trials(store, experiment_ids, where)
     facts = _facts(store, experiment_ids)
     with lab_errors():
-        recordings = [store.recording(trial.id) for trial in trials]
+        recordings = [store.recording(trial.id) for trial in progress.each(trials)]
         told = all(LOAD in one.channels and bool(np.isfinite(one.channels[LOAD]).any()) for one in recordings)
         effects = _base_effects(base) if base else base_model(store, experiment_ids, facts, told)
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
@@ -104,8 +107,10 @@ def _create(store: Store, name: str, definition: Definition) -> Study:
             f"the trials of hold-out {', '.join(definition.hold_out)} have no row that counts ({definition.rows}); "
             "hold out trials in which the joint moves, or count more rows"
         )
+    progress.enter(FITTING)
     fit = draft.fit(list(definition.base))  # before anything is kept: a study has a model from the start
     material = replace(draft, study_id=store.create_study(name, definition.to_json()))
+    progress.enter(JUDGING)
     keep_model(store, material.study_id, None, fit)
     return _describe(store, material)
 

@@ -20,3 +20,15 @@ def test_names_of_models_end_within_the_plot(open_page, service, width):
         assert plot["x"] <= box["x"]
         assert box["x"] + box["width"] <= plot["x"] + plot["width"]
         assert box["y"] + box["height"] <= plot["y"] + plot["height"]
+
+
+def test_it_keeps_to_its_card_when_its_step_is_opened_later(open_page, service):
+    path = study_path(service, "ladder later")
+    page = open_page(f"#study/{path.split('/')[-1]}/compare", width=1440)
+    page.locator("table.heat button.cell").first.wait_for()
+    page.get_by_role("link", name="5 Result").click()
+    page.locator(".ladder .xtick").first.wait_for()
+    card = page.locator(".panel", has=page.locator(".ladder")).last.bounding_box()
+    drawing = page.locator(".ladder .main-svg").first.bounding_box()
+    assert drawing["x"] + drawing["width"] <= card["x"] + card["width"]
+    assert page.locator(".ladder .xtick").first.text_content() == "1:base"

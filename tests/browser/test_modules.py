@@ -281,3 +281,32 @@ def test_where_nothing_was_recorded_a_line_is_interrupted(call):
         "time_s": [0, 1, 2, 4.5, 7, 8],
         "duty": [1, 2, 3, None, 4, 5],
     }
+
+
+def test_what_is_read_has_a_minus_and_what_is_typed_a_hyphen(call):
+    assert call("ui/format", "[m.number(-0.5), m.number(-1e-7), m.number('triangle-2'), m.percent(-0.05)]") == [
+        "−0.5",
+        "−1e−7",
+        "triangle-2",
+        "−5.00 %",
+    ]
+    assert call("ui/format", "[m.plain(-0.5), m.plain(null)]") == ["-0.5", "–"]
+
+
+def test_a_channel_has_one_name_on_the_whole_page(call):
+    assert call("ui/format", "m.withUnit('current_estimate_a')") == "current from duty [A]"
+    assert call("ui/format", "m.withUnit('current_load_a')") == "load current [A]"
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "text"),
+    [
+        (0.019969, 0.019937, 0.020001, "0.01997 (0.01994 to 0.02000)"),
+        (-9.13e-5, -3.11e-4, 1.28e-4, "−0.00009 (−0.00031 to 0.00013)"),
+        (152.3, 140.0, 171.0, "152 (140 to 171)"),
+        (2.0, "null", "null", "2"),
+        (1.234567e-9, 1.2e-9, 1.3e-9, "1.23e−9 (1.2e−9 to 1.3e−9)"),
+    ],
+)
+def test_a_parameter_is_written_to_the_place_that_its_interval_leaves(call, value, low, high, text):
+    assert call("studies/parameters", f"m.written({{value: {value}, low: {low}, high: {high}}})") == text

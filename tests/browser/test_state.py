@@ -116,7 +116,7 @@ def test_a_typing_error_is_marked_before_anything_is_sent_and_leaves_no_record(s
     page.get_by_label("repeats").fill("many")
     page.get_by_text("'many' is no number.").wait_for()
     page.get_by_label("load [g]").fill("-1")
-    page.get_by_text("-1 g is not allowed. At least 0 g.").wait_for()
+    page.get_by_text("−1 g is not allowed. At least 0 g.").wait_for()
     assert page.locator("[aria-invalid=true]").count() == 2
     before = service.client.get("/experiments").json()["items"]
     asked.clear()

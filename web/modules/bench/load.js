@@ -3,6 +3,7 @@
 
 import { h, replace, table } from "../ui/dom.js";
 import { number } from "../ui/format.js";
+import { shownUnit, titled, toShown, withShownUnit } from "../ui/units.js";
 
 export const LOAD = "current_load_a";
 export const HALF = "current_load_half_width_a";
@@ -23,7 +24,7 @@ export function newest(rows) {
   return `${values[at].toFixed(3)}${Number.isFinite(half) ? ` ± ${half.toFixed(3)}` : ""} A`.replaceAll("-", "−");
 }
 
-const grams = (value) => number(1000 * value, 3);
+const weight = (value) => number(toShown(value, "kg"), 3);
 
 // trials with their results -> rows to show; those that looked for no load are left out
 export function loadsOf(trials) {
@@ -40,14 +41,14 @@ export function loadBands(place, trials) {
     return;
   }
   const latest = loads.at(-1);
-  const band = latest.low === null ? "" : ` (95 %: ${grams(latest.low)} to ${grams(latest.high)} g)`;
+  const band = latest.low === null ? "" : ` (95 %: ${weight(latest.low)} to ${weight(latest.high)} ${shownUnit("kg").unit})`;
   replace(place, h("h3", {}, "Reflected load"),
-    h("p", { class: "reading" }, h("strong", {}, `${grams(latest.found)} g`), `${band}${latest.known === null ? "" : `, hung: ${grams(latest.known)} g`}`),
+    h("p", { class: "reading" }, h("strong", {}, `${weight(latest.found)} ${shownUnit("kg").unit}`), `${band}${latest.known === null ? "" : `, hung: ${withShownUnit(latest.known, "kg", 3)}`}`),
     table("Reflected load of each trial", [
       { title: "Trial", cell: (one) => one.name },
-      { title: "Found [g]", number: true, cell: (one) => grams(one.found) },
-      { title: "95 % [g]", number: true, cell: (one) => (one.low === null ? "–" : `${grams(one.low)} to ${grams(one.high)}`) },
-      { title: "Hung [g]", number: true, cell: (one) => (one.known === null ? "–" : grams(one.known)) },
-      { title: "Error [g]", number: true, cell: (one) => (one.known === null ? "–" : grams(one.found - one.known)) },
+      { title: titled("Found", "kg"), number: true, cell: (one) => weight(one.found) },
+      { title: titled("95 %", "kg"), number: true, cell: (one) => (one.low === null ? "–" : `${weight(one.low)} to ${weight(one.high)}`) },
+      { title: titled("Hung", "kg"), number: true, cell: (one) => (one.known === null ? "–" : weight(one.known)) },
+      { title: titled("Error", "kg"), number: true, cell: (one) => (one.known === null ? "–" : weight(one.found - one.known)) },
     ], [...loads].reverse()));
 }

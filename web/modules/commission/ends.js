@@ -3,7 +3,8 @@
 import { post } from "../app/api.js";
 import { h } from "../ui/dom.js";
 import { withFiles } from "../ui/files.js";
-import { capital, number } from "../ui/format.js";
+import { capital } from "../ui/format.js";
+import { withShownUnit } from "../ui/units.js";
 
 const NEEDED = [
   "The switch of the supply, where your hand can reach it.",
@@ -30,7 +31,7 @@ export function beginning({ obstacle, state }, act) {
 export function ending({ state, refusal, first_load: load }) {
   if (state === "refused") return h("div", { class: "problem", role: "alert" }, `Not commissioned: ${refusal}`);
   if (state !== "commissioned") return null;
-  const found = load ? `The trial load of ${number(1000 * load.hung_kg, 4)} g was found as ${number(1000 * load.found_kg, 4)} g. ` : "";
+  const found = load ? `The trial load of ${withShownUnit(load.hung_kg, "kg")} was found as ${withShownUnit(load.found_kg, "kg")}. ` : "";
   return [
     h("div", { class: "good", role: "status" }, `Commissioned. ${found}Keep both files: they are gone when the service ends. Then start the service with them: friction-bench --config bench.toml serve`),
     withFiles([], [["bench.toml", "Download bench.toml", "/commission/bench.toml", "bench.toml"], ["Evidence", "Download the evidence", "/commission/evidence.json", "bench.evidence.json"]]),

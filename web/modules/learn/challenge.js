@@ -32,7 +32,7 @@ export function challengePanel(place, wanted = null) {
 function challengeTable(items, revealed) {
   if (!items.length) return h("p", { class: "soft" }, "No challenge yet.");
   return table("Challenges", [
-    { title: "Challenge", number: true, cell: (one) => one.challenge_id },
+    { title: "Challenge", cell: (one) => one.challenge_id },
     { title: "Difficulty", cell: (one) => one.difficulty },
     { title: "Made", cell: (one) => when(one.created_utc) },
     { title: "", cell: (one) => h("div", { class: "actions" },

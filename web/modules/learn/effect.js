@@ -9,6 +9,7 @@ import { equation } from "./equation.js";
 import { nameOf, number } from "../ui/format.js";
 import { colour, SERIES } from "../ui/colours.js";
 import { draw } from "../plots/plotly.js";
+import { shownUnit, titled, withShownUnit } from "../ui/units.js";
 
 export function effectView(place, name) {
   const [text, picture] = [h("div"), h("div", { class: "example" })];
@@ -52,15 +53,15 @@ const MOST = 2; // of the size that the service proposes
 
 export function examplePlot(place, example) {
   const slider = h("input", { type: "range", id: "example-size", min: "0", max: String(MOST), step: "0.05", value: "1" });
-  const load = h("select", { id: "example-load" }, example.trials.map((trial, index) => h("option", { value: String(index) }, `${number(1000 * trial.load_kg)} g at the tip`)));
-  const [time, driver] = [h("div"), h("div", { class: "plot", role: "figure", "aria-label": `What the effect adds, against ${example.driver}` })];
+  const load = h("select", { id: "example-load" }, example.trials.map((trial, index) => h("option", { value: String(index) }, `${withShownUnit(trial.load_kg, "kg")} at the tip`)));
+  const [time, driver] = [h("div"), h("div", { class: "plot", role: "figure", "aria-label": `What the effect adds, against ${nameOf(example.driver)}` })];
   replace(place, h("p", { class: "soft" }, `${example.motion} The slider changes how much of the effect there is; a model without it would be wrong by the lower curve.`),
     h("div", { class: "row" }, h("label", { for: "example-size" }, "How much of it", slider), h("label", { for: "example-load" }, "Load", load)), time, driver);
   const chart = new Chart(time, { label: "Effort of the joint with and without the effect", height: 340 });
   const show = () => {
     const trial = example.trials[Number(load.value)];
     chart.show(contentOf(trial, Number(slider.value), example.effort_unit));
-    return draw(driver, overDriver(example, Number(slider.value)), { height: 280, xaxis: { title: { text: `${example.driver} [${example.driver_unit}]` } },
+    return draw(driver, overDriver(example, Number(slider.value)), { height: 280, xaxis: { title: { text: driverTitle(example) } },
       yaxis: { title: { text: `what it adds [${example.effort_unit}]` } } });
   };
   for (const input of [slider, load]) input.addEventListener("input", show);
@@ -77,7 +78,12 @@ function contentOf(trial, size, unit) {
     { row: 1, name: "added by the effect", colour: "red", x, y: added }] };
 }
 
+function driverTitle({ driver, driver_unit: si }) {
+  return si ? titled(nameOf(driver), si) : nameOf(driver);
+}
+
 function overDriver(example, size) {
-  return example.trials.map((trial, index) => ({ x: trial.driver, y: trial.effect.map((value) => size * value), mode: "markers", name: `${number(1000 * trial.load_kg)} g`,
+  const { factor } = shownUnit(example.driver_unit);
+  return example.trials.map((trial, index) => ({ x: trial.driver.map((value) => value === null ? null : value * factor), y: trial.effect.map((value) => size * value), mode: "markers", name: withShownUnit(trial.load_kg, "kg"),
     showlegend: true, marker: { size: 5, symbol: index ? "diamond" : "circle", color: colour(SERIES[index]) } }));
 }

@@ -96,7 +96,8 @@ function grid(context, box, range, view, theme, last) {
   context.setLineDash([]);
   context.textBaseline = "middle";
   context.textAlign = "right";
-  const across = ticks(...range, wanted(box));
+  // one value alone would say nothing of the scale
+  const across = [0, 1, 2, 3].map((more) => ticks(...range, wanted(box) + more)).find((found) => found.length > 1) ?? ticks(...range, wanted(box));
   for (const value of across) {
     const y = Math.round(yOf(value, range, box)) + 0.5;
     path(context, box.left, y, box.right, y, value === 0 ? theme.soft : theme.line);
@@ -105,7 +106,7 @@ function grid(context, box, range, view, theme, last) {
   }
   context.textAlign = "center";
   context.textBaseline = "top";
-  const along = ticks(...view, Math.max(2, Math.round((box.right - box.left) / 80)));
+  const along = ticks(...view, Math.max(2, Math.round((box.right - box.left) / 60)));
   for (const value of along) {
     const x = Math.round(xOf(value, view, box)) + 0.5;
     path(context, x, box.top, x, box.bottom, theme.line);

@@ -5,13 +5,16 @@ import { h } from "../ui/dom.js";
 import { csv, fileName, save } from "../ui/save.js";
 
 // nothing of a bench leaves it: no button that sends a chart to somebody else's server
-const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "toImage"], showSendToCloud: false, plotlyServerURL: "" };
+const CONFIG = { responsive: true, displaylogo: false, showSendToCloud: false, plotlyServerURL: "" };
+const UNUSED = ["lasso2d", "select2d", "toImage"];
+const MOVING = ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "autoScale2d", "resetScale2d"]; // on a phone they would lie over the legend
+const isNarrow = () => matchMedia("(max-width: 760px)").matches;
 
 function config() {
   const nameOf = (plot) => fileName((plot.getAttribute("aria-label") ?? "").split(";")[0]);
   const picture = { name: "picture", title: "Save the picture (SVG)", icon: window.Plotly.Icons.camera, click: (plot) => window.Plotly.downloadImage(plot, { format: "svg", width: plot.clientWidth, height: plot.clientHeight, filename: nameOf(plot) }) };
   const numbers = { name: "numbers", title: "Save its numbers (CSV)", icon: window.Plotly.Icons.disk, click: (plot) => save(`${nameOf(plot)}.csv`, numbersOf(plot), "text/csv") };
-  return { ...CONFIG, modeBarButtonsToAdd: [picture, numbers] };
+  return { ...CONFIG, modeBarButtonsToRemove: isNarrow() ? [...UNUSED, ...MOVING] : UNUSED, modeBarButtonsToAdd: [picture, numbers] };
 }
 
 // a row for each point of each trace
@@ -25,9 +28,8 @@ function axis(extra) {
 }
 
 export function layout(extra = {}) {
-  const narrow = matchMedia("(max-width: 760px)").matches;
   const base = {
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colour("text"), family: "system-ui, sans-serif", size: narrow ? 11 : 12 },
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colour("text"), family: "system-ui, sans-serif", size: isNarrow() ? 11 : 12 },
     margin: { l: 60, r: 12, t: 12, b: 44 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 }, hovermode: "closest",
     uirevision: "keep", modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("accent") },
   };

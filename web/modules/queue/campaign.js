@@ -5,7 +5,7 @@ import { attempt } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
 import { Form } from "../ui/form.js";
 import { duration, number, unitOf, withUnit } from "../ui/format.js";
-import { toShown } from "../ui/units.js";
+import { titled, toShown } from "../ui/units.js";
 import { Grid } from "./grid.js";
 
 const ORDERS = [["as-given", "as given"], ["boustrophedon", "there and back"], ["random", "shuffled"]];
@@ -78,7 +78,7 @@ function planned({ items, duration_s, load_changes: changes }) {
     table("Plan of the campaign", [
       { title: "", unseen: "Place", number: true, cell: (one) => items.indexOf(one) + 1 },
       ...differing.map((key) => ({ title: withUnit(key), number: true, cell: (one) => [one.parameters[key]].flat().map((value) => (typeof value === "number" ? number(toShown(value, unitOf(key))) : number(value))).join(", ") })),
-      { title: "Loads hung [g]", number: true, cell: (one) => one.loads_kg.map((load) => number(1000 * load, 3)).join(", ") || "–" },
+      { title: titled("Loads hung", "kg"), number: true, cell: (one) => one.loads_kg.map((load) => number(toShown(load, "kg"), 3)).join(", ") || "–" },
       { title: "About", number: true, cell: (one) => duration(one.duration_s) },
     ], items)];
 }

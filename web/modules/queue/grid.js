@@ -2,7 +2,7 @@
 
 import { h, replace } from "../ui/dom.js";
 import { numberOrText, resolve } from "../ui/form.js";
-import { number, unitOf, withUnit } from "../ui/format.js";
+import { plain, unitOf, withUnit } from "../ui/format.js";
 import { toShown, toSi } from "../ui/units.js";
 
 const FIRST = ["load_kg"];
@@ -63,7 +63,7 @@ export function exampleOf(name, { type, enum: choices, default: usual, minimum =
   if (type === "integer") return [0, 1, 2].map((more) => Math.min((usual ?? Math.max(minimum, 1)) + more, maximum)).join(", ");
   if (type !== "number") return "a, b";
   const about = usual ? [0.5, 1, 1.5].map((share) => share * usual) : [0, 0.05, 0.1];
-  return about.filter((value) => value >= minimum && value <= maximum).map((value) => number(toShown(value, unitOf(name)), 3)).join(", ");
+  return about.filter((value) => value >= minimum && value <= maximum).map((value) => plain(toShown(value, unitOf(name)), 3)).join(", ");
 }
 
 function inSiUnits(name, value) {

@@ -9,7 +9,7 @@ import { draw } from "../plots/plotly.js";
 const AXIS_PX = 72; // what the axis at the left takes
 const WORD_PX = 76; // of the longest words of effects
 
-export async function ladderPlot(place, ladder, current) {
+export function ladderPlot(place, ladder, current) {
   const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });
   const floor = floorValue(ladder.floor);
   replace(place, plot, rungTable(ladder, current),
@@ -23,8 +23,18 @@ export async function ladderPlot(place, ladder, current) {
       line: { color: colour("orange"), width: 2, dash: "dash" } },
   ];
   const shapes = floor === null ? [] : [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 100 * floor, y1: 100 * floor, line: { color: colour("green"), dash: "dot", width: 2 } }];
-  const annotations = floor === null ? [] : [{ xref: "paper", x: 0.5, y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];
-  await draw(plot, traces, { height: 280, shapes, annotations, xaxis: namesBeneath(plot, names), yaxis: { title: { text: "relative error [%]" }, rangemode: "tozero" } });
+  const annotations = floor === null ? [] : [{ xref: "paper", x: 0, xanchor: "left", y: 100 * floor, text: "floor", showarrow: false, yanchor: "bottom", font: { color: colour("green") } }];
+  whenShown(plot, () => draw(plot, traces, { height: 280, width: plot.clientWidth, shapes, annotations, xaxis: namesBeneath(plot, names), yaxis: { title: { text: "relative error [%]" }, rangemode: "tozero" } }));
+}
+
+// what is drawn while its step is not shown would have no width: it waits, and follows the width of its card
+function whenShown(plot, paint) {
+  let drawn = 0;
+  new ResizeObserver(() => {
+    if (!plot.clientWidth || plot.clientWidth === drawn) return;
+    drawn = plot.clientWidth;
+    paint();
+  }).observe(plot);
 }
 
 // half a place on both sides, and a line for each word, so that the last name ends within the picture; where there is

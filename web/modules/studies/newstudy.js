@@ -1,7 +1,7 @@
 // A new study: which experiments, which of their trials, and which conditions are held out of the fit.
 
 import { get, post, token } from "../app/api.js";
-import { attempt, problemBox } from "../ui/attempt.js";
+import { attempt, patiently, problemBox } from "../ui/attempt.js";
 import { h, replace } from "../ui/dom.js";
 import { capital, nameOf, quantity, when } from "../ui/format.js";
 import { heldOut, TrialChoice, used } from "./trialchoice.js";
@@ -67,7 +67,7 @@ export async function newStudy(place, wanted = null) {
   const submit = async (event) => {
     event.preventDefault();
     const body = { name: name.value, experiment_ids: chosen(), where: using.unlessAll(), hold_out: holding.chosen() };
-    const study = await attempt(answer, () => post("/studies", body), { button, busy: "Fitting the base model …", again: () => button.click() });
+    const study = await patiently(answer, "new study", "Fitting the base model …", (signal, job) => post("/studies", body, 0, { signal, job }), { button, again: () => button.click() });
     if (study) location.hash = `#study/${study.study_id}`;
   };
   replace(place, h("form", { class: "form", onsubmit: submit }, h("label", { for: "study-name" }, "Name", name),

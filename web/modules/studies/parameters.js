@@ -1,7 +1,10 @@
 // The parameters of a model with their units and intervals, and what it does at rest and at breakaway.
 
 import { h, table } from "../ui/dom.js";
-import { chanceCell, interval, number, percent } from "../ui/format.js";
+import { chanceCell, fixed, interval, number, percent } from "../ui/format.js";
+
+const FEW = 3;
+const MOST_PLACES = 8;
 
 export function parameterTables(compared) {
   return [parameterTable(compared), ...breakawayTable(compared), ...restTable(compared)];
@@ -27,10 +30,26 @@ function breakawayTable({ breakaway }) {
 function parameterTable({ parameters }, title = "Parameters") {
   return table(title, [
     { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
-    { title: "Value (95 %)", number: true, cell: (one) => interval(one.value, one.low, one.high, (value) => number(value, 3)) },
+    { title: "Value (95 %)", number: true, cell: (one) => written(one) },
     { title: "Unit", cell: (one) => unitText(one.unit) },
     { title: "Note", cell: (one) => one.note },
   ], parameters);
+}
+
+// to the place that the interval leaves to be read: the first digit of half its width, and one more where that is small
+export function written(one) {
+  return interval(one.value, one.low, one.high, writerOf(one));
+}
+
+// what writes the value, and the ends of its interval
+export function writerOf({ low, high }) {
+  const half = (high - low) / 2;
+  const places = Math.ceil(-Math.log10(half)) + (firstDigit(half) < FEW ? 1 : 0);
+  return half > 0 && places <= MOST_PLACES ? (one) => fixed(one, Math.max(0, places)) : (one) => number(one, 3);
+}
+
+function firstDigit(value) {
+  return Number(value.toExponential(0)[0]);
 }
 
 // "N m s2/rad" -> "N m s²/rad"

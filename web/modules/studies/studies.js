@@ -26,7 +26,7 @@ export function studiesView(place, { rest, query }) {
 function studyTable(items, changed) {
   if (!items.length) return h("p", { class: "soft" }, "No studies yet. Choose trials below.");
   return [table("Studies", [
-    { title: "Study", number: true, cell: (study) => study.study_id },
+    { title: "Study", cell: (study) => study.study_id },
     { title: "Name", cell: (study) => h("a", { href: `#study/${study.study_id}` }, study.name) },
     { title: "Created", cell: (study) => when(study.created_utc) },
     { title: "", cell: ({ study_id: number }) => withFiles((place) => removeButton(place, { what: `study ${number}`, path: `/studies/${number}`, done: changed, loses: "with its models, but not its trials" }), []) },

@@ -74,7 +74,7 @@ class Study {
     this.parts.verdict.textContent = verdict(ladder, this.model);
     replace(this.parts.model, this.modelChoice(ladder), this.chips(rung));
     replace(this.parts.undo, this.undoButton(ladder, rung));
-    await ladderPlot(this.parts.ladder, ladder, this.model);
+    ladderPlot(this.parts.ladder, ladder, this.model);
   }
 
   async showComparison() {

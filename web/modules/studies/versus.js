@@ -4,9 +4,9 @@ import { note } from "../app/address.js";
 import { get } from "../app/api.js";
 import { attempt, patiently, together } from "../ui/attempt.js";
 import { h, panel, replace, table } from "../ui/dom.js";
-import { conditions, number, percent } from "../ui/format.js";
+import { conditions, percent } from "../ui/format.js";
 import { rungName } from "./ladder.js";
-import { unitText } from "./parameters.js";
+import { unitText, writerOf } from "./parameters.js";
 import { SeriesPlot } from "./seriesplot.js";
 
 const SIDES = ["first", "second"];
@@ -108,7 +108,9 @@ function parameterTable(first, second) {
   const all = [...new Map([...first.parameters, ...second.parameters].map((one) => [key(one), one])).values()];
   const value = (model) => (one) => {
     const found = model.parameters.find((other) => key(other) === key(one));
-    return found ? [number(found.value, 3), h("div", { class: "hint" }, `${number(found.low, 3)} to ${number(found.high, 3)}`)] : "–";
+    if (!found) return "–";
+    const show = writerOf(found);
+    return [show(found.value), found.low !== null && h("div", { class: "hint" }, `${show(found.low)} to ${show(found.high)}`)].filter(Boolean);
   };
   return table("Parameters of both models, with 95 % intervals", [
     { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },

@@ -6,6 +6,7 @@ import { h, panel, replace, table } from "../ui/dom.js";
 import { number, when } from "../ui/format.js";
 import { colour, SERIES } from "../ui/colours.js";
 import { draw } from "../plots/plotly.js";
+import { shownUnit, titled, toShown, withShownUnit } from "../ui/units.js";
 import { calibrationRun } from "./calibrationrun.js";
 
 // returns {first, leave}; first: when the list is there
@@ -43,7 +44,7 @@ function calibrationTable(items, show, use) {
   return table("Friction curves", [
     { title: "Calibration", number: true, cell: (one) => one.calibration_id },
     { title: "From experiments", cell: (one) => one.experiment_ids.join(", ") },
-    { title: "Loads [g]", cell: (one) => one.curves.map((curve) => number(1000 * curve.load_kg, 3)).join(", ") },
+    { title: titled("Loads", "kg"), cell: (one) => one.curves.map((curve) => number(toShown(curve.load_kg, "kg"), 3)).join(", ") },
     { title: "Made", cell: (one) => when(one.created_utc) },
     { title: "", unseen: "In use", cell: (one) => (one.in_use ? h("span", { class: "badge completed" }, "in use") : null) },
     { title: "", cell: (one) => h("div", { class: "actions" },
@@ -56,9 +57,14 @@ async function drawCurves(place, one, found) {
   const [currents, duties] = ["Friction current over speed (Fig. 2)", "Friction part of the duty over speed (Fig. 3)"]
     .map((title) => h("div", { class: "plot", role: "figure", "aria-label": title }));
   replace(place, h("h3", {}, `Calibration ${one.calibration_id}`), h("div", { class: "cards" }, currents, duties));
-  const x = { title: { text: "speed of the motor shaft [rad/s]" } };
+  const x = { title: { text: titled("speed of the motor shaft", "rad/s") } };
   await draw(currents, traces(found.curves, "friction_a"), { height: 320, xaxis: x, yaxis: { title: { text: "friction current [A]" } } });
   await draw(duties, traces(found.curves, "friction_duty"), { height: 320, xaxis: x, yaxis: { title: { text: "duty" } } });
+}
+
+function speeds({ motor_speed_rad_s: values }) {
+  const { factor } = shownUnit("rad/s");
+  return values.map((value) => value * factor);
 }
 
 function traces(curves, quantity) {
@@ -66,7 +72,7 @@ function traces(curves, quantity) {
     const name = colour(SERIES[index % SERIES.length]);
     const symbol = one.points.backward.map((backward) => (backward ? "diamond-open" : "circle"));
     if (!one.curve[quantity]) return [];
-    return [{ x: one.points.motor_speed_rad_s, y: one.points[quantity], mode: "markers", showlegend: false, marker: { color: name, symbol, size: 6 }, hovertemplate: "%{x:.4g}: %{y:.4g}" },
-      { x: one.curve.motor_speed_rad_s, y: one.curve[quantity], mode: "lines", name: `${number(1000 * one.load_kg, 3)} g`, showlegend: true, line: { color: name, width: 2 } }];
+    return [{ x: speeds(one.points), y: one.points[quantity], mode: "markers", showlegend: false, marker: { color: name, symbol, size: 6 }, hovertemplate: "%{x:.4g}: %{y:.4g}" },
+      { x: speeds(one.curve), y: one.curve[quantity], mode: "lines", name: withShownUnit(one.load_kg, "kg", 3), showlegend: true, line: { color: name, width: 2 } }];
   });
 }

@@ -1,9 +1,14 @@
 // What each kind of experiment has to show, from the results of its trials. Pure.
-// A figure: {title, text, x, y, groups: [{name, x, y, low, high, symbol}], diagonal}; the drawing is in figures.js.
+// A figure: {title, text, x, y, groups: [{name, x, y, low, high, symbol}], diagonal}, in the units that are shown; the
+// drawing is in figures.js.
+
+import { shownUnit, titled, withShownUnit } from "../ui/units.js";
 
 const COLOURS = 6; // then they come again, with another symbol
 const SYMBOLS = ["circle", "square", "diamond"];
-const grams = (value) => 1000 * value;
+const shown = (si) => (value) => value * shownUnit(si).factor;
+const load = (value) => shown("kg")(value);
+const speed = (value) => shown("rad/s")(value);
 const known = (trials, name) => trials.filter((trial) => typeof trial.results?.[name] === "number");
 const values = (trials, read) => trials.map(read);
 
@@ -17,8 +22,8 @@ export const SAMPLED = ["chirp", "multisine", "sinusoid", "waveform", "excitatio
 
 function repeatedSteps(trials) {
   const found = known(trials, "load_current_a");
-  const x = values(found, (trial) => trial.conditions.approach_rad_s);
-  return { title: "Repeated steps: the current at rest, and the load's share of it (Fig. 4)", x: "speed of the approach [rad/s]", y: "current [A]",
+  const x = values(found, (trial) => speed(trial.conditions.approach_rad_s));
+  return { title: "Repeated steps: the current at rest, and the load's share of it (Fig. 4)", x: titled("speed of the approach", "rad/s"), y: "current [A]",
     text: "Friction holds the joint wherever it comes to rest, so the current differs from step to step; what the zero-speed search finds does not. Bars: 95 %.",
     groups: [{ name: "current at rest", x, y: values(found, (trial) => trial.results.steady_current_a), colour: "orange" },
       { name: "of the load alone", x, y: values(found, (trial) => trial.results.load_current_a), symbol: "diamond", colour: "blue", ...ends(found, "load_interval_a") }] };
@@ -26,27 +31,27 @@ function repeatedSteps(trials) {
 
 function loadSweep(trials) {
   const found = known(trials, "reflected_load_kg");
-  return { title: "Load sweep: the load that is reflected, over the load that hangs there (Table 1)", x: "load hung [g]", y: "load found [g]",
+  return { title: "Load sweep: the load that is reflected, over the load that hangs there (Table 1)", x: titled("load hung", "kg"), y: titled("load found", "kg"),
     text: "On the line, the load is found as it is. Bars: 95 %.", diagonal: true,
-    groups: [{ name: "found", x: values(found, (trial) => grams(trial.conditions.load_kg)), y: values(found, (trial) => grams(trial.results.reflected_load_kg)),
-      ...ends(found, "reflected_interval_kg", grams) }] };
+    groups: [{ name: "found", x: values(found, (trial) => load(trial.conditions.load_kg)), y: values(found, (trial) => load(trial.results.reflected_load_kg)),
+      ...ends(found, "reflected_interval_kg", load) }] };
 }
 
 function frictionCurve(trials) {
   const found = known(trials, "motor_speed_rad_s");
-  const groups = split(found, (trial) => `${Math.round(grams(trial.conditions.load_kg ?? 0))} g`, (some, at) => ({
-    x: values(some, (trial) => trial.results.motor_speed_rad_s), y: values(some, (trial) => trial.results.current_a), size: 7,
+  const groups = split(found, (trial) => withShownUnit(trial.conditions.load_kg ?? 0, "kg", 3), (some, at) => ({
+    x: values(some, (trial) => speed(trial.results.motor_speed_rad_s)), y: values(some, (trial) => trial.results.current_a), size: 7,
     symbol: values(some, (trial) => `${SYMBOLS[Math.floor(at / COLOURS) % SYMBOLS.length]}${trial.results.saturated ? "" : "-open"}`) }));
-  return { title: "Speed sweep: current at each speed (Fig. 2)", x: "speed of the motor shaft [rad/s]", y: "current [A]",
+  return { title: "Speed sweep: current at each speed (Fig. 2)", x: titled("speed of the motor shaft", "rad/s"), y: "current [A]",
     text: "Once the speed is steady (filled), all of the current is friction; open: it was still gaining speed. The friction curves under Friction curves are fitted to these.", groups };
 }
 
 function loadInMotion(trials) {
   const found = known(trials, "forward_mean_error_kg");
-  const x = values(found, (trial) => trial.conditions.speed_rad_s);
-  return { title: "Steady speeds: error of the load that is reflected in motion", x: "speed [rad/s]", y: "error [g]",
+  const x = values(found, (trial) => speed(trial.conditions.speed_rad_s));
+  return { title: "Steady speeds: error of the load that is reflected in motion", x: titled("speed", "rad/s"), y: titled("error", "kg"),
     text: "Of the mean over each stroke, by direction. What differs between the directions is friction that was not taken off.",
-    groups: ["forward", "backward"].map((way) => ({ name: way, x, y: values(found, (trial) => grams(trial.results[`${way}_mean_error_kg`])), symbol: way === "forward" ? "circle" : "diamond" })) };
+    groups: ["forward", "backward"].map((way) => ({ name: way, x, y: values(found, (trial) => load(trial.results[`${way}_mean_error_kg`])), symbol: way === "forward" ? "circle" : "diamond" })) };
 }
 
 function breakaways(trials) {
@@ -59,8 +64,8 @@ function breakaways(trials) {
 
 function strokes(trials) {
   const found = known(trials, "friction_current_a").toSorted((one, other) => one.conditions.amplitude_rad - other.conditions.amplitude_rad);
-  const x = values(found, (trial) => trial.conditions.amplitude_rad);
-  return { title: "Reversals: friction over the length of the stroke", x: "amplitude that was asked for [rad]", y: "current [A]", logarithmic: true,
+  const x = values(found, (trial) => shown("rad")(trial.conditions.amplitude_rad));
+  return { title: "Reversals: friction over the length of the stroke", x: titled("amplitude that was asked for", "rad"), y: "current [A]", logarithmic: true,
     text: "Short strokes stay within pre-sliding and free play: less friction is seen there than on long ones.",
     groups: [{ name: "friction", x, y: values(found, (trial) => trial.results.friction_current_a) },
       { name: "load", x, y: values(found, (trial) => trial.results.load_current_a), symbol: "diamond" }] };
@@ -68,8 +73,8 @@ function strokes(trials) {
 
 function coasts(trials) {
   const groups = split(known(trials, "coast_s"), (trial) => trial.conditions.direction, (some) => ({
-    x: values(some, (trial) => trial.results.released_speed_rad_s), y: values(some, (trial) => trial.results.coast_s), symbol: some[0].conditions.direction === "forward" ? "circle" : "diamond" }));
-  return { title: "Coast-down: how long the joint runs by itself", x: "speed when it is released [rad/s]", y: "until it rests [s]",
+    x: values(some, (trial) => speed(trial.results.released_speed_rad_s)), y: values(some, (trial) => trial.results.coast_s), symbol: some[0].conditions.direction === "forward" ? "circle" : "diamond" }));
+  return { title: "Coast-down: how long the joint runs by itself", x: titled("speed when it is released", "rad/s"), y: "until it rests [s]",
     text: "A straight line through zero is dry friction alone; what bends it down grows with speed.", groups };
 }
 
@@ -83,8 +88,8 @@ function soaking(trials) {
 
 function reflected(trials) {
   const groups = split(known(trials, "reflected_error_rms_g"), (trial) => trial.conditions.reflect, (some) => ({
-    x: values(some, (trial) => `${trial.conditions.reflect} ${trial.conditions.repeat}`), y: values(some, (trial) => trial.results.reflected_error_rms_g) }));
-  return { title: "Master and slave: error of the load that is reflected", x: "what is reflected, and which repeat", y: "error, root mean square [g]", columns: true,
+    x: values(some, (trial) => `${trial.conditions.reflect} ${trial.conditions.repeat}`), y: values(some, (trial) => trial.results.reflected_error_rms_g * (shownUnit("kg").factor / 1000)) }));
+  return { title: "Master and slave: error of the load that is reflected", x: "what is reflected, and which repeat", y: titled("error, root mean square", "kg"), columns: true,
     text: "Compensated: the friction of the slave is taken off its current first.", groups };
 }
 

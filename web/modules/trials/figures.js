@@ -5,6 +5,7 @@ import { h, panel, replace } from "../ui/dom.js";
 import { FIGURES, SAMPLED } from "./figurekinds.js";
 import { colour, SERIES } from "../ui/colours.js";
 import { draw } from "../plots/plotly.js";
+import { shownUnit, titled } from "../ui/units.js";
 
 const LAID_OVER = 6; // trials at most, of those that are drawn from their samples
 const POINTS = 2000;
@@ -41,11 +42,12 @@ function diagonal(groups) {
 
 async function currentOverSpeed(trials) {
   const usable = trials.filter((trial) => trial.rows && trial.channels.includes("velocity_rad_s")).slice(0, LAID_OVER);
+  const { factor } = shownUnit("rad/s");
   const groups = await Promise.all(usable.map(async (trial) => {
     const { channels } = await get(`/trials/${trial.trial_id}/samples`, { channels: ["velocity_rad_s", ...EFFORTS.filter((name) => trial.channels.includes(name))].join(","), points: POINTS });
     const effort = EFFORTS.map((name) => channels[name]).find((values) => values?.some(Number.isFinite)) ?? [];
-    return { name: trial.name, x: effort.length ? channels.velocity_rad_s : [], y: effort, size: 3 };
+    return { name: trial.name, x: effort.length ? channels.velocity_rad_s.map((value) => value === null ? null : value * factor) : [], y: effort, size: 3 };
   }));
-  return { title: "Current over speed", x: "speed [rad/s]", y: "current [A]", groups,
+  return { title: "Current over speed", x: titled("speed", "rad/s"), y: "current [A]", groups,
     text: `Friction is the step where the speed changes its sign, viscous friction the slope beside it; what opens a loop is inertia, or memory.${trials.length > LAID_OVER ? ` The first ${LAID_OVER} trials.` : ""}` };
 }

@@ -2,7 +2,7 @@
 // the service says of it is shown at the field, too. Values are shown in the units that people chose, and sent in SI.
 
 import { h, replace } from "./dom.js";
-import { nameOf, number } from "./format.js";
+import { nameOf, number, plain } from "./format.js";
 import { shownUnit } from "./units.js";
 
 export class Form {
@@ -89,7 +89,7 @@ function control(kind, id) {
 
 function shownText(kind, value) {
   if (value === null || value === undefined) return "";
-  return [value].flat().map((one) => (typeof one === "number" ? number(upscaled(one, kind, 12), kind.shown.factor === 1 ? 6 : 4) : one)).join(", ");
+  return [value].flat().map((one) => (typeof one === "number" ? plain(upscaled(one, kind, 12), kind.shown.factor === 1 ? 6 : 4) : one)).join(", ");
 }
 
 function write(kind, input, value) {

@@ -12,10 +12,13 @@ export function unitOf(name) {
   return found ? found[1] : "";
 }
 
+// what a channel is called on the whole page, where its name alone would not say it
+const SAID = { current_estimate: "current from duty", current_load: "load current", current_load_half_width: "load current, half of its band" };
+
 export function nameOf(name) {
   const found = UNITS.find(([suffix]) => name.endsWith(suffix));
   const bare = found ? name.slice(0, -found[0].length) : name;
-  return bare.replace(/\bvelocity(?=_|$)/, "speed").replaceAll("_", " ");
+  return SAID[bare] ?? bare.replace(/\bvelocity(?=_|$)/, "speed").replaceAll("_", " ");
 }
 
 const AXES = { rad: "angle", "rad/s": "speed", m: "position", "m/s": "speed", A: "current", "N m": "torque", N: "force", V: "supply", "°C": "temperature" };
@@ -31,7 +34,13 @@ export function withUnit(name) {
   return unit ? `${nameOf(name)} [${unit}]` : nameOf(name);
 }
 
+// to be read; what is typed and read back is `plain`
 export function number(value, digits = 4) {
+  const text = plain(value, digits);
+  return typeof value === "number" ? text.replaceAll("-", "−") : text;
+}
+
+export function plain(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (typeof value !== "number") return String(value);
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
@@ -55,7 +64,7 @@ const ROUNDING = 1e-7;
 export function percent(share, digits = 2) {
   if (share === null || share === undefined) return "–";
   const small = Math.abs(share) > ROUNDING && Math.abs(100 * share) < 5 * 10 ** -digits;
-  return `${small ? number(100 * share, 2) : (100 * share).toFixed(digits)} %`;
+  return `${small ? number(100 * share, 2) : fixed(100 * share, digits)} %`;
 }
 
 export function interval(value, low, high, show = percent) {

@@ -18,6 +18,11 @@ export function shownUnit(si) {
   return { unit, factor };
 }
 
+// what an axis, a column or a field is called, with the unit that is shown: "load [g]"
+export function titled(text, si) {
+  return `${text} [${shownUnit(si).unit}]`;
+}
+
 // a value without the noise of its conversion: 1.57079632679 rad are 90°, not 89.99999999
 export function toShown(value, si, digits = 6) {
   const { factor } = shownUnit(si);
