@@ -25,7 +25,7 @@ def test_the_same_seed_records_the_same_and_another_seed_another_joint():
 
 @pytest.mark.parametrize("name", list(MECHANISMS))
 def test_every_mechanism_changes_what_is_recorded_and_can_be_left_out(name):
-    joint = short(draw_joint(3, (name,), (1.0,)))
+    joint = short(draw_joint(3, (name,), (1.0,)), trials=3)
     complete = replace(joint, hidden=())
 
     hidden, without, plain = record(joint), record(joint, without=frozenset({name})), record(complete)
