@@ -93,13 +93,22 @@ def _known(values: Sequence[float | None]) -> list[float | None]:
     return [None if value is None or isnan(value) else value for value in values]
 
 
+def _alone(values: Sequence[float | None], colour: str) -> dict[str, Value]:
+    """How a line is drawn: a point between two gaps is no line, and has a mark."""
+    around = [None, *values, None]
+    alone = [around[at] is None and around[at + 2] is None for at in range(len(values))]
+    if not any(alone):
+        return {"mode": "lines"}
+    return {"mode": "lines+markers", "marker": {"color": colour, "size": [6 * one for one in alone]}}
+
+
 def _trace(one: Line | Points | Bars, colour: str) -> dict[str, Value]:
     common: dict[str, Value] = {"name": one.name, "x": list(one.x), "y": _known(one.y)}
     if not isinstance(one, Bars):
         colour = one.colour or colour
     if isinstance(one, Line):
-        dash = "dash" if one.dashed else "solid"
-        return {**common, "type": "scatter", "mode": "lines", "line": {"color": colour, "dash": dash}}
+        look = {"color": colour, "dash": "dash" if one.dashed else "solid"}
+        return {**common, "type": "scatter", "line": look, **_alone(_known(one.y), colour)}
     if len(one.low):
         measured = [float(value or 0.0) for value in one.y]
         common["error_y"] = {

@@ -276,7 +276,8 @@ def test_a_campaign_gives_an_example_in_the_unit_of_the_field(call, name, schema
 
 
 def test_where_nothing_was_recorded_a_line_is_interrupted(call):
-    answer = "{channels: {time_s: [0, 1, 2, 7, 8], duty: [1, 2, 3, 4, 5]}, gaps: [[2, 7], [8, 9]]}"
+    gaps = "[{from_s: 2, to_s: 7}, {from_s: 8, to_s: 9}]"
+    answer = f"{{channels: {{time_s: [0, 1, 2, 7, 8], duty: [1, 2, 3, 4, 5]}}, gaps: {gaps}}}"
     assert call("trials/stretches", f"m.interrupted({answer})") == {
         "time_s": [0, 1, 2, 4.5, 7, 8],
         "duty": [1, 2, 3, None, 4, 5],

@@ -4,7 +4,7 @@ import numpy as np
 
 from bench.service.http import downloads
 from bench.service.http.downloads import column, samples_json
-from bench.service.routes.trials import Samples
+from bench.service.routes.trials import Gap, Samples
 
 
 def test_the_text_is_that_of_the_description(monkeypatch):
@@ -13,7 +13,7 @@ def test_the_text_is_that_of_the_description(monkeypatch):
     channels = {"time_s": np.arange(50.0) / 3.0, 'a "name"': generator.normal(size=50)}
     channels['a "name"'][[3, 7, 9]] = np.nan, np.inf, 1e-300
     listed = {name: column(values) for name, values in channels.items()}
-    wanted = Samples(trial_id=7, rows_recorded=900, rows_returned=50, gaps=[(1.0, 2.5)], channels=listed)
+    wanted = Samples(trial_id=7, rows_recorded=900, rows_returned=50, gaps=[Gap(from_s=1.0, to_s=2.5)], channels=listed)
     assert samples_json(7, 900, channels, [(1.0, 2.5)]).decode() == wanted.model_dump_json()
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
+from bench.report.section import Figure, Line
 from bench.study.compare import compare
 from bench.study.create import create_study
 from bench.study.plots.series import drivers_over_time
@@ -47,6 +48,14 @@ def test_lines_of_a_report_are_interrupted_and_it_can_be_written(store, number):
     found = compare(store, number)
     for trace in measured_figure(found, found).to_plotly()["data"]:
         assert trace["y"].count(None) == 1
+
+
+def test_a_point_between_two_gaps_has_a_mark():
+    nan = float("nan")
+    drawn = Figure("", "", "", [Line("a", range(6), [1.0, nan, 2.0, 3.0, nan, 4.0])]).to_plotly()["data"][0]
+    assert drawn["marker"]["size"] == [6, 0, 0, 0, 0, 6]
+    whole = Figure("", "", "", [Line("a", range(2), [1.0, 2.0])]).to_plotly()["data"][0]
+    assert whole["mode"] == "lines"
 
 
 def test_the_gaps_of_a_trial_are_told_from_its_times(store, number):

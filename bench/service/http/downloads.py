@@ -40,7 +40,8 @@ def samples_json(
         gaps: from, to [s].
     """
     rows = len(channels["time_s"])
-    facts = {"trial_id": trial_id, "rows_recorded": rows_recorded, "rows_returned": rows, "gaps": gaps}
+    told = [{"from_s": from_s, "to_s": to_s} for from_s, to_s in gaps]
+    facts = {"trial_id": trial_id, "rows_recorded": rows_recorded, "rows_returned": rows, "gaps": told}
     listed = b",".join(b"%b:[%b]" % (to_json(name), b",".join(_pieces(values))) for name, values in channels.items())
     return b'%b,"channels":{%b}}' % (to_json(facts).removesuffix(b"}"), listed)
 

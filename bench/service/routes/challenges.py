@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.errors import ParameterError
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
-from bench.service.compute import in_lab, in_worker
+from bench.service.compute import in_lab
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
@@ -127,11 +127,11 @@ def challenges(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Challe
     dependencies=[Depends(require_token)],
     responses=problems(401, 403, 404, 409, 422),
 )
-async def reveal(request: Request, store: StoreOf, challenge_id: ChallengeId, body: Reveal) -> Revealed:
+async def reveal(request: Request, challenge_id: ChallengeId, body: Reveal) -> Revealed:
     """Opens the seal and holds the guess against what was hidden."""
     if (body.guess is None) == (body.study_id is None):
         raise ParameterError("wanted is one of guess and study_id: what do you say is hidden?")
-    told = await in_worker(request, _reveal, store, challenge_id, body)
+    told = await in_lab(request, _reveal, challenge_id, body)
     note(request, f"revealed challenge {challenge_id}: guess {', '.join(told.guessed) or 'nothing'}")
     return told
 

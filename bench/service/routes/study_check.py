@@ -4,9 +4,8 @@ from fastapi import APIRouter, Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.service.auth.access import allow_read, require_viewer
-from bench.service.compute import in_worker
+from bench.service.compute import in_lab
 from bench.service.http.problems import problems
-from bench.service.services import StoreOf
 from bench.store import Store
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
@@ -39,9 +38,9 @@ class Checked(BaseModel):
     dependencies=[Depends(require_viewer)],
     responses=problems(401, 404, 422),
 )
-async def check(request: Request, store: StoreOf, body: ToCheck) -> Checked:
+async def check(request: Request, body: ToCheck) -> Checked:
     """Nothing is kept. Takes about as long as making the study without its fit."""
-    return await in_worker(request, _checked, store, body)
+    return await in_lab(request, _checked, body)
 
 
 def _checked(store: Store, body: ToCheck) -> Checked:

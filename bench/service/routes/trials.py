@@ -52,15 +52,20 @@ class Trials(Page):
     items: list[Trial]
 
 
+class Gap(BaseModel):
+    """A stretch of a trial in which nothing was recorded."""
+
+    from_s: float
+    to_s: float
+
+
 class Samples(BaseModel):
     """Channels of one trial; all lists have the same length, a quantity that was not measured is null."""
 
     trial_id: int
     rows_recorded: int
     rows_returned: int
-    gaps: list[tuple[float, float]] = Field(
-        default=[], description="from, to [s]: nothing was recorded in between; told of what was imported"
-    )
+    gaps: list[Gap] = Field(default=[], description="where nothing was recorded; told of trials that were imported")
     channels: dict[str, list[float | None]]
 
 

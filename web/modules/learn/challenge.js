@@ -55,7 +55,7 @@ async function guessForm(place, challenge) {
     event.preventDefault();
     const guess = choices.map((choice) => choice.value).filter(Boolean).join(",");
     const body = study.value ? { study_id: Number(study.value) } : { guess };
-    const told = await attempt(answer, () => post(`/challenges/${challenge.challenge_id}/reveal`, body), { busy: "Opening …" });
+    const told = await patiently(answer, "reveal", "Opening, and judging what the study says …", (signal, job) => post(`/challenges/${challenge.challenge_id}/reveal`, body, 0, { signal, job }), { button: event.submitter });
     if (!told) return;
     replace(answer, verdict(told));
     answer.scrollIntoView({ block: "nearest" });

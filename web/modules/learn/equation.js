@@ -4,7 +4,8 @@ import { h } from "../ui/dom.js";
 
 const SPACE = "http://www.w3.org/1998/Math/MathML";
 const LETTERS = { alpha: "α", kappa: "κ", lambda: "λ", rho: "ρ", eta: "η", zeta: "ζ", pi: "π", beta: "β", gamma: "γ", delta: "δ", mu: "μ", omega: "ω", phi: "φ", sigma: "σ", tau: "τ", theta: "θ", Delta: "Δ" };
-const ACCENTS = { tilde: "~", dot: ".", ddot: "..", hat: "^", bar: "¯" };
+// signs that stand above by themselves: a full stop would lie within the letter
+const ACCENTS = { tilde: "˜", dot: "˙", ddot: "¨", hat: "ˆ", bar: "¯" };
 const SIGNS = { sum: "∑", cdot: "·", le: "≤", ge: "≥" };
 const FUNCTIONS = new Set(["log", "max", "min", "sin", "cos", "tan", "exp", "tanh", "ln", "sgn"]);
 const TOKEN = /\\(?:text|mathrm)\{[^}]*\}|\\[A-Za-z]+|\\.|[A-Za-z]|\d+(?:\.\d+)?|\S/g;
@@ -95,7 +96,6 @@ function space(width = "0.17em") {
 
 function accented(sign, base) {
   const made = element("mover", base, element("mo", sign));
-  made.setAttribute("accent", "true");
   return made;
 }
 

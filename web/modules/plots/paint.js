@@ -170,9 +170,11 @@ function marked(context, mark, view, box, theme) {
 function flag(context, mark, view, box, theme) {
   if (!mark.letter || mark.x < view[0] || mark.x > view[1]) return;
   context.fillStyle = theme[mark.colour] ?? theme.soft;
-  context.textAlign = "left";
+  const x = xOf(mark.x, view, box);
+  const fits = x + 2 + context.measureText(mark.letter).width <= box.right;
+  context.textAlign = fits ? "left" : "right";
   context.textBaseline = "top";
-  context.fillText(mark.letter, xOf(mark.x, view, box) + 2, box.top);
+  context.fillText(mark.letter, fits ? x + 2 : x - 2, box.top);
 }
 
 function vertical(context, x, box, colour, dash) {

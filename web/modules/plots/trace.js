@@ -83,6 +83,7 @@ function stroked(context, { x, y }, dash, width, dots, bare) {
     if (y[at] === y[at]) {
       if (down && !bare) context.lineTo(x[at], y[at]);
       else context.moveTo(x[at], y[at]);
+      if (!down && !bare && !Number.isFinite(y[at + 1])) context.lineTo(x[at] + width, y[at]); // alone between two gaps
       if (dots) context.rect(x[at] - 3, y[at] - 3, 6, 6);
       if (dots) context.moveTo(x[at], y[at]);
       down = true;

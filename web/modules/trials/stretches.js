@@ -16,11 +16,11 @@ const covers = (one, [from, to], [low, high]) => one.from <= Math.max(from, low)
 // where nothing was recorded, a row of which nothing is known: no line is drawn from one side to the other
 export function interrupted({ channels, gaps = [] }) {
   const { time_s } = channels;
-  const inside = gaps.filter(([from, to]) => from >= time_s[0] && to <= time_s.at(-1));
+  const inside = gaps.filter(({ from_s, to_s }) => from_s >= time_s[0] && to_s <= time_s.at(-1));
   if (!inside.length) return channels;
   const whole = Object.fromEntries(Object.entries(channels).map(([name, values]) => [name, [...values]]));
-  for (const [from, to] of inside) {
-    const middle = (from + to) / 2;
+  for (const { from_s, to_s } of inside) {
+    const middle = (from_s + to_s) / 2;
     const at = firstFrom(whole.time_s, middle);
     for (const [name, values] of Object.entries(whole)) values.splice(at, 0, name === "time_s" ? middle : null);
   }

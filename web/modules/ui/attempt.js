@@ -34,7 +34,7 @@ export async function attempt(place, action, { button = null, busy = "", again =
 }
 
 // how long it usually takes [s], until this browser has seen it once
-const USUAL_S = { "challenge easy": 12, "challenge medium": 12, "challenge hard": 12, "new study": 4, fit: 4, compare: 4, diagnose: 10, search: 30, suggest: 15, round: 30, "closed-loop": 10, report: 15, example: 2 };
+const USUAL_S = { "challenge easy": 12, "challenge medium": 12, "challenge hard": 12, "new study": 4, fit: 4, compare: 4, diagnose: 10, search: 30, suggest: 15, round: 30, "closed-loop": 10, report: 15, reveal: 3, example: 2 };
 
 // runs what takes a while: `place` says what is done now, for how long it has run and about how long it still takes, and
 // cancels it. action(signal, job): the request; the service ends what it computes when the request is broken off. One that
