@@ -18,6 +18,9 @@ SLIDE_MARGIN_S = 0.04
 # of the cut-off: beyond, the filter leaves a fortieth of a blow, and rows at reversals are off by so many times noise
 SPREAD_PERIODS = 1.4
 STUCK_AFTER_S = 0.1
+# of the time in which a joint is slow: it passes through rest with half of it below half of `slow`, and turns with 0.7
+STANDING_SHARE = 0.6
+STANDING_PERIODS = 0.5  # of the cut-off, to either side: so far the filter carries a step of friction
 TRANSIENT_S = 0.15
 
 
@@ -29,13 +32,14 @@ class Regime(IntEnum):
     STUCK = 2
 
 
-def classify(velocity: FloatArray, slow: float, rate_hz: float) -> NDArray[np.uint8]:
+def classify(velocity: FloatArray, slow: float, rate_hz: float, cutoff_hz: float) -> NDArray[np.uint8]:
     """Regime of each row, shape (n,).
 
     Args:
         velocity: filtered velocity, shape (n,).
         slow: speed below which the direction of motion is uncertain.
         rate_hz: of the rows.
+        cutoff_hz: of the final low-pass.
     """
     speed = np.abs(velocity)
     regime = np.full(len(velocity), Regime.TRANSIENT, dtype=np.uint8)
@@ -45,7 +49,24 @@ def classify(velocity: FloatArray, slow: float, rate_hz: float) -> NDArray[np.ui
     window = 2 * round(0.5 * STUCK_AFTER_S * rate_hz) + 1
     stuck = minimum_filter1d((speed < slow).astype(np.uint8), window) > 0
     regime[maximum_filter1d(stuck.astype(np.uint8), window) > 0] = Regime.STUCK
+    standing = _standing(speed, slow, round(STANDING_PERIODS / cutoff_hz * rate_hz))
+    regime[standing & (regime == Regime.TRANSIENT)] = Regime.STUCK
     return regime
+
+
+def _standing(speed: FloatArray, slow: float, margin: int) -> BoolArray:
+    """Rows of short stops, and of a margin to either side, shape (n,).
+
+    A joint that reverses against dry friction may stand for some hundredths of a second. Friction has any value there,
+    and the sign of what the encoder still shows of motion is that of creep.
+    """
+    edges = np.diff(np.concatenate([[0], (speed < slow).astype(np.int8), [0]]))
+    standing = np.zeros(len(speed), dtype=bool)
+    for begin, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
+        # of few samples one more or less may fall below the half by chance
+        if np.sum(speed[begin:end] < 0.5 * slow) >= STANDING_SHARE * (end - begin) + 1:
+            standing[max(0, begin - margin) : end + margin] = True
+    return standing
 
 
 def _after_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolArray:

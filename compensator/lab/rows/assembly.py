@@ -184,7 +184,7 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)
     picked = picked[signals.usable[picked]]
-    return Trial(signals, motion, picked, classify(signals.velocity, scales.slow, signals.rate_hz)[picked])
+    return Trial(signals, motion, picked, classify(signals.velocity, scales.slow, signals.rate_hz, cutoff_hz)[picked])
 
 
 def _with_way(trials: Sequence[Trial]) -> tuple[Trial, ...]:

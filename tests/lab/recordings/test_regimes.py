@@ -4,9 +4,18 @@ import numpy as np
 import pytest
 
 from compensator.lab.recordings.low_pass import low_pass
-from compensator.lab.recordings.regimes import SPREAD_PERIODS, Regime, classify, near_flank_change, within_spread
+from compensator.lab.recordings.regimes import (
+    SPREAD_PERIODS,
+    STANDING_PERIODS,
+    Regime,
+    classify,
+    near_flank_change,
+    within_spread,
+)
 
 RATE_HZ = 200.0
+CUTOFF_HZ = 20.0
+MARGIN = round(STANDING_PERIODS / CUTOFF_HZ * RATE_HZ)
 
 
 def at(regime: np.ndarray, time_s: float) -> Regime:
@@ -14,13 +23,13 @@ def at(regime: np.ndarray, time_s: float) -> Regime:
 
 
 def test_steady_motion_slides():
-    assert (classify(np.full(400, 0.5), 0.1, RATE_HZ) == Regime.SLIDING).all()
-    assert (classify(np.full(400, -0.5), 0.1, RATE_HZ) == Regime.SLIDING).all()
+    assert (classify(np.full(400, 0.5), 0.1, RATE_HZ, CUTOFF_HZ) == Regime.SLIDING).all()
+    assert (classify(np.full(400, -0.5), 0.1, RATE_HZ, CUTOFF_HZ) == Regime.SLIDING).all()
 
 
 def test_a_reversal_is_followed_by_a_transient():
     time_s = np.arange(0, 4, 1 / RATE_HZ)
-    regime = classify(np.where(time_s < 2, 1.0, -1.0), 0.1, RATE_HZ)
+    regime = classify(np.where(time_s < 2, 1.0, -1.0), 0.1, RATE_HZ, CUTOFF_HZ)
     assert at(regime, 1.9) == Regime.SLIDING
     assert at(regime, 2.0) == at(regime, 2.14) == Regime.TRANSIENT
     assert at(regime, 2.16) == Regime.SLIDING
@@ -29,20 +38,35 @@ def test_a_reversal_is_followed_by_a_transient():
 def test_slow_rows_and_their_neighbours_do_not_slide():
     velocity = np.full(800, 1.0)
     velocity[400:404] = 0.05
-    regime = classify(velocity, 0.1, RATE_HZ)
+    regime = classify(velocity, 0.1, RATE_HZ, CUTOFF_HZ)
     assert (regime[392:412] == Regime.TRANSIENT).all()  # 40 ms on either side; too short to be stuck
     assert regime[391] == regime[412] == Regime.SLIDING
 
 
-def test_rest_of_more_than_a_tenth_of_a_second_is_stuck():
+def test_slow_motion_of_more_than_a_tenth_of_a_second_is_stuck():
     velocity = np.full(800, 1.0)
-    velocity[400:440] = 0.0
-    regime = classify(velocity, 0.1, RATE_HZ)
+    velocity[400:440] = 0.08
+    regime = classify(velocity, 0.1, RATE_HZ, CUTOFF_HZ)
     assert (regime[400:440] == Regime.STUCK).all()
     assert regime[399] == Regime.TRANSIENT
     velocity[400:440] = 1.0
-    velocity[400:418] = 0.0  # 90 ms
-    assert not (classify(velocity, 0.1, RATE_HZ) == Regime.STUCK).any()
+    velocity[400:418] = 0.08  # 90 ms
+    assert not (classify(velocity, 0.1, RATE_HZ, CUTOFF_HZ) == Regime.STUCK).any()
+
+
+@pytest.mark.parametrize("after", [1.0, -1.0])
+def test_a_stop_however_short_is_stuck_as_far_as_the_filter_carries_it(after):
+    velocity = np.where(np.arange(800) < 400, 1.0, after)
+    velocity[400:406] = 0.002  # creep, 30 ms
+    regime = classify(velocity, 0.1, RATE_HZ, CUTOFF_HZ)
+    assert np.flatnonzero(regime == Regime.STUCK).tolist() == list(range(400 - MARGIN, 406 + MARGIN))
+
+
+@pytest.mark.parametrize("acceleration", [1.5, 5.0, 20.0])
+def test_what_passes_through_rest_at_a_steady_acceleration_does_not_stand(acceleration):
+    velocity = acceleration * (np.arange(800) - 400.5) / RATE_HZ  # slow for 130, 40 and 10 ms
+    stuck = classify(velocity, 0.1, RATE_HZ, CUTOFF_HZ) == Regime.STUCK
+    assert stuck.any() == (acceleration < 2.0)
 
 
 def test_rows_near_a_change_of_flank():
