@@ -67,6 +67,15 @@ def slope(values: np.ndarray) -> np.ndarray:
     return rate_of_change(values, 20.0)
 
 
+def behind(values: np.ndarray, motion: Motion, lag_s: float) -> np.ndarray:
+    """How far a first-order lag is behind values that are held over every step, from rest on the first."""
+    state, states = values[0], []
+    for value in values:
+        state += (value - state) * (1.0 - np.exp(-motion.step_s / lag_s))
+        states.append(state)
+    return np.array(states) - values
+
+
 def dahl(position: np.ndarray, distance: float) -> np.ndarray:
     """Dahl's equation, integrated in small steps between the samples, less the sign of the motion."""
     state, states, sign = 0.0, [0.0], [1.0]
@@ -158,7 +167,10 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "back_emf_error": ((), lambda m: [m.velocity]),
     "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
     "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
-    "frictional_lag": ((0.5,), lambda m: [m.acceleration * np.exp(-np.abs(m.velocity) / 0.5)]),
+    "frictional_lag": (
+        (0.5, 0.05),
+        lambda m: [np.sign(m.velocity) * behind(np.exp(-np.abs(m.velocity) / 0.5), m, 0.05)],
+    ),
     "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
     "backlash": ((0.3,), crossing),
     "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),

@@ -1,21 +1,34 @@
 """Frictional lag."""
 
 import numpy as np
+from scipy.signal import lfilter
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
+LAGS_S = (0.01, 0.02, 0.04, 0.08, 0.16)  # of grease; of line contacts with oil 3 to 9 ms (Hess, Soom 1990)
+LIKE_THE_CHAIN_S = 0.012  # a shorter one is what filters and delays of a drive make of a reversal
+
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Speeds from the uncertain ones to half the fast ones."""
+    """Speeds from the uncertain ones to half the fast ones, each with lags from a hundredth of a second on."""
     speeds = np.geomspace(2.0 * motion.slow, max(0.5 * motion.fast, 4.0 * motion.slow), 4)
-    return [(float(speed),) for speed in speeds]
+    return [(float(speed), lag_s) for speed in speeds for lag_s in LAGS_S]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """Rate of change of speed, where friction falls with speed, for shape (v_s,); to first order in the lag."""
-    speed = np.abs(motion.velocity)
-    return (motion.acceleration * motion.direction**2 * np.exp(-speed / shape[0]))[None]
+    """How much more dry friction there is than at this speed for long, for shape (v_s, tau)."""
+    speed, lag_s = shape
+    settled = np.exp(-np.abs(motion.velocity) / speed)
+    fade = np.exp(-motion.step_s / lag_s)
+    lagging, _ = lfilter([1.0 - fade], [1.0, -fade], settled, zi=fade * settled[:1])
+    found: FloatArray = motion.direction * (lagging - settled)
+    return found[None]
+
+
+def holds(shape: Shape) -> bool:
+    """Whether the lag is more than the measuring chain makes by itself."""
+    return shape[1] > LIKE_THE_CHAIN_S
 
 
 EFFECT = Effect(
@@ -25,17 +38,19 @@ EFFECT = Effect(
         "Friction follows a change of speed late, as the film between the surfaces thickens and thins: it is "
         "larger while the speed rises than while it falls."
     ),
-    equation=r"c\,\mathrm{sgn}(\dot q)\,\frac{d|\dot q|}{dt}\,e^{-|\dot q|/v_s}",
+    equation=r"c\,(s - e^{-|\dot q|/v_s})\,\mathrm{sgn}(\dot q),\quad \tau\,\dot s = e^{-|\dot q|/v_s} - s",
     columns=columns,
-    parameters=(Parameter("lag times slope of the Stribeck curve", "{effort} s2/{position}", 0.0),),
+    parameters=(Parameter("friction that lags", "{effort}", 0.0),),
     driver="acceleration",
     excited_by="slow motion whose speed rises and falls at several frequencies without reversing",
     source="Hess, Soom 1990; Armstrong, Dupont, Canudas de Wit 1994",
     shapes=shapes,
     smooth_shape=True,
-    shape_names=("speed over which friction falls",),
-    shape_units=("{position}/s",),
+    shape_names=("speed over which friction falls", "lag"),
+    shape_units=("{position}/s", "s"),
     confused_with=("inertia", "pre_sliding"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",
+    holds=holds,
+    ends_within_scan=True,
 )
