@@ -39,9 +39,16 @@ class Ramp:
 
 
 def ramp_trial(
-    name: str, dwell_s: float, rate: float, static: Static, random: np.random.Generator, noise: float = 5e-4
+    name: str,
+    dwell_s: float,
+    rate: float,
+    static: Static,
+    random: np.random.Generator,
+    noise: float = 5e-4,
+    load_kg: float = 0.0,
 ) -> tuple[Recording, list[Ramp]]:
     """Rest, ramp until the joint lets go, a stroke; forwards, then back."""
+    inertia = INERTIA * (1.0 + load_kg)
     torque, speed, made = [np.zeros(int(0.5 * RATE_HZ))], [np.zeros(int(0.5 * RATE_HZ))], []
     for direction in (1.0, -1.0):
         before = dwell_s + (0.5 if direction > 0.0 else 0.0)
@@ -53,25 +60,27 @@ def ramp_trial(
         stroke_s = np.arange(int(STROKE_S * RATE_HZ)) / RATE_HZ
         # it lets go with what the static level exceeds the Coulomb level by, and the ramp goes on, then ends softly
         share = stroke_s / STROKE_S
-        free = ((level - COULOMB) * stroke_s + 0.5 * rate * stroke_s**2) / INERTIA
+        free = ((level - COULOMB) * stroke_s + 0.5 * rate * stroke_s**2) / inertia
         stroke = direction * free * (1.0 - 3.0 * share**2 + 2.0 * share**3)
         speed += [np.zeros(rest + rise), stroke]
         acceleration = np.gradient(stroke, 1.0 / RATE_HZ)
-        moving = INERTIA * acceleration + VISCOUS * stroke + COULOMB * direction
+        moving = inertia * acceleration + VISCOUS * stroke + COULOMB * direction
         torque += [np.zeros(rest), direction * rate * np.arange(rise) / RATE_HZ, moving]
         made.append(Ramp(direction, direction * level, before + rise_s, rate))
     torque.append(np.zeros(int(0.5 * RATE_HZ)))
     speed.append(np.zeros(int(0.5 * RATE_HZ)))
     effort, velocity = np.concatenate(torque), np.concatenate(speed)
-    return _recording(name, velocity, effort + noise * random.standard_normal(len(effort))), made
+    return _recording(name, velocity, effort + noise * random.standard_normal(len(effort)), load_kg), made
 
 
-def swing(name: str, hz: float, random: np.random.Generator) -> Recording:
+def swing(name: str, hz: float, random: np.random.Generator, load_kg: float = 0.0) -> Recording:
     """A sine."""
     time_s = np.arange(0.0, 8.0, 1.0 / RATE_HZ)
     velocity = 1.5 * np.cos(2.0 * np.pi * hz * time_s)
-    effort = INERTIA * np.gradient(velocity, time_s) + VISCOUS * velocity + COULOMB * np.sign(velocity)
-    return _recording(name, velocity, effort + 5e-4 * random.standard_normal(len(effort)))
+    effort = (
+        INERTIA * (1.0 + load_kg) * np.gradient(velocity, time_s) + VISCOUS * velocity + COULOMB * np.sign(velocity)
+    )
+    return _recording(name, velocity, effort + 5e-4 * random.standard_normal(len(effort)), load_kg)
 
 
 def ramp_recordings(
@@ -79,15 +88,15 @@ def ramp_recordings(
     dwells_s: Sequence[float] = (0.3, 1.5, 6.0),
     rates: Sequence[float] = (0.05, 0.15, 0.5),
     seed: int = 1,
+    load_kg: float = 0.0,
 ) -> list[Recording]:
-    """Swings, and ramps through rests and rates."""
+    """Swings, and ramps through rests and rates, under a load that does nothing but to be accelerated."""
     random = np.random.default_rng(seed)
-    made = [swing(f"swing-{hz}", hz, random) for hz in (0.15, 0.3, 0.5, 0.7)]
+    made = [swing(f"swing-{hz}", hz, random, load_kg) for hz in (0.15, 0.3, 0.5, 0.7)]
     for repeat, dwell_s, rate in product(range(REPEATS), dwells_s, rates):
         scatter = 1.0 + 0.01 * random.standard_normal()
-        one = ramp_trial(
-            f"ramp-{dwell_s}-{rate}-{repeat}", dwell_s, rate, lambda t, r, s=scatter: s * static(t, r), random
-        )
+        name = f"ramp-{load_kg}-{dwell_s}-{rate}-{repeat}"
+        one = ramp_trial(name, dwell_s, rate, lambda t, r, s=scatter: s * static(t, r), random, load_kg=load_kg)
         made.append(one[0])
     return made
 
@@ -103,7 +112,9 @@ def ramp_fit(
     return fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL)
 
 
-def _recording(name: str, velocity: np.ndarray, effort: np.ndarray) -> Recording:
+def _recording(name: str, velocity: np.ndarray, effort: np.ndarray, load_kg: float) -> Recording:
+    """One trial; each kilogram of load adds once more the inertia of the arm."""
     time_s = np.arange(len(velocity)) / RATE_HZ
     position = COUNT_RAD * np.round(np.cumsum(velocity) / RATE_HZ / COUNT_RAD)
-    return Recording(name, "ramps", {}, {"time_s": time_s, "position_rad": position, "torque_n_m": effort})
+    conditions = {"load_kg": load_kg, "arm_m": INERTIA**0.5}
+    return Recording(name, "ramps", conditions, {"time_s": time_s, "position_rad": position, "torque_n_m": effort})

@@ -3,7 +3,7 @@
 Static friction is a number of its own here, and so is every effect's share: what holds a joint and what brakes it are
 not the same. What the effort gains until a motion is fast enough to be seen is a column of its own: a body that lets go
 under an effort that grows at a rate r takes a time (2 J v / r)^(1/2) to the speed v, and the effort grows by
-(2 J v r)^(1/2) meanwhile.
+(2 J v r)^(1/2) meanwhile. A heavier arm is seen later, which is no friction of its weight.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,6 +14,7 @@ import numpy as np
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.effects.effect import Effect, Parameter, Shape
 from compensator.lab.model.linear import Bounds, solve
+from compensator.lab.model.prediction import whole_inertia
 from compensator.lab.model.validation import FEWEST_TRIALS, HeldOut, HeldOutKind, relative_error, rms
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray
@@ -103,7 +104,7 @@ def _fit(rows: BreakawayRows, effects: Sequence[Effect], shapes: Mapping[str, Sh
     ]
     blocks = [rows.columns(share, shape) for _, shape, _, share in named]
     parts: list[tuple[str, Shape, tuple[Parameter, ...]]] = [one[:3] for one in named]
-    parts.append((LAG, (), (Parameter("gained until motion is seen", "({effort} s)^1/2", 0.0),)))
+    parts.append((LAG, (), (Parameter("gained until motion is seen, over that until the slow speed", "1", 0.0),)))
     blocks.append(lag_column(rows))
     columns = np.nan_to_num(np.concatenate(blocks, axis=1))
     parameters = [parameter for _, _, own in parts for parameter in own]
@@ -120,8 +121,12 @@ def _fit(rows: BreakawayRows, effects: Sequence[Effect], shapes: Mapping[str, Sh
 
 
 def lag_column(rows: BreakawayRows) -> FloatArray:
-    """The root of the rate along the motion, shape (E, 1)."""
-    return (rows.direction * np.sqrt(rows.rate))[:, None]
+    """What the effort gains along the motion until the speed is the slow one, shape (E, 1)."""
+    dataset = rows.fit.dataset
+    inertia = np.array([whole_inertia(rows.fit, trial.motion) for trial in dataset.trials])[rows.trial_index]
+    gained = np.sqrt(2.0 * np.maximum(inertia, 0.0) * dataset.scales.slow * rows.rate)
+    # without an inertia in the model, it is the same in all trials, and the coefficient has its unit
+    return (rows.direction * (gained if np.all(inertia > 0.0) else np.sqrt(rows.rate)))[:, None]
 
 
 def weights_of(rows: BreakawayRows, columns: FloatArray) -> tuple[FloatArray, float]:

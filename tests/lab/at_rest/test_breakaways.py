@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.at_rest.breakaway_regression import LAG, fit_breakaway, held_out_breakaway
+from compensator.lab.at_rest.breakaway_regression import LAG, fit_breakaway, held_out_breakaway, lag_column
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
 from compensator.lab.diagnosis.breakaway_family import FEWEST_STARTS, breakaway_answer
@@ -169,3 +169,17 @@ def test_what_the_model_has_is_no_evidence_for_what_would_stand_in_its_place():
     effort = 5.0 * would_be[:, 0] + 0.1 * random.standard_normal(40)
     bases = [Base.of(np.hstack([constant_part, has]), effort), Base.of(constant_part, effort)]
     assert screen_events(bases, [block], unit).p_value <= 0.002
+
+
+def test_a_heavier_arm_is_seen_to_start_later_and_that_is_no_friction_of_its_weight():
+    """Of a joint whose static friction is the same under each load, and whose inertia is not."""
+    made = [one for load_kg in (0.0, 1.0, 3.0) for one in ramp_recordings(constant, seed=int(load_kg), load_kg=load_kg)]
+    fit = fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL)
+    rows = breakaway_rows(fit)
+    heavy = rows.driver("load_kg") == 3.0
+    column = np.abs(lag_column(rows)[:, 0]) / np.sqrt(rows.rate)
+    assert column[heavy].mean() == pytest.approx(2.0 * column[rows.driver("load_kg") == 0.0].mean(), rel=0.1)
+    answer, _ = breakaway_answer(fit, rows)
+    assert answer.verdict == "nothing", answer.sentence
+    gained = fit_breakaway(rows, fit.effects).coefficients_of(LAG)
+    assert 0.0 < gained[0] < 3.0  # over what it gains until the slow speed
