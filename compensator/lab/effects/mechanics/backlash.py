@@ -9,8 +9,8 @@ from compensator.lab.recordings.recording import FloatArray
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Gaps from a five-hundredth to a fifth of the travel."""
-    return [(float(share * motion.position_span),) for share in np.geomspace(2e-3, 0.2, 15)]
+    """Gaps from a two-thousandth to a fifth of the travel."""
+    return [(float(share * motion.position_span),) for share in np.geomspace(5e-4, 0.2, 19)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
