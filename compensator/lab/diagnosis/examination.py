@@ -12,7 +12,7 @@ from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_o
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import Effect, EffectRows, MotionRows, Shape
-from compensator.lab.model.fit import fit_model, with_columns
+from compensator.lab.model.fit import fit_model, fit_sliding, with_columns
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
 from compensator.lab.model.validation import HeldOut, held_out
@@ -67,7 +67,8 @@ NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in fo
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect: the answer, others that are confirmed, the rest; each by score."""
     before = _held_out(fit, gathered.show_in)
-    fits = [with_effect(fit, item.block.name, shape_of(item)) for item in progress.each(evidence)]
+    sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
+    fits = [with_effect(fit, item.block.name, shape_of(item), sliding) for item in progress.each(evidence)]
     afters = [_held_out(explained, gathered.show_in) for explained in fits]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
@@ -182,9 +183,16 @@ def _lasts(gain: Gain, rows: EffectRows, least: float) -> bool:
     return rows == "sliding"
 
 
-def with_effect(fit: Fit, name: str, shape: Shape) -> Fit:
-    """The model and one more effect of a given shape, refitted at the shapes already found."""
-    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: shape})
+def with_effect(fit: Fit, name: str, shape: Shape, sliding: Fit | None = None) -> Fit:
+    """The model and one more effect of a given shape, refitted at the shapes already found.
+
+    Args:
+        fit: of the model.
+        name: of the effect.
+        shape: of it.
+        sliding: the model without it on rows of steady sliding, where it shows in others and that is known.
+    """
+    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: shape}, sliding)
 
 
 def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:

@@ -20,7 +20,7 @@ from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
 MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
-SETTLED_SHARE = 1e-7  # change of the prediction that counts as none
+SETTLED_SHARE = 1e-6  # change of the prediction that counts as none
 
 
 def fit_model(
@@ -28,6 +28,7 @@ def fit_model(
     effects: Sequence[str],
     training: BoolArray | None = None,
     shapes: Mapping[str, Shape] | None = None,
+    sliding: Fit | None = None,
 ) -> Fit:
     """Fit the named effects, every coefficient within its physical bounds.
 
@@ -36,6 +37,7 @@ def fit_model(
         effects: names, in order; of columns that the data cannot tell apart, the later is dropped.
         training: rows to fit to, shape (N,); all counted rows if None.
         shapes: nonlinear shapes to keep as they are; those not given are searched.
+        sliding: what `fit_sliding` gives for these arguments, where it is known.
 
     Raises:
         UnusableDataError: no effects, or fewer rows than columns.
@@ -48,11 +50,19 @@ def fit_model(
     if not (rows & (dataset.regime != Regime.SLIDING)).any() or dataset.rows != "sliding":
         return _fit(dataset, chosen, rows, shapes or {}, np.ones(len(rows)))
     # rows near reversals were asked for by an effect that lives there: they must not outvote the others
-    steady = [effect for effect in chosen if effect.rows == "sliding"] or chosen
-    sliding = rows & (dataset.regime == Regime.SLIDING)
-    first = _fit(dataset, steady, sliding, shapes or {}, np.ones(len(rows)))
+    first = sliding or fit_sliding(dataset, effects, rows, shapes)
     kept = {**{name: first.shapes[name] for name in first.names}, **(shapes or {})}
     return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows))
+
+
+def fit_sliding(
+    dataset: Dataset, effects: Sequence[str], training: BoolArray, shapes: Mapping[str, Shape] | None = None
+) -> Fit:
+    """Those of the effects that steady sliding shows, fitted to the rows of it. Arguments as `fit_model`."""
+    chosen = [effect_named(name) for name in effects]
+    steady = [effect for effect in chosen if effect.rows == "sliding"] or chosen
+    rows = training & (dataset.regime == Regime.SLIDING)
+    return _fit(dataset, steady, rows, shapes or {}, np.ones(len(rows)))
 
 
 def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
@@ -96,6 +106,9 @@ def _fit(
     misread = any(effect.misreads is not None for effect in effects)
     dataset = (dataset if misread else dataset.as_read()).straightened()
     plain = [effect for effect in effects if not effect.uses_prediction]
+    if dataset.is_predicted and not misread and all(effect.name in kept for effect in effects if effect.shape_names):
+        # the prediction of a model that is nearly this one is a better start than none
+        return _settle(fit_linear(dataset, effects, rows, kept, weight), effects, kept, weight)
     shapes = find_shapes(dataset, plain or effects, rows, kept, weight)
     fit = fit_linear(dataset, plain or effects, rows, shapes, weight)
     if len(plain) == len(effects):
@@ -104,6 +117,8 @@ def _fit(
     for _ in range(MOST_SEARCHES):
         before, own = fit.shapes, with_own_prediction(fit)
         shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before)
+        if shapes == before and not misread:
+            break
         fit = _settle(fit, effects, shapes, weight)
         if not any(effect.misreads is not None and shapes[effect.name] != before[effect.name] for effect in effects):
             break  # else all other shapes were found where the joint is not
@@ -115,15 +130,28 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], we
 
     Teeth that meet a little sooner or later leave a rest that does not shrink any more: there, too, it ends.
     """
-    last = np.inf
+    misread = any(effect.misreads is not None for effect in effects)  # a position need not be found more exactly
+    last, given, before, earlier = np.inf, fit, fit.predicted, None
     for _ in range(MOST_PASSES):
-        before = fit.predicted
-        fit = fit_linear(with_own_prediction(fit), effects, fit.training, shapes, weight)
-        change = float(np.linalg.norm(fit.predicted - before))
-        if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or change >= last:
+        fit = fit_linear(with_own_prediction(given), effects, fit.training, shapes, weight)
+        step = fit.predicted - before
+        change = float(np.linalg.norm(step))
+        if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or (change >= last and earlier is None):
             break
+        given, before = fit, fit.predicted
+        if earlier is not None and change < last and not misread:
+            given, before = _ahead(fit, step, *earlier)
+        earlier = (fit, step) if change < last else None
         last = change
     return fit
+
+
+def _ahead(fit: Fit, step: FloatArray, earlier: Fit, earlier_step: FloatArray) -> tuple[Fit, FloatArray]:
+    """Where two passes lead, by the secant of their steps (Anderson 1965), and what the model predicts there."""
+    turn = step - earlier_step
+    share = float(step @ turn) / max(float(turn @ turn), np.finfo(float).tiny)
+    ahead = with_terms(fit, fit.coefficients - share * (fit.coefficients - earlier.coefficients))
+    return ahead, fit.predicted - share * (fit.predicted - earlier.predicted)
 
 
 def fit_linear(

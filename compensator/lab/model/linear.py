@@ -41,15 +41,17 @@ class Solution:
 def independent(columns: FloatArray) -> BoolArray:
     """Which columns of (N, k) are not combinations of those before them; modified Gram-Schmidt."""
     kept = np.zeros(columns.shape[1], dtype=bool)
-    basis = np.empty((columns.shape[0], 0))
+    whole, rank = np.empty(columns.shape, order="F"), 0
     for index, column in enumerate(columns.T):
         norm = float(np.linalg.norm(column))
+        basis = whole[:, :rank]
         rest = column - basis @ (basis.T @ column)
         rest -= basis @ (basis.T @ rest)  # twice is enough (Kahan, Parlett)
         left = float(np.linalg.norm(rest))
         if norm > 0.0 and left > DEPENDENT * norm:
             kept[index] = True
-            basis = np.column_stack([basis, rest / left])
+            whole[:, rank] = rest / left
+            rank += 1
     return kept
 
 

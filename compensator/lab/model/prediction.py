@@ -34,7 +34,7 @@ def with_own_prediction(fit: Fit) -> Dataset:
             if term.effect.carried:
                 load += part
         known = _inertia_beyond(fit, trial.motion, per_torque)
-        whole = _whole_inertia(fit, trial.motion)
+        whole = whole_inertia(fit, trial.motion)
         inertia = known if trial.motion.facts.arm_inertia_kg_m2 else whole
         beyond.append((inertia, (load + inertia * trial.motion.acceleration) / (inertia or np.inf)))
         loads.append(load + known * trial.motion.acceleration)
@@ -117,10 +117,10 @@ def _inertia_beyond(fit: Fit, motion: Motion, per_torque: float | None) -> float
     beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
     if beyond_kg_m2 > 0.0 and per_torque is not None:
         return per_torque * beyond_kg_m2
-    return 0.0 if motion.facts.joint == "rotary" else _whole_inertia(fit, motion)
+    return 0.0 if motion.facts.joint == "rotary" else whole_inertia(fit, motion)
 
 
-def _whole_inertia(fit: Fit, motion: Motion) -> float:
+def whole_inertia(fit: Fit, motion: Motion) -> float:
     """Effort per acceleration of everything, rotor and all: the best guess where no drawing tells."""
     inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)
     return 0.0 if inertia is None else float(inertia.coefficients @ (1.0, motion.load_inertia_kg_m2))

@@ -6,6 +6,7 @@ the sampling rate, a tenth of the acceleration, which then looks like an elastic
 """
 
 import numpy as np
+from numba import njit
 
 from compensator.lab.recordings.recording import FloatArray
 
@@ -14,13 +15,22 @@ WEIGHTS = np.array([4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0])  # of the
 
 def rate_of_change(values: FloatArray, rate_hz: float) -> FloatArray:
     """Derivative of values (n,) sampled at a uniform rate; of second order in the four samples at each end."""
-    derived: FloatArray = np.gradient(values, 1.0 / rate_hz)
     reach = len(WEIGHTS)
-    inner = slice(reach, len(values) - reach)
-    if len(values) > 2 * reach:
-        total = np.zeros(len(values) - 2 * reach)
-        for distance, weight in enumerate(WEIGHTS, 1):
-            ahead = values[reach + distance : len(values) - reach + distance]
-            total += weight * (ahead - values[reach - distance : len(values) - reach - distance])
-        derived[inner] = total * rate_hz
+    if len(values) <= 2 * reach + 2:
+        few: FloatArray = np.gradient(values, 1.0 / rate_hz)
+        return few
+    derived = np.empty(len(values))
+    derived[: reach + 1] = np.gradient(values[: reach + 2], 1.0 / rate_hz)[:-1]
+    derived[-reach - 1 :] = np.gradient(values[-reach - 2 :], 1.0 / rate_hz)[1:]
+    _inner(np.asarray(values, dtype=np.float64), WEIGHTS, rate_hz, derived)
     return derived
+
+
+@njit(cache=True)
+def _inner(values: FloatArray, weights: FloatArray, rate_hz: float, derived: FloatArray) -> None:
+    reach = len(weights)
+    for row in range(reach, len(values) - reach):
+        total = 0.0
+        for distance in range(1, reach + 1):
+            total += weights[distance - 1] * (values[row + distance] - values[row - distance])
+        derived[row] = total * rate_hz

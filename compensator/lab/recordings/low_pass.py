@@ -1,16 +1,21 @@
 """The zero-phase low-pass that columns and effort go through alike.
 
 A diagnosis filters thousands of columns of short trials. scipy's filter takes one after the other, and each call costs
-more than the work; here all columns go side by side through each section, which is the same arithmetic.
+more than the work; here all columns, of one trial or of many, go side by side through each section, which is the same
+arithmetic.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt_zi
 
 from compensator.lab.recordings.recording import FloatArray
+
+IntArray = NDArray[np.int64]
 
 FILTER_ORDER = 4
 PADDING = 3  # times the filter's length, continued at both ends
@@ -26,12 +31,35 @@ def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray
     """
     if cutoff_hz >= 0.49 * rate_hz:
         return values
-    sections, steady = filter_sections(cutoff_hz, rate_hz)
-    padding = PADDING * (2 * len(sections) + 1)
-    padded = np.ascontiguousarray(_odd_extension(np.atleast_2d(values), padding).T, dtype=np.float64)
-    _there_and_back(sections, steady, padded)
-    filtered: FloatArray = np.ascontiguousarray(padded[padding:-padding].T).reshape(values.shape)
-    return filtered
+    [filtered] = low_pass_each([np.atleast_2d(values)], cutoff_hz, [rate_hz])
+    return np.ascontiguousarray(filtered).reshape(values.shape)
+
+
+def low_pass_each(blocks: Sequence[FloatArray], cutoff_hz: float, rates_hz: Sequence[float]) -> list[FloatArray]:
+    """The same for several blocks (k, n), as of several trials, each of its own length and rate; all at once."""
+    found = list(blocks)
+    some = [index for index, rate_hz in enumerate(rates_hz) if cutoff_hz < 0.49 * rate_hz and blocks[index].size]
+    if not some:
+        return found
+    # the longest first, so that the columns that have begun stand side by side
+    some.sort(key=lambda index: -blocks[index].shape[1])
+    designs = [filter_sections(cutoff_hz, rates_hz[index]) for index in some]
+    padding = PADDING * (2 * len(designs[0][0]) + 1)
+    widths, lengths = zip(*((len(blocks[index]), blocks[index].shape[1] + 2 * padding) for index in some), strict=True)
+    sections = np.repeat([one for one, _ in designs], widths, axis=0).transpose(1, 2, 0)
+    steady = np.repeat([one for _, one in designs], widths, axis=0).transpose(1, 2, 0)
+    first_rows = lengths[0] - np.array(lengths)
+    together = np.empty((lengths[0], sum(widths)))
+    parts = []
+    for index, first, part in zip(some, first_rows, np.split(together, np.cumsum(widths)[:-1], axis=1), strict=True):
+        _put_with_odd_extension(blocks[index].T, part[first:], padding)
+        parts.append((index, part[first + padding : lengths[0] - padding].T))
+    _there_and_back(
+        np.ascontiguousarray(sections), np.ascontiguousarray(steady), np.repeat(first_rows, widths), together
+    )
+    for index, part in parts:
+        found[index] = part
+    return found
 
 
 @lru_cache(maxsize=256)
@@ -41,31 +69,58 @@ def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, Float
     return sections, sosfilt_zi(sections)
 
 
-def _odd_extension(values: FloatArray, count: int) -> FloatArray:
-    """Values continued at both ends by their own mirror image through the end points."""
-    before = 2.0 * values[..., :1] - values[..., count:0:-1]
-    after = 2.0 * values[..., -1:] - values[..., -2 : -count - 2 : -1]
-    return np.concatenate([before, values, after], axis=-1)
+def _put_with_odd_extension(values: FloatArray, into: FloatArray, count: int) -> None:
+    """Values (n, k), continued at both ends by their own mirror image through the end points."""
+    into[count:-count] = values
+    into[:count] = 2.0 * values[:1] - values[count:0:-1]
+    into[-count:] = 2.0 * values[-1:] - values[-2 : -count - 2 : -1]
 
 
 @njit(cache=True)
-def _there_and_back(sections: FloatArray, steady: FloatArray, values: FloatArray) -> None:
-    """Filter along the first axis of (n, k), forward and backward, each from the steady state of its first value."""
+def _there_and_back(sections: FloatArray, steady: FloatArray, first_rows: IntArray, values: FloatArray) -> None:
+    """Filter along the first axis of (n, k), forward and backward, each from the steady state of its first value.
+
+    Args:
+        sections: of each column's filter, shape (sections, 6, k).
+        steady: state that a constant 1 settles to, shape (sections, 2, k).
+        first_rows: where each column begins, rising; all end together; shape (k,).
+        values: replaced, shape (n, k).
+    """
     count, columns = values.shape
     first, second = np.empty((len(sections), columns)), np.empty((len(sections), columns))
-    for way in range(2):
-        start = values[0] if way == 0 else values[count - 1]
-        for section in range(len(sections)):
-            for column in range(columns):
-                first[section, column] = steady[section, 0] * start[column]
-                second[section, column] = steady[section, 1] * start[column]
-        for step in range(count):
-            row = step if way == 0 else count - 1 - step
-            for section in range(len(sections)):
-                b0, b1, b2, _, a1, a2 = sections[section]
-                for column in range(columns):  # innermost, so that they are done side by side
-                    put_in = values[row, column]
-                    out = b0 * put_in + first[section, column]
-                    first[section, column] = b1 * put_in - a1 * out + second[section, column]
-                    second[section, column] = b2 * put_in - a2 * out
-                    values[row, column] = out
+    begun = 0
+    for row in range(count):
+        while begun < columns and first_rows[begun] <= row:
+            _settle(steady, first, second, values, row, begun)
+            begun += 1
+        _step(sections, first, second, values, row, begun)
+    for column in range(columns):
+        _settle(steady, first, second, values, count - 1, column)
+    for row in range(count - 1, -1, -1):
+        while begun > 0 and first_rows[begun - 1] > row:
+            begun -= 1
+        _step(sections, first, second, values, row, begun)
+
+
+@njit(cache=True, inline="always")
+def _settle(
+    steady: FloatArray, first: FloatArray, second: FloatArray, values: FloatArray, row: int, column: int
+) -> None:
+    for section in range(len(steady)):
+        first[section, column] = steady[section, 0, column] * values[row, column]
+        second[section, column] = steady[section, 1, column] * values[row, column]
+
+
+@njit(cache=True, inline="always")
+def _step(
+    sections: FloatArray, first: FloatArray, second: FloatArray, values: FloatArray, row: int, begun: int
+) -> None:
+    for section in range(len(sections)):
+        b0, b1, b2 = sections[section, 0], sections[section, 1], sections[section, 2]
+        a1, a2 = sections[section, 4], sections[section, 5]
+        for column in range(begun):  # innermost, so that they are done side by side
+            put_in = values[row, column]
+            out = b0[column] * put_in + first[section, column]
+            first[section, column] = b1[column] * put_in - a1[column] * out + second[section, column]
+            second[section, column] = b2[column] * put_in - a2[column] * out
+            values[row, column] = out

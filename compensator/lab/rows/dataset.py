@@ -13,7 +13,7 @@ from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.effort import Effort
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.low_pass import low_pass_each
 from compensator.lab.recordings.processing import Signals
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.regimes import BoolArray, Regime
@@ -23,6 +23,7 @@ IntArray = NDArray[np.int64]
 ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds the one before
 
 MOST_VALUES = 2**20  # of one trial, at the full rate, that are filtered at once
+SIDE_BY_SIDE = 32  # columns of several trials that are filtered at once, at least
 EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
 BLOCK_S = 2.0  # rows closer than this are not independent
 
@@ -120,6 +121,11 @@ class Dataset:
         motions = [trial.motion for trial in self.trials]
         bends = self.stack([np.maximum(np.abs(motion.bend), motion.doubt)[None] for motion in motions])[:, 0]
         return 1.0 / (1.0 + np.maximum(bends, 0.0))
+
+    @property
+    def is_predicted(self) -> bool:
+        """Whether a model's prediction is in the motions (see `with_prediction`)."""
+        return any(trial.motion.largest_effort > 0.0 for trial in self.trials)
 
     @cached_property
     def is_bent(self) -> bool:
@@ -233,7 +239,15 @@ class Dataset:
 
     def stack(self, full_rate: Iterable[FloatArray]) -> FloatArray:
         """Filter and thin arrays (k, n) given per trial, one after the other; shape (N, k)."""
-        parts = [self._filtered(trial, rows) for trial, rows in zip(self.trials, full_rate, strict=True)]
+        parts: list[FloatArray] = []
+        waiting: list[FloatArray] = []
+        for rows in full_rate:
+            waiting.append(rows)
+            if sum(map(np.size, waiting)) >= SIDE_BY_SIDE * rows.shape[1]:
+                parts += self._filtered(len(parts), waiting)
+                waiting = []
+        parts += self._filtered(len(parts), waiting)
+        assert len(parts) == len(self.trials)
         return np.concatenate(parts, axis=1).T
 
     def rows_of(self, full_rate: Sequence[FloatArray]) -> FloatArray:
@@ -344,13 +358,28 @@ class Dataset:
         values = np.array([trial.motion.condition(quantity, 0.0) for trial in self.trials])
         return bool(np.ptp(values) > 0.0)
 
-    def _filtered(self, trial: Trial, full_rate: FloatArray) -> FloatArray:
-        found = np.zeros((len(full_rate), len(trial.picked)))
+    def _filtered(self, start: int, full_rate: Sequence[FloatArray]) -> list[FloatArray]:
+        """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on."""
+        trials = self.trials[start : start + len(full_rate)]
         # orders that an effect does not use are rows of zeros
-        some = full_rate.any(axis=1)
-        if some.any():
-            found[some] = low_pass(full_rate[some], self.cutoff_hz, trial.signals.rate_hz)[:, trial.picked]
+        used = [_used(rows) for rows in full_rate]
+        filtered = low_pass_each(
+            [rows[some] for rows, some in zip(full_rate, used, strict=True)],
+            self.cutoff_hz,
+            [trial.signals.rate_hz for trial in trials],
+        )
+        found = []
+        for trial, some, own in zip(trials, used, filtered, strict=True):
+            thinned = np.zeros((len(some), len(trial.picked)))
+            thinned[some] = own[:, trial.picked]
+            found.append(thinned)
         return found
+
+
+def _used(columns: FloatArray) -> BoolArray:
+    """Which columns (k, n) hold anything."""
+    begins: BoolArray = columns[:, 0] != 0.0  # most are seen at once
+    return begins if begins.all() else np.asarray(columns.any(axis=1))
 
 
 def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:

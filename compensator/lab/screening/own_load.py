@@ -12,7 +12,8 @@ from dataclasses import replace
 
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
-from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fit import fit_model, fit_sliding
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.shape_search import REFINEMENTS, between, power_within
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.candidates import Candidates
@@ -27,7 +28,9 @@ def on_own_load(gathered: Candidates) -> Candidates:
     speaking = [name for name in _building_on_load(gathered) if _best(gathered, name)[0] > 0.0]
     loads = dict.fromkeys(speaking, gathered.fit.dataset)
     if len(speaking) > 1:
-        loads = {name: _with_best(gathered, name) for name in speaking}
+        fit = gathered.fit
+        sliding = fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
+        loads = {name: _with_best(gathered, name, sliding) for name in speaking}
         renewed = {name: _renewed(gathered, name, dataset) for name, dataset in loads.items()}
         named = [renewed.get(block.name, {}).get(block.key, block) for block in gathered.named]
         gathered = replace(gathered, named=named)
@@ -45,10 +48,10 @@ def _best(gathered: Candidates, name: str) -> tuple[float, Block]:
     return max(scored, key=lambda one: one[0])
 
 
-def _with_best(gathered: Candidates, name: str) -> Dataset:
+def _with_best(gathered: Candidates, name: str, sliding: Fit) -> Dataset:
     """The dataset with the load that a model with the effect's best shape in it predicts."""
     fit, best = gathered.fit, _best(gathered, name)[1]
-    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: _shape(best)}).dataset
+    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: _shape(best)}, sliding).dataset
 
 
 def _renewed(gathered: Candidates, name: str, dataset: Dataset) -> dict[object, Block]:

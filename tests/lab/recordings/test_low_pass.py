@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import sosfiltfilt
 
-from compensator.lab.recordings.low_pass import FILTER_ORDER, filter_sections, low_pass
+from compensator.lab.recordings.low_pass import FILTER_ORDER, filter_sections, low_pass, low_pass_each
 
 CUTOFF_HZ = 8.0
 
@@ -35,3 +35,15 @@ def test_columns_side_by_side_are_filtered_as_scipy_filters_each(shape, cutoff_h
 def test_whole_numbers_are_filtered_as_numbers():
     steps = np.repeat([0, 100], 300)
     assert low_pass(steps, CUTOFF_HZ, 200.0) == pytest.approx(low_pass(steps.astype(float), CUTOFF_HZ, 200.0))
+
+
+def test_blocks_of_any_length_and_rate_are_filtered_at_once_as_each_alone():
+    random = np.random.default_rng(2)
+    rates_hz = [200.0, 210.0, 1000.0, 15.0, 200.0]
+    shapes = [(2, 300), (1, 900), (3, 900), (1, 200), (0, 400)]
+    blocks = [random.standard_normal(shape) for shape in shapes]
+    found = low_pass_each(blocks, CUTOFF_HZ, rates_hz)
+    for one, block, rate_hz in zip(found, blocks, rates_hz, strict=True):
+        assert np.array_equal(one, low_pass(block, CUTOFF_HZ, rate_hz))
+    assert found[3] is blocks[3]  # the cut-off is beyond Nyquist
+    assert low_pass_each([], CUTOFF_HZ, []) == []
