@@ -39,15 +39,14 @@ class Rows:
     stratum: NDArray[np.int64]  # 0 steady motion, 1 slow or near a reversal, 2 commanded by current
 
     @classmethod
-    def of(cls, recordings: list[SecondRecording], scales: Scales, measured: bool = False) -> "Rows":
-        """Join the trials of a joint.
+    def of(cls, recordings: list[SecondRecording], scales: Scales) -> "Rows":
+        """Join the trials of a joint; motion is that of the recorded position, and the effort in the same band.
 
         Args:
             recordings: of it.
             scales: of it.
-            measured: motion from the recorded position, as whoever does not know the truth has it.
         """
-        parts = [_of_one(one, number, measured) for number, one in enumerate(recordings)]
+        parts = [_of_one(one, number) for number, one in enumerate(recordings)]
         angle, rate, acceleration, passed, load_kg, warm_c, session_s, way, effort, effort_rate, number = (
             np.concatenate(values) for values in zip(*parts, strict=True)
         )
@@ -61,24 +60,21 @@ class Rows:
         )  # fmt: skip
 
 
-def _of_one(one: SecondRecording, number: int, measured: bool) -> list[FloatArray]:
-    time_s, truth, effort_rate = one.channels["time_s"], one.truth, np.gradient(one.effort, one.channels["time_s"])
-    if measured:
-        position = one.channels["position_rad"]
-        angle, speed, acceleration = (_rate(time_s, position, order) for order in range(3))
-        truth = truth._replace(reading_rad=angle, speed_rad_s=speed, acceleration_rad_s2=acceleration)
-        effort_rate = _rate(time_s, one.effort, 1)
+def _of_one(one: SecondRecording, number: int) -> list[FloatArray]:
+    time_s = one.channels["time_s"]
+    angle, speed, acceleration = (_rate(time_s, one.channels["position_rad"], order) for order in range(3))
+    effort, effort_rate = (_rate(time_s, one.effort, order) for order in range(2))
     count = len(time_s)
     return [
-        truth.reading_rad,
-        truth.speed_rad_s,
-        truth.acceleration_rad_s2,
-        truth.passed_n_m,
+        angle,
+        speed,
+        acceleration,
+        one.truth.passed_n_m,
         np.full(count, one.load_kg),
         np.full(count, one.gear_c),
         one.session_s + time_s,
-        _way(truth.reading_rad, truth.speed_rad_s),
-        one.effort,
+        _way(angle, speed),
+        effort,
         effort_rate,
         np.full(count, float(number)),
     ]

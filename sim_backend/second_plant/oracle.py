@@ -1,13 +1,16 @@
-"""How far a mechanism stands out of recordings, from the truth: what an ideal judge could know.
+"""How far a mechanism stands out of recordings: what an ideal judge could know, who has both joints to compare.
 
-The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the true
-motion takes what it can; the difference D of what is left is the mechanism's evidence.
+The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the motion
+that the encoder shows takes what it can; the difference D of what is left is the mechanism's evidence.
 
-    s = rms that the base model leaves of the joint without the mechanism, over measured motion and with noise, in
-        steady motion, near reversals, and where the current is commanded, each for itself
-    r = rms(D / s)
+    s = rms that the base model leaves of the joint without the mechanism, with noise, in steady motion, near
+        reversals, and where the current is commanded, each for itself
+    r = sqrt(mean((D / s)^2) - mean((D0 / s)^2))
     lambda = n / v ln(1 + r^2),   v = (1 + rho_1) / (1 - rho_1) of that remainder (rows per independent row)
     d' = sqrt(lambda (1 - rho^2)), rho the largest correlation of D / s with another mechanism's columns
+
+D0 is the difference of two recordings without the mechanism, of which one has NUDGE more dry friction. Any model takes
+that, but a joint that sticks and breaks away does so some milliseconds later: so much differs whatever is changed.
 """
 
 from dataclasses import dataclass
@@ -21,6 +24,7 @@ from sim_backend.second_plant.recording import record
 
 FloatArray = NDArray[np.float64]
 MOST_CORRELATED = 0.97
+NUDGE = 1e-3  # of dry friction
 STRATA = 3
 
 
@@ -33,12 +37,14 @@ class Floor:
         dependent: rows per independent row.
         rows: without noise.
         remainder: of these over `left`, shape (n,); 0 where the joint rests.
+        divergence: power per row of D0 over `left`.
     """
 
     left: FloatArray
     dependent: float
     rows: Rows
     remainder: FloatArray
+    divergence: float
 
 
 @dataclass(frozen=True)
@@ -66,7 +72,7 @@ def floor_of(joint: DrawnJoint, name: str) -> Floor:
         name: of the mechanism.
     """
     without = frozenset({name})
-    noisy = Rows.of(record(joint, without=without), joint.scales, measured=True)
+    noisy = Rows.of(record(joint, without=without), joint.scales)
     quiet = Rows.of(record(joint, quiet=True, without=without), joint.scales)
     left = np.ones(STRATA)
     for _ in range(2):  # least squares, then weighted by what each stratum leaves
@@ -76,7 +82,10 @@ def floor_of(joint: DrawnJoint, name: str) -> Floor:
             left[stratum] = float(np.sqrt(np.mean(own**2))) if len(own) else 1.0
     white = (remainder / left[noisy.stratum])[noisy.moving]
     one = float(np.clip(white[:-1] @ white[1:] / (white @ white), 0.0, MOST_CORRELATED))
-    return Floor(left, (1.0 + one) / (1.0 - one), quiet, _remainder(quiet, joint, left))
+    remainder = _remainder(quiet, joint, left)
+    nudged = Rows.of(record(joint, quiet=True, without=without, friction_factor=1.0 + NUDGE), joint.scales)
+    shown, _ = _shown(nudged, joint, left, (quiet, remainder))
+    return Floor(left, (1.0 + one) / (1.0 - one), quiet, remainder, float(np.mean(shown**2)))
 
 
 def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Evidence:
@@ -90,13 +99,9 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
     floor = floor or floor_of(joint, name)
     rows = Rows.of(record(joint, quiet=True), joint.scales)
     moving, weight = rows.moving, 1.0 / floor.left[rows.stratum]
-    paired = moving & floor.rows.moving
-    remainder = _remainder(rows, joint, floor.left)
-    difference = np.where(paired, remainder - floor.remainder, 0.0)
-    shown = difference[moving]
-    basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[moving])
-    shown = shown - basis @ (basis.T @ shown)
-    ratio, independent = float(np.sqrt(np.mean(shown**2))), len(shown) / floor.dependent
+    shown, basis = _shown(rows, joint, floor.left, (floor.rows, floor.remainder))
+    power = max(float(np.mean(shown**2)) - floor.divergence, 0.0)
+    ratio, independent = float(np.sqrt(power)), len(shown) / floor.dependent
     correlation, rival = 0.0, ""
     for other, columns in rival_columns(rows, joint.scales).items():
         alike = 0.0 if other == name else _correlation(shown, basis, (columns * weight[:, None])[moving])
@@ -104,6 +109,17 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
             correlation, rival = alike, other
     strength = independent * float(np.log1p(ratio**2))
     return Evidence(ratio, float(np.sqrt(strength * (1.0 - correlation**2))), rival, independent)
+
+
+def _shown(
+    rows: Rows, joint: DrawnJoint, left: FloatArray, other: tuple[Rows, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """How much more the base model leaves than of other rows, where both move; and the basis of that model."""
+    remainder, (other_rows, other_remainder) = _remainder(rows, joint, left), other
+    difference = np.where(rows.moving & other_rows.moving, remainder - other_remainder, 0.0)[rows.moving]
+    weight = 1.0 / left[rows.stratum]
+    basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[rows.moving])
+    return difference - basis @ (basis.T @ difference), basis
 
 
 def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:

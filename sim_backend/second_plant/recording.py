@@ -38,15 +38,19 @@ class SecondRecording:
     truth: Traces
 
 
-def record(joint: DrawnJoint, quiet: bool = False, without: frozenset[str] = frozenset()) -> list[SecondRecording]:
+def record(
+    joint: DrawnJoint, quiet: bool = False, without: frozenset[str] = frozenset(), friction_factor: float = 1.0
+) -> list[SecondRecording]:
     """Every trial of a joint.
 
     Args:
         joint: drawn.
         quiet: without measurement noise and without scatter from trial to trial.
         without: names of hidden mechanisms that are left out.
+        friction_factor: on dry friction, in every quiet trial.
     """
-    return [_recorded(joint, trial, quiet, without) for trial in joint.trials]
+    trials = [replace(trial, friction_factor=friction_factor) for trial in joint.trials] if quiet else joint.trials
+    return [_recorded(joint, trial, quiet, without) for trial in trials]
 
 
 def simulated(joint: DrawnJoint, trial: Trial, without: frozenset[str] = frozenset()) -> tuple[Physics, Traces]:
@@ -61,8 +65,6 @@ def simulated(joint: DrawnJoint, trial: Trial, without: frozenset[str] = frozens
 
 
 def _recorded(joint: DrawnJoint, trial: Trial, quiet: bool, without: frozenset[str]) -> SecondRecording:
-    if quiet:
-        trial = replace(trial, friction_factor=1.0)
     _, traces = simulated(joint, trial, without)
     random = np.random.default_rng((trial.seed, 3))
     sensors, times = joint.sensors, np.arange(len(traces.reading_rad), dtype=np.float64) * TICK_S

@@ -15,8 +15,8 @@ def _sign(random: np.random.Generator) -> float:
 
 
 def _backlash(size: float, s: Scales, _: np.random.Generator) -> dict[str, float]:
-    """Flanks as stiff as steel teeth are, damped by the oil between them."""
-    rate = 2.0 * pi * 60.0
+    """Flanks so stiff that their own resonance lies beyond what a drive records, damped by the oil between them."""
+    rate = 2.0 * pi * 250.0
     return {
         "gap_rad": 0.02 * size,
         "stiffness_n_m_rad": s.arm_kg_m2 * rate**2,

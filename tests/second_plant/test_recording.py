@@ -62,7 +62,7 @@ def test_stamps_rise_and_the_encoder_counts():
 
 
 def test_a_measured_supply_hides_nothing_of_the_sag_and_a_nominal_one_all():
-    joint = draw_joint(3, ("sag",), (1.0,))
+    joint = draw_joint(3, ("sag",), (3.0,))
     measured = replace(joint, sensors=replace(joint.sensors, effort="duty", supply_measured=True))
     nominal = replace(joint, sensors=replace(joint.sensors, effort="duty", supply_measured=False))
 
@@ -83,3 +83,11 @@ def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
 def test_an_unknown_mechanism_is_refused_by_name():
     with pytest.raises(ValueError, match="nonsense"):
         draw_joint(1, ("nonsense",), (1.0,))
+
+
+def test_a_mechanism_too_small_to_show_has_no_evidence_though_each_run_sticks_at_other_moments():
+    joint = draw_joint(9, ("backlash",), (1e-6,))
+    found, without = record(joint, quiet=True), record(joint, quiet=True, without=frozenset({"backlash"}))
+
+    assert any(np.abs(one.effort - two.effort).max() > 0.0 for one, two in zip(found, without, strict=True))
+    assert evidence(joint, "backlash").ratio < 0.1
