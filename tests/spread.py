@@ -1,7 +1,7 @@
 """How tests are spread over processes: those of one file stay together, as they share what is slow to start.
 
-Conformance tests share the simulated device of one bench, so there it is those of one file and one bench. What is drawn
-at random shares a service, and takes long where much is drawn: each goes where there is room.
+Conformance tests share the simulated device of one bench, so there it is those of one bench. What is drawn at random
+shares a service, and takes long where much is drawn: each goes where there is room.
 """
 
 import re
@@ -20,7 +20,7 @@ class FileAndBench(LoadScopeScheduling):
         if nodeid.startswith(FUZZ):
             return nodeid
         path, _, name = nodeid.partition("::")
-        return f"{path} {bench_of(name)}" if path.startswith(CONFORMANCE) else path
+        return bench_of(name) or path if path.startswith(CONFORMANCE) else path
 
 
 def bench_of(name: str) -> str:

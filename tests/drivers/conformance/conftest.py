@@ -5,7 +5,7 @@ import pytest
 from tests.drivers.conformance.benches import BENCHES, Bench
 
 
-@pytest.fixture(scope="module", params=BENCHES)
+@pytest.fixture(scope="session", params=BENCHES)
 def running(request: pytest.FixtureRequest) -> Iterator[Bench]:
     with BENCHES[request.param]() as made:
         yield made
