@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.config.rig import Rig
 from bench.recording_set import RecordingSetError, read_mapping, read_recording_set
 from bench.recording_set.formats import column_table
-from bench.recording_set.guess import guess_of, mapping_text, read_unknown
+from bench.recording_set.guess import Known, guess_of, mapping_text, read_unknown
 from tests.recording_set.foreign_files import FILES
 
 
@@ -83,3 +84,11 @@ def test_damaged_at_random_a_file_is_read_or_refused_in_words(tmp_path: Path, se
     (tmp_path / foreign.name).write_bytes(bytes(data))
     with suppress(RecordingSetError):  # any other error is a traceback that somebody would see
         read_unknown([tmp_path / foreign.name], None, foreign.known)
+
+
+def test_an_infinite_time_is_refused_by_its_file(tmp_path):
+    path = tmp_path / "endless.csv"
+    rows = [f"{'-inf' if row == 0 else row / 100},{0.1 * row % 1},{0.2 + row % 3}" for row in range(200)]
+    path.write_text("time_s,position_rad,current_a\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    with pytest.raises(RecordingSetError, match="endless"):
+        read_unknown([path], Rig(name="endless"), Known({}))

@@ -105,7 +105,7 @@ def _seconds(columns: Columns, column: Column | None) -> FloatArray | None:
     total = np.zeros(len(columns[column.sources[0]]))
     for name, scale in zip(column.sources, column.scales(), strict=True):
         values = columns[name]
-        if isinstance(values, list):
+        if isinstance(values, list) or np.isinf(values).any():
             return None
         total += (values - values[0]) * scale * unit.factor
     return total
