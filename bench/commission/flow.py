@@ -18,7 +18,7 @@ from bench.json_types import Value, Values, number, numbers, objects
 from bench.runs.connection import Connection
 from bench.store import Experiment
 from compensator.line_fit import Interval
-from drivers.contract import Mode
+from drivers.contract import Description, Mode
 
 BARE = (0.0, False)
 REPEATS = 2  # of each weight at each angle: a joint that stopped at the edge of friction may not be found
@@ -98,6 +98,7 @@ class Commission:
     def _look(self) -> Connection:
         found = self._motions.look(self._table.looking())
         described = found.description
+        check_modes(described)
         identity = " ".join(filter(None, (described.vendor, described.product, described.firmware, described.serial)))
         self._evidence.add("drive", identity or described.device, "", "what the drive says of itself")
         self._evidence.add("cycle rate", found.rate_hz, "Hz", f"{described.max_rate_hz:.0f} Hz are possible")
@@ -252,3 +253,13 @@ class Commission:
 INTERVALS = (
     "inertia_a_s2_rad", "coulomb_a", "viscous_a_s_rad", "gravity_a", "resistance_ohm", "back_emf_v_s_rad", "supply_ohm",
 )  # fmt: skip
+
+
+def check_modes(described: Description) -> None:
+    """Raise CommissionError where a drive cannot push with a known current or duty: nothing would be found out."""
+    if not described.modes & {Mode.CURRENT, Mode.DUTY}:
+        raise CommissionError(
+            f"drive '{described.device}': modes: found {', '.join(sorted(mode.value for mode in described.modes))}; "
+            "commissioning pushes with a current or a duty: put it on the bench step by step, as "
+            "docs/how-to/real-drive.md says, with the torque constant of its maker"
+        )

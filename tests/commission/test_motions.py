@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from bench.commission import motions
+from bench.commission.flow import check_modes
 from bench.commission.questions import CommissionError
 from bench.config.configuration import default_configuration
+from drivers.contract import Mode
 
 BENCH = default_configuration()
 LATE, NOT_LATE = {"overruns": 20}, {"overruns": 1}
@@ -76,3 +78,11 @@ def test_cycles_that_move_no_joint_are_not_counted(monkeypatch):
     ran = few.experiment(1)
     assert motions.Motions(None, few).lost_cycles(ran, BENCH) == 0
     assert motions.Motions(None, many).lost_cycles(ran, BENCH) == 20
+
+
+@pytest.mark.parametrize("modes", [{Mode.TORQUE}, {Mode.POSITION}])
+def test_a_drive_that_takes_neither_a_current_nor_a_duty_is_refused_before_anything_is_asked(modes):
+    described = SimpleNamespace(device="can0 node 5", modes=frozenset({Mode.OFF, *modes}))
+    with pytest.raises(CommissionError, match=r"can0 node 5.*modes: found .*(torque|position).*step by step"):
+        check_modes(described)
+    check_modes(SimpleNamespace(device="can0 node 5", modes=frozenset({Mode.DUTY, *modes})))
