@@ -191,13 +191,16 @@ def test_heartbeat_of_the_master_that_ends_stops_the_motor(bench: Bench) -> None
     node.sdo[0x1016][1].raw = MASTER << 16 | 200
     node.op_mode = "CYCLIC SYNCHRONOUS TORQUE"
     node.state = "OPERATION ENABLED"
+    beaten_s = []
     for _ in range(5):
+        beaten_s.append(time.monotonic())
         bench.network.send_message(0x700 + MASTER, b"\x05")
         time.sleep(0.05)
-    last_s = time.monotonic()
     bench.wait(lambda: not bench.side.ask("truth")["powered"], "power off")
     off_s = bench.side.ask("truth")["powered_since_monotonic_s"]
-    assert 0.0 < off_s - last_s < 0.6  # 0.2 s after the last heartbeat, and a machine with other work
+    # of the last one, unless a machine with other work let the master pause before
+    last_s = max(at_s for at_s in beaten_s if at_s < off_s)
+    assert 0.15 < off_s - last_s < 0.6
 
 
 def test_a_thousand_syncs_bring_a_thousand_samples(bench: Bench) -> None:
