@@ -9,7 +9,8 @@ drive on a wire says is as old as the demand that it has just got, so that the o
 The lab names what is missing; it is added; the error on the trials held out (50 g) is what is compared.
 
 Not the same is the phase: a simulated device looks at its joint and its demand once a millisecond, and the cycles of
-the host drift through that. In process they do not. With free play the trials of one wire differ by a tenth.
+the host drift through that. In process they do not. With free play the trials of one wire differ by a tenth: each
+motion is recorded twice there.
 """
 
 from tests.drivers.virtual_devices import KINDS, TIME, device_of, reached  # first: the drivers read its clock
@@ -37,7 +38,7 @@ PERIOD_S = 0.005
 AS_ON_A_WIRE = {"latency": {"delay_s": PERIOD_S}}
 # up and down: a joint that warms while loads only grow does not tell temperature from load
 LOADS_KG = (0.0, 0.05, 0.1, 0.1, 0.05, 0.0)
-MOTIONS = {"waveforms": ("slow-sine", "multisine", "triangles"), "loads_kg": LOADS_KG, "repeats": 1}
+MOTIONS = {"waveforms": ("slow-sine", "multisine", "triangles"), "loads_kg": LOADS_KG}
 # a Feetech servo, which takes a duty, tells speeds in 15 bits: with this joint on it up to 2.5 rad/s
 SPEEDS_RAD_S = {Mode.CURRENT: 4.0, Mode.DUTY: 1.6}
 # does not swing in free play: the error of a recording differs by 1 % from seed to seed, with twice the gains by 5 %
@@ -53,12 +54,13 @@ class Hidden(NamedTuple):
     plant: dict[str, Any]
     names: tuple[str, ...]
     base: tuple[str, ...]
+    repeats: int = 1  # of each motion
 
 
 WHOLE = (*KNOWN, "weight_friction", "load_friction")
 HIDDEN = (
     Hidden("load-dependent friction", {}, ("load_friction",), (*KNOWN, "weight_friction")),
-    Hidden("backlash", {"gear": {"backlash_rad": 0.05}}, ("backlash",), WHOLE),
+    Hidden("backlash", {"gear": {"backlash_rad": 0.05}}, ("backlash",), WHOLE, repeats=2),
     Hidden(
         "thermal",
         {
@@ -93,7 +95,7 @@ def diagnosed(configuration: BenchConfiguration, hidden: Hidden, mode: Mode, wir
     with tempfile.TemporaryDirectory() as folder, Store.open(f"sqlite:///{folder}/bench.sqlite") as store:
         if wire is not None:
             measure(configuration, store, Measurement("commissioning", {}), to_its_end)
-        motion = Measurement("excitation", MOTIONS | {"speed_rad_s": SPEEDS_RAD_S[mode]})
+        motion = Measurement("excitation", MOTIONS | {"speed_rad_s": SPEEDS_RAD_S[mode], "repeats": hidden.repeats})
         recorded = measure(configuration, store, motion, to_its_end)
         without = _study(store, recorded.id, hidden.base)
         ranking = diagnose(store, without).ranking
