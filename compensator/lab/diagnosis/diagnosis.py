@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from compensator.lab.diagnosis.note import Note
+from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.picture import BinnedMean
@@ -109,9 +110,14 @@ class Diagnosis:
         if self.verdict != "missing" or not self.classes:
             return None
         one = next((each for each in self.candidates if each.effect.name == self.classes[0][0]), None)
-        if one is None or one.gain.high >= SLIGHT_GAIN:
+        if one is None or one.gain.high >= SLIGHT_GAIN or _opens_others(one.effect):
             return None
         return one if explained_part(one.before, one.after) < SLIGHT_PART * explained else None
+
+
+def _opens_others(effect: Effect) -> bool:
+    """Whether it is of the measuring chain, and others cannot be judged before it is in the model, as a filter."""
+    return effect.pipeline and any(effect.name in other.after for other in catalogue().values())
 
 
 def explained_part(before: float, after: float) -> float:

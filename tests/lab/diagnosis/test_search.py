@@ -62,6 +62,16 @@ def test_what_is_slight_beside_what_was_added_before_is_not_added(outset, added)
     assert search(fit, most=1, first=first, outset=outset).added == added
 
 
+@pytest.mark.parametrize(("name", "slight"), [("cogging", True), ("measurement_delay", False)])
+def test_what_has_to_be_in_the_model_before_a_fault_of_the_chain_is_judged_is_never_slight(name, slight):
+    """A filter of the effort is judged beside a delay alone, and may take ten times as much."""
+    found = diagnose(fit_model(make_dataset(recordings(Joint(), seed=7), FACTS, Processing()), default_effects(FACTS)))
+    gain = Gain(0.03, 0.01, 0.06)
+    one = replace(found.candidates[0], effect=effect_named(name), before=0.0106, after=0.0103, gain=gain)
+    named = replace(found, verdict="missing", classes=((name,),), candidates=[one])
+    assert (named.slight_one(explained=0.1) is not None) == slight
+
+
 @pytest.mark.parametrize("there", [False, True])
 def test_what_made_up_for_a_name_that_has_given_way_is_dropped(monkeypatch, there):
     laws = [PLANTED["load_friction"], PLANTED["position_periodic_friction"]][: 1 + there]
