@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.commission import motions
-from bench.commission.flow import check_modes
+from bench.commission.flow import Commission, check_modes
 from bench.commission.questions import CommissionError
 from bench.config.configuration import default_configuration
 from drivers.contract import Mode
@@ -86,3 +86,11 @@ def test_a_drive_that_takes_neither_a_current_nor_a_duty_is_refused_before_anyth
     with pytest.raises(CommissionError, match=r"can0 node 5.*modes: found .*(torque|position).*step by step"):
         check_modes(described)
     check_modes(SimpleNamespace(device="can0 node 5", modes=frozenset({Mode.DUTY, *modes})))
+
+
+def test_commissioning_refuses_such_a_drive_with_its_first_look():
+    described = SimpleNamespace(device="can0 node 5", modes=frozenset({Mode.TORQUE}))
+    looked = SimpleNamespace(look=lambda _table: SimpleNamespace(description=described))
+    table = SimpleNamespace(looking=lambda: None)
+    with pytest.raises(CommissionError, match="found torque"):
+        Commission(table, None, looked, None).run()
