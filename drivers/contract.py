@@ -121,12 +121,15 @@ class Inspection:
         fault: in words; "" where it reports none.
         duty: applied PWM duty, -1 .. 1; NaN where it is not measured.
         current_a: motor current [A]; NaN where it is not measured.
+        torque_off: what says that safe torque off (STO) is active, in words: no power, and no fault; "" where it is
+            not, or the drive does not tell.
     """
 
     status: Status | None
     fault: str = ""
     duty: float = nan
     current_a: float = nan
+    torque_off: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -177,7 +177,8 @@ class CanopenDrive:
         current_a = nan
         if current is not None and counts is not None:
             current_a = scale.joint.motor_sign * counts * scale.current_a(current)
-        return Inspection(status, session.fault_name() if status is Status.FAULT else "", current_a=current_a)
+        fault = session.fault_name() if status is Status.FAULT else ""
+        return Inspection(status, fault, current_a=current_a, torque_off=session.torque_off())
 
     def clear_fault(self) -> None:
         """Reset a fault. The drive is left disabled.

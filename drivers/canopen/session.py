@@ -12,7 +12,7 @@ from drivers.canopen.cia301.error_codes import HOST_LOST, error_codes
 from drivers.canopen.cia301.heartbeat import DriveMonitor, NmtState
 from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.object_access import ObjectAccess
-from drivers.canopen.cia301.object_table import ObjectTable
+from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import ERROR_CODE, ERROR_FIELD, POSITION, PRODUCER_HEARTBEAT, STATUSWORD
 from drivers.canopen.cia301.presence import check_presence
 from drivers.canopen.cia301.strangers import Strangers
@@ -71,6 +71,7 @@ class Session:
         self.found: Capabilities = probe(self.table, settings, joint, identity)
         self.guard = Guard(self.table, link, settings, self.host_id)
         self.guard.prepare()
+        self.torque_off()
         self._sends_heartbeats = not self.guard.silences_heartbeat and self.table.try_set(
             PRODUCER_HEARTBEAT, heartbeat_ms(settings), "the drive's own sign of life"
         )
@@ -198,6 +199,20 @@ class Session:
     def lost_its_host(self) -> bool:
         """Whether the fault says only that a host was silent."""
         return self._error_code() in HOST_LOST
+
+    def torque_off(self) -> str:
+        """What says that safe torque off is active; "" where nothing does.
+
+        Raises:
+            DriveConfigurationError: the drive does not tell the object of the settings.
+            DriveConnectionError: it does not answer.
+        """
+        bit = self.settings.torque_off
+        if bit is None:
+            return ""
+        value = self.access.read_unsigned(bit.index, bit.subindex)
+        self.table.note(bit, Need.REQUIRED, "safe torque off", True, bit.seen(value))
+        return bit.seen(value) if bit.holds(value) else ""
 
     def await_until(self, condition: Callable[[], bool], what: str) -> None:
         """Take in frames until a condition holds.

@@ -123,7 +123,9 @@ class SimulatedDrive:
         """State, fault and applied output; no time passes."""
         self._require_open("inspect")
         stage, demand = self._held
-        return Inspection(self._status, self._fault, demand if stage == VOLTAGE else 0.0 if stage == OPEN else nan)
+        duty = demand if stage == VOLTAGE else 0.0 if stage == OPEN else nan
+        is_off = self._script.holding(TorqueDisabled, self.plant.time_s) is not None
+        return Inspection(self._status, self._fault, duty, torque_off="its circuit is open" if is_off else "")
 
     def clear_fault(self) -> None:
         """Acknowledge a fault. The drive is left disabled.

@@ -127,6 +127,8 @@ class PowerStage:
                 f"cannot be enabled in state '{self.state.value}' ({session.fault_name()}); find the cause, then "
                 "clear it",
             )
+        if seen := session.torque_off():
+            raise DriveStateError(self._device, f"cannot be enabled: safe torque off is active ({seen})")
         if self.state in (State.ENABLED, State.QUICK_STOP):
             self.switch_off()
         session.emergency = None

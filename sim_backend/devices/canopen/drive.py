@@ -32,6 +32,7 @@ from sim_backend.plant.parameters import PlantParameters
 
 _REMOTE, _LIMITED, _WARNING, _VOLTAGE = 1 << 9, 1 << 11, 1 << 7, 1 << 4
 _FOLLOWING_ERROR = 1 << 13
+_INTERLOCK = 1 << 3  # of 0x60FD: safe torque off is active
 _WARM_C = 85.0
 _CODES: dict[type[Trip], ErrorCode] = {
     OverCurrent: ErrorCode.OVER_CURRENT,
@@ -90,6 +91,7 @@ class ServoDrive:
             (0x6041, 0): self._statusword,
             (0x6061, 0): self._mode_shown,
             (0x6062, 0): lambda: self._measured.position(self._position_demand()),
+            (0x60FD, 0): lambda: _INTERLOCK if self.axis.torque_is_disabled() else 0,
             (0x60F4, 0): lambda: self._measured.position(self._position_demand() - self.axis.counts()),
         }
         book.live = {place: source for place, source in live.items() if place in book}

@@ -11,8 +11,9 @@ from threading import Timer
 import pytest
 
 from drivers.canopen import CanopenDrive, CanopenSettings
+from drivers.canopen.cia402.bits import TorqueOffBit
 from drivers.contract import Command, Mode, Status
-from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault
+from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault, DriveStateError
 from tests.drivers.canopen.conversation import (
     JOINT,
     TRANSPORTS,
@@ -267,6 +268,20 @@ def test_torque_that_is_taken_away_is_noticed(slcan):
     error, _ = _raises(drive, DriveFault)
     assert "switched itself off" in str(error)
     device.wait_for_power(on=False)
+
+
+def test_the_interlock_bit_tells_safe_torque_off_until_its_circuit_is_closed(slcan_device):
+    with driver_of(slcan_device, torque_off=TorqueOffBit(0x60FD, 0, 3)) as drive:
+        drive.open(0.005)
+        assert drive.inspect().torque_off == ""
+        slcan_device.side.ask("fault", name="torque-disabled")
+        found = drive.inspect()
+        assert (found.fault, found.torque_off) == ("", "bit 3 of 0x60FD:00 is 1")
+        with pytest.raises(DriveStateError, match="safe torque off is active"):
+            drive.enable(Mode.CURRENT)
+        slcan_device.side.ask("repair")
+        drive.enable(Mode.CURRENT)
+        drive.disable()
 
 
 def test_another_unit_than_configured_is_refused_before_motion(slcan):
