@@ -8,7 +8,6 @@ whatever the others do meanwhile. However a run ends, it ends in power-off, and 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from math import ceil, nan
 from typing import Any, Generic
 
@@ -19,7 +18,6 @@ from bench.control.joint import ControlledJoint
 from bench.control.joint_group import ActionT, JointGroup, ReadingT, SingleJoint, exchange_of
 from bench.control.late_cycles import LateCycles, braking_cycles
 from bench.control.limits import Guard
-from bench.control.power.brake_order import BrakeOrder
 from bench.control.power.torque_off import torque_off_reason
 from bench.control.recorder import Recorder, Sink
 from bench.control.servo import CurrentServo
@@ -50,7 +48,6 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         self._clock = clock
         self._period_s = period_s
         self._late = LateCycles(clock, period_s)
-        self._brakes = BrakeOrder(self._joints)
         self.channels = group.channels
         self.cycles = 0
         self.last_reading: Reading | None = None
@@ -160,10 +157,6 @@ class ControlLoop(Generic[ActionT, ReadingT]):
             for joint in joints:
                 if joint.action[0][0] is not joint.demanded:
                     self._switch()
-                    if self._brakes.joints:
-                        if ended := self._brakes.release(partial(self._hold, recorder, stop)):
-                            return ended
-                        assign(action)
             exchange()
             self.cycles += 1
             look(self.cycles)
@@ -179,29 +172,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
             try:
                 action = send(reading)
             except StopIteration as end:
-                ended = self._brakes.set(partial(self._hold, recorder, stop)) or Outcome("completed")
-                return replace(ended, results=end.value or {})
-
-    def _hold(self, recorder: Recorder, stop: StopRequest, duration_s: float, brake: str) -> Outcome | None:
-        """Cycles in which the joints with a brake hold, watched as any other; see `BrakeOrder`."""
-        exchange, group = exchange_of(self._joints), self._group
-        for cycle in range(ceil(duration_s / self._period_s)):
-            self._clock.wait()
-            if stop.is_set():
-                return Outcome("stopped", stop.reason)
-            for joint in self._brakes.joints:
-                joint.hold()
-            exchange()
-            self.cycles += 1
-            self._late.look(self.cycles)
-            self.last_reading = self._joints[-1].reading
-            recorder.row(group.row(group.held(), group.reading()))
-            if cycle == 0:
-                recorder.event(self.last_reading.time_s, "brake", brake)
-            for joint in self._joints:
-                joint.check(nan)
-                joint.check_brake()
-        return None
+                return Outcome("completed", results=end.value or {})
 
     def _switch(self) -> None:
         for joint in self._joints:

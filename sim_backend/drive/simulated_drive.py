@@ -6,7 +6,6 @@ from math import ceil, isfinite, nan
 from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
 from sim_backend.drive.description import describe
-from sim_backend.drive.holding_brake import HoldingBrake
 from sim_backend.drive.overload import OverloadMeter
 from sim_backend.errors import ParameterError
 from sim_backend.faults.play import FaultPlay
@@ -46,7 +45,6 @@ class SimulatedDrive:
         if parameters.wiring != Wiring():
             raise ParameterError("wiring: the drive in process has no leads to be swapped; simulate a device instead")
         self.plant = Plant(parameters, seed)
-        self._brake = HoldingBrake(self.plant) if parameters.brake.torque_n_m > 0.0 else None
         self._seed = seed
         self._device = device
         self._watchdog_s = watchdog_s
@@ -89,13 +87,7 @@ class SimulatedDrive:
     def close(self) -> None:
         """Power off and disconnect."""
         self._switch(Status.DISABLED)
-        self.set_brake(released=False)
         self._open = False
-
-    def set_brake(self, released: bool, confirmed: bool = True) -> None:  # noqa: ARG002  there is no line to wait for
-        """Switch the coil of the joint's brake, where the plant has one."""
-        if self._brake is not None:
-            self._brake.energise(released)
 
     def enable(self, mode: Mode) -> None:
         """Power the stage for a mode, with zero demand.
@@ -214,8 +206,6 @@ class SimulatedDrive:
         plant, faulty = self.plant, self._script.faults
         if faulty and self._meet_faults():
             stage, demand, duty = OPEN, 0.0, 0.0
-        if self._brake is not None:
-            self._brake.advance()
         position_rad, velocity_rad_s, current_a, temperature_c, supply_v = plant.advance(stage, demand, self._steps)
         if self._overload is not None and self._overload.overloads(current_a, self._period_s):
             self._trip(f"I2t overload, {current_a:.3g} A")
@@ -256,8 +246,6 @@ class SimulatedDrive:
         stage, demand = self._held
         if self._script.faults and self._meet_faults():
             stage, demand = self._held
-        if self._brake is not None:
-            self._brake.advance()
         self.plant.advance(stage, demand, self._steps)
         self._silent_cycles += 1
 

@@ -97,6 +97,7 @@ def queue(asking: Asking, service: RunningService) -> None:
     ask("POST /campaigns", CAMPAIGN)
     ask("DELETE /queue")
     ask("POST /queue/resume")
+    asking.kept["POST /api/v1/benches/queue"] = {"item_ids": [7]}  # this bench is by itself
 
 
 def calibrations(asking: Asking, service: RunningService) -> None:
