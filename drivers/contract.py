@@ -121,12 +121,15 @@ class Inspection:
         fault: in words; "" where it reports none.
         duty: applied PWM duty, -1 .. 1; NaN where it is not measured.
         current_a: motor current [A]; NaN where it is not measured.
+        torque_off: what says that safe torque off (STO) is active, in words: no power, and no fault; "" where it is
+            not, or the drive does not tell.
     """
 
     status: Status | None
     fault: str = ""
     duty: float = nan
     current_a: float = nan
+    torque_off: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,4 +260,38 @@ class BusDrive(Drive, Protocol):
 
         Raises:
             DriveError: as `exchange`; where one does not answer, all of them are told to be off.
+        """
+
+
+@runtime_checkable
+class BrakeOutput(Protocol):
+    """A drive with an output for the holding brake, which whoever uses it sets and releases."""
+
+    def set_brake(self, released: bool, confirmed: bool = True) -> None:
+        """Release or set the brake.
+
+        Args:
+            released: with current in its coil.
+            confirmed: wait for the drive's answer; else send it at once and wait for nothing.
+
+        Raises:
+            DriveConfigurationError: no output was configured.
+            DriveStateError: the drive is not open.
+            DriveConnectionError: it does not confirm it.
+        """
+
+
+@runtime_checkable
+class OwnBrake(Protocol):
+    """A drive that sets a brake of its own while it still holds the joint, and then takes its power away."""
+
+    def stand_down(self, engage_s: float) -> None:
+        """Have it do so; the power is off afterwards, whatever came of it.
+
+        Args:
+            engage_s: time that its brake takes [s].
+
+        Raises:
+            DriveStateError: the drive is not open.
+            DriveConnectionError: it does not answer.
         """

@@ -28,6 +28,19 @@ WALL_CLOCK = (
     "control/test_clock.py",
     "runs/test_bench_process.py",
 )
+OTHERS, TIMED = "not wall_clock and not virtual_time", "wall_clock"  # as the Makefile asks with -m
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not even import the files of which the marks asked for leave nothing: all together take as long as a test."""
+    if not collection_path.is_relative_to(HERE):
+        return None
+    path, asked = collection_path.relative_to(HERE).as_posix(), config.getoption("markexpr")
+    if asked == OTHERS and path.startswith(WALL_CLOCK):
+        return True
+    if asked == TIMED and collection_path.is_file() and not path.startswith(WALL_CLOCK):
+        return b"mark.wall_clock" not in collection_path.read_bytes()
+    return None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

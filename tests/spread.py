@@ -1,20 +1,50 @@
 """How tests are spread over processes: those of one file stay together, as they share what is slow to start.
 
 Conformance tests share the simulated device of one bench, so there it is those of one bench. What is drawn at random
-shares a service, and takes long where much is drawn: each goes where there is room.
+shares a service, and takes long where much is drawn: each goes where there is room. Files whose few tests take longest
+are begun first: at the end one process would be left alone with them.
 """
 
 import re
 from functools import cache
 
 from xdist.scheduler import LoadScopeScheduling
+from xdist.workermanage import WorkerController
 
 CONFORMANCE = "tests/drivers/conformance/"
 FUZZ = "tests/fuzz/"
+LONG = (
+    "tests/browser/test_walk.py",
+    "tests/browser/test_tour.py",
+    "tests/stopping/test_commission.py",
+    "tests/browser/test_simulated_trials.py",
+    "tests/lab/diagnosis/test_diagnose.py",
+    "tests/second_plant/test_recording.py",
+    "tests/docs/test_tutorial.py",
+    "tests/commission/test_draws.py",
+    "tests/second_plant/test_second_judge.py",
+    "tests/blind/test_run.py",
+    "tests/lab/diagnosis/test_bad_input.py",
+    "tests/lab/effects/test_effort_filter.py",
+    "tests/store/test_repair.py",
+    "tests/cli/test_paper.py",
+    "tests/cli/test_study.py",
+    "tests/queue/test_over_wires.py",
+    "tests/sim_backend/test_batch.py",
+    "tests/parallel/test_cluster.py",
+    "tests/lab/effects/test_supply_sag.py",
+)
+"""Those that `--durations` names most, the longest first."""
 
 
 class FileAndBench(LoadScopeScheduling):
     """Which tests go to the same process."""
+
+    def _assign_work_unit(self, node: WorkerController) -> None:
+        long = next((path for path in LONG if path in self.workqueue), None)
+        if long is not None:
+            self.workqueue.move_to_end(long, last=False)
+        super()._assign_work_unit(node)
 
     def _split_scope(self, nodeid: str) -> str:
         if nodeid.startswith(FUZZ):

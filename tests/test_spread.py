@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.spread import bench_of
+from tests.paths import ROOT
+from tests.spread import LONG, bench_of
 
 
 @pytest.mark.parametrize(
@@ -18,3 +19,8 @@ from tests.spread import bench_of
 )
 def test_a_conformance_test_stays_with_its_bench(name: str, bench: str) -> None:
     assert bench_of(name) == bench
+
+
+@pytest.mark.parametrize("path", LONG)
+def test_what_is_begun_first_is_there(path: str) -> None:
+    assert (ROOT / path).is_file()

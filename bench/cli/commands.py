@@ -87,6 +87,11 @@ COMMANDS = (
         "bench.cli.operation.benches:benches",
         "List the benches of the laboratory: state, lease, queue, and what is not handed in yet.",
     ),
+    CommandEntry(
+        "lab-queue",
+        "bench.cli.operation.lab_queue:app",
+        "Experiments for whichever bench of the laboratory fits: list, add, campaign, remove. Each is run once.",
+    ),
     CommandEntry("stop", "bench.cli.operation.service:stop", "Stop the joint of a running service and power it off."),
     CommandEntry(
         "experiments", "bench.cli.records.experiments:experiments", "List what has been run or imported, newest first."

@@ -1,5 +1,6 @@
 """A study: which physical effect is missing in the model."""
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 from bench.client.connection import Connection
@@ -9,6 +10,7 @@ from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
 from bench.study.models.study import Study as Facts
+from bench.study.models.units import UnitComparison
 
 
 class Study:
@@ -38,6 +40,16 @@ class Study:
     def simulate(self, model_id: int | None = None, refine: bool = False) -> ClosedLoop:
         """Where the model's joint goes under the servo of the trials: error of the motion; refined coefficients."""
         return ClosedLoop.model_validate(self._get("/closed-loop", model_id=model_id, refine=refine))
+
+    def units(self, beside: Sequence["Study"], model_id: int | None = None) -> UnitComparison:
+        """Units of one kind, this study's the first: what they have in common, how they scatter, which is an outlier.
+
+        Args:
+            beside: a study for each other unit, at least two.
+            model_id: of this study, fitted to all; None takes the newest.
+        """
+        numbers = [one.study_id for one in beside]
+        return UnitComparison.model_validate(self._get("/units", beside=numbers, model_id=model_id))
 
     def add(self, effect: str, model_id: int | None = None) -> Changed:
         """One effect more: refit; the error before and after."""

@@ -120,6 +120,10 @@ class StoreSettings(Section):
         "",
         "Database of a laboratory of several benches, to which what was recorded is handed in: postgresql://...",
     )
+    lab_queue: bool = quantity(
+        False, "", "Take work from the laboratory's queue: the joint moves without anybody here having started it"
+    )
+    lab_tags: tuple[str, ...] = quantity((), "", "What this bench can do, for work that asks for it: words of your own")
     reserve_mb: float = quantity(200.0, "MB", "Space that a new trial has to leave free on the disk", ge=0)
     retention: RetentionSettings = RetentionSettings()
 

@@ -19,8 +19,8 @@ _REMEMBERED = 200  # newest commissionings that are looked through
 def fingerprint(provenance: Provenance) -> str:
     """What a pass holds for: the drive's identity, its section of bench.toml, and gear, sensor and motor of the rig.
 
-    Where the arm hangs straight down is no part of it: an incremental encoder begins anew with each power cycle, and
-    signs and scales stay what they are.
+    Where the arm hangs straight down, and how that is found, is no part of it: an incremental encoder begins anew with
+    each power cycle, and signs and scales stay what they are.
 
     Args:
         provenance: as `bench.provenance.provenance` makes it, with configuration and drive.
@@ -29,10 +29,16 @@ def fingerprint(provenance: Provenance) -> str:
     rig = configuration["rig"]
     held = {
         "identity": {name: drive.get(name) for name in IDENTITY},
-        "drive": {name: value for name, value in configuration.get("drive", {}).items() if name != "zero_rad"},
+        "drive": {name: value for name, value in configuration.get("drive", {}).items() if _matters(name, value)},
         "rig": {name: rig.get(name) for name in _RIG},
     }
     return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _matters(name: str, value: object) -> bool:
+    """Whether a key of [drive] can change signs and scales, or what holds the joint; no brake is nothing."""
+    is_no_brake = name == "brake" and isinstance(value, dict) and value.get("by") == "none"
+    return name not in ("zero_rad", "homing") and not is_no_brake
 
 
 def is_commissioned(store: Store, provenance: Provenance) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from bench.config.configuration import BenchConfiguration
 from bench.config.drives.real import RealDriveSettings
 from bench.control.drive_factory import make_equipment, share_lines
+from bench.control.power.torque_off import torque_off
 from bench.errors import FaultChangedError
 from drivers.contract import Drive
 
@@ -20,12 +21,14 @@ class DriveState:
         device: the name used in messages.
         state: of the power stage; "" where it has no word for it.
         fault: in words; "" where it reports none.
+        torque_off: what says that safe torque off is active; "" where nothing does.
     """
 
     joint: str
     device: str
     state: str
     fault: str
+    torque_off: str = ""
 
 
 def read_drives(configuration: BenchConfiguration) -> tuple[DriveState, ...]:
@@ -90,4 +93,4 @@ def _opened(configuration: BenchConfiguration) -> Iterator[dict[str, Drive]]:
 def _read(joint: str, drive: Drive) -> DriveState:
     found = drive.inspect()
     state = "" if found.status is None else found.status.name.lower().replace("_", " ")
-    return DriveState(joint, drive.describe().device, state, found.fault)
+    return DriveState(joint, drive.describe().device, state, found.fault, torque_off(found))

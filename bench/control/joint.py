@@ -4,6 +4,7 @@ from math import isnan, nan
 
 from bench.control.cycle import OFF, Action, Reading
 from bench.control.limits import Guard
+from bench.control.power.brake import Brake
 from bench.control.servo import CurrentServo
 from bench.errors import ConfigurationError, LimitTrip
 from drivers.contract import Command, Drive, Mode, Sample, Status
@@ -27,9 +28,10 @@ class ControlledJoint:
         name: messages begin with it; "" where there is one joint only.
         torque_constant_n_m_a: of the motor [N m/A]; NaN where the rig leaves it out. Then a drive that takes torques
             alone cannot be asked for a current.
+        brake: the joint's holding brake; None where it has none, or is not to touch it.
 
     Attributes:
-        drive: as given.
+        drive, brake: as given.
         action: of this cycle.
         reading: the last one.
         demanded: mode of the last command that the power stage was switched for.
@@ -43,8 +45,10 @@ class ControlledJoint:
         current_servo: CurrentServo | None = None,
         name: str = "",
         torque_constant_n_m_a: float = nan,
+        brake: Brake | None = None,
     ) -> None:
         self.drive = drive
+        self.brake = brake
         self._guard = guard
         self._current_servo = current_servo
         self.prefix = f"{name}: " if name else ""
@@ -79,6 +83,11 @@ class ControlledJoint:
         self.action = _IDLE
         self.exchange()
 
+    def hold(self) -> None:
+        """Hold the joint where its brake's watch began, as the action of the next exchange."""
+        if self.brake is not None:
+            self.action = self.brake.hold(self.reading)
+
     def require_mode(self) -> None:
         """Refuse an action that neither the drive nor eq. (3) can do.
 
@@ -109,6 +118,7 @@ class ControlledJoint:
             return False
         if wanted is _OFF:
             self.drive.disable()
+            self._leave_brake()
         else:
             self.drive.enable(wanted)
         return True
@@ -158,14 +168,27 @@ class ControlledJoint:
         if self._mode is not _OFF and sample[8] is not _ENABLED:
             self._refuse_state(sample.status)
 
+    def check_brake(self) -> None:
+        """Compare where the joint is with where it has to stay meanwhile.
+
+        Raises:
+            LimitTrip: it moves with its brake set, or sinks when that is released.
+        """
+        if self.brake is not None:
+            self.brake.check(self.reading, self.prefix)
+
     def quick_stop(self) -> None:
-        """Have the drive brake, where it is powered."""
+        """Have the drive brake, where it is powered; its holding brake is set at once, too."""
+        if self.brake is not None:
+            self.brake.drop()
         if self.is_powered:
             self.drive.quick_stop()
 
     def power_off(self) -> list[str]:
         """Take the power away, and say what went wrong. Tried again when it fails or is interrupted."""
         notes = []
+        if self.brake is not None and self.brake.is_released:
+            self.brake.drop()
         for _ in range(POWER_OFF_TRIES):
             try:
                 self.drive.disable()
@@ -173,7 +196,18 @@ class ControlledJoint:
             except BaseException as error:  # the power has to go, whatever happens meanwhile
                 notes.append(f"{self.prefix}power-off failed: {str(error) or type(error).__name__}")
         self.demanded = self._mode = Mode.OFF
+        self._leave_brake()
+        if self.brake is not None and self.brake.is_released:
+            try:
+                self.brake.set()
+            except Exception as error:
+                notes.append(f"{self.prefix}the brake is not set: {error}")
         return notes
+
+    def _leave_brake(self) -> None:
+        """The power is off: a drive that sets its brake by itself has done so."""
+        if self.brake is not None and not self.brake.is_set_by_bench:
+            self.brake.is_released = False
 
     def _wire_mode(self) -> Mode:
         """The mode that the drive is sent the action in."""

@@ -33,6 +33,9 @@ class JointGroup(Protocol[ActionT, ReadingT]):
     def reading(self) -> ReadingT:
         """What the procedure is given, of the joints' readings."""
 
+    def held(self) -> ActionT:
+        """What the joints do now, by themselves, as the action of a row."""
+
     def row(self, action: ActionT, reading: ReadingT) -> Row:
         """In the order of `channels`."""
 
@@ -53,6 +56,10 @@ class SingleJoint:
     def reading(self) -> Reading:
         """The reading."""
         return self._joint.reading
+
+    def held(self) -> Action:
+        """The joint's own."""
+        return self._joint.action
 
 
 def exchange_of(joints: Sequence[ControlledJoint]) -> Callable[[], None]:

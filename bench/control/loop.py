@@ -8,21 +8,25 @@ whatever the others do meanwhile. However a run ends, it ends in power-off, and 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from math import ceil, nan
 from typing import Any, Generic
 
 from bench.control.clock import Clock
 from bench.control.cycle import Action, Reading
-from bench.control.ending import Outcome, StopRequest
+from bench.control.ending import Outcome, OutcomeName, StopRequest
 from bench.control.joint import ControlledJoint
 from bench.control.joint_group import ActionT, JointGroup, ReadingT, SingleJoint, exchange_of
 from bench.control.late_cycles import LateCycles, braking_cycles
 from bench.control.limits import Guard
+from bench.control.power.brake_order import BrakeOrder
+from bench.control.power.torque_off import torque_off_reason
 from bench.control.recorder import Recorder, Sink
 from bench.control.servo import CurrentServo
 from bench.errors import LimitTrip
 from bench.json_types import Value
 from drivers.contract import Drive, Status
+from drivers.errors import DriveError
 
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
 
@@ -46,9 +50,11 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         self._clock = clock
         self._period_s = period_s
         self._late = LateCycles(clock, period_s)
+        self._brakes = BrakeOrder(self._joints)
         self.channels = group.channels
         self.cycles = 0
         self.last_reading: Reading | None = None
+        self._was_powered = self._lost_power = False
 
     def run(self, procedure: Generator[ActionT, ReadingT, dict[str, Value]], sink: Sink, stop: StopRequest) -> Outcome:
         """Run one trial to its end.
@@ -62,6 +68,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         Returns:
             The outcome. Errors of the procedure, the drives and the sink are outcomes, not exceptions.
         """
+        self._lost_power = False
         recorder = Recorder(sink, len(self.channels), self._clock.patience_s)
         lost_before = self._clock.overruns
         ending = Outcome("failed", "the run was torn down")
@@ -75,6 +82,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
             finally:
                 try:
                     ending = ending.with_notes(_power_off(self._joints))
+                    ending = self._with_torque_off(ending)
                 finally:
                     ending = self._close(procedure, recorder, ending)
         return replace(ending, cycles=self.cycles, overruns=self._clock.overruns - lost_before)
@@ -92,11 +100,23 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         except LimitTrip as trip:
             return Outcome("tripped", f"{trip}{self._late.explain(self.cycles)}")
         except Exception as error:
+            self._lost_power = isinstance(error, DriveError)
             return Outcome("failed", str(error) or type(error).__name__)
+
+    def _with_torque_off(self, ending: Outcome) -> Outcome:
+        """The ending of a drive without power, with the reason where safe torque off is it. The power is off by now."""
+        if not self._lost_power:
+            return ending
+        reasons = [f"{joint.prefix}{why}" for joint in self._joints if (why := torque_off_reason(joint.drive))]
+        if not reasons:
+            return ending
+        outcome: OutcomeName = ending.outcome if self._was_powered else "refused"
+        return replace(ending, outcome=outcome, reason="; ".join((*reasons, ending.reason)))
 
     def _check_before_motion(self) -> str:
         """Take samples with the power off, and say what forbids motion."""
         self.cycles = 0
+        self._was_powered = False
         self._late = LateCycles(self._clock, self._period_s)
         self._take_fresh_samples()
         self.last_reading = self._joints[-1].reading
@@ -140,6 +160,10 @@ class ControlLoop(Generic[ActionT, ReadingT]):
             for joint in joints:
                 if joint.action[0][0] is not joint.demanded:
                     self._switch()
+                    if self._brakes.joints:
+                        if ended := self._brakes.release(partial(self._hold, recorder, stop)):
+                            return ended
+                        assign(action)
             exchange()
             self.cycles += 1
             look(self.cycles)
@@ -155,12 +179,35 @@ class ControlLoop(Generic[ActionT, ReadingT]):
             try:
                 action = send(reading)
             except StopIteration as end:
-                return Outcome("completed", results=end.value or {})
+                ended = self._brakes.set(partial(self._hold, recorder, stop)) or Outcome("completed")
+                return replace(ended, results=end.value or {})
+
+    def _hold(self, recorder: Recorder, stop: StopRequest, duration_s: float, brake: str) -> Outcome | None:
+        """Cycles in which the joints with a brake hold, watched as any other; see `BrakeOrder`."""
+        exchange, group = exchange_of(self._joints), self._group
+        for cycle in range(ceil(duration_s / self._period_s)):
+            self._clock.wait()
+            if stop.is_set():
+                return Outcome("stopped", stop.reason)
+            for joint in self._brakes.joints:
+                joint.hold()
+            exchange()
+            self.cycles += 1
+            self._late.look(self.cycles)
+            self.last_reading = self._joints[-1].reading
+            recorder.row(group.row(group.held(), group.reading()))
+            if cycle == 0:
+                recorder.event(self.last_reading.time_s, "brake", brake)
+            for joint in self._joints:
+                joint.check(nan)
+                joint.check_brake()
+        return None
 
     def _switch(self) -> None:
         for joint in self._joints:
             joint.require_mode()
         switched = [joint.switch() for joint in self._joints]
+        self._was_powered = self._was_powered or any(joint.is_powered for joint in self._joints)
         if any(switched):
             self._clock.start(self._period_s)
 

@@ -111,6 +111,10 @@ class JointPair:
         """Both readings, and what acts on the arms."""
         return PairReading(self._slave.reading, self._master.reading, self._truth())
 
+    def held(self) -> PairAction:
+        """What both do by themselves."""
+        return PairAction(self._slave.action, self._master.action)
+
     def row(self, action: PairAction, reading: PairReading) -> Row:
         """In the order of `bench.config.channels.PAIR_RECORDED`; its time is the slave's."""
         slave, master = values_of(action.slave, reading.slave), values_of(action.master, reading.master)

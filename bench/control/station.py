@@ -15,6 +15,7 @@ from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
 from bench.control.pair import JointPair
 from bench.control.pair_equipment import make_pair
+from bench.control.power.brake import brake_of
 from bench.control.servo import check_modes, current_servo, torque_constant_n_m_a
 from bench.control.technician import PersonTechnician, Technician
 from bench.control.timing import check_pair_timing, check_timing
@@ -59,7 +60,12 @@ class Station:
         check_modes(self.benches[0].servo, self.drives[0].describe())
         joints = [
             ControlledJoint(
-                drive, Guard(bench.limits), current_servo(bench.rig), name, torque_constant_n_m_a(bench.rig)
+                drive,
+                Guard(bench.limits),
+                current_servo(bench.rig),
+                name,
+                torque_constant_n_m_a(bench.rig),
+                brake_of(bench, drive),
             )
             for drive, bench, name in zip(self.drives, self.benches, self.names, strict=True)
         ]

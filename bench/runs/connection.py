@@ -7,6 +7,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.control.clock import Clock, VirtualClock, WallClock
 from bench.control.cycle import OFF
 from bench.control.drive_factory import is_simulated, make_equipment
+from bench.control.power.torque_off import torque_off_reason
 from bench.control.timing import check_timing
 from drivers.contract import Description, Drive, Sample
 
@@ -25,6 +26,7 @@ class Connection:
         exchange_s: median time of one exchange [s].
         slowest_s: the longest [s].
         lost_cycles: of `CYCLES`, because one before was late.
+        torque_off: why there is no power, and what to do, where safe torque off is active; else "".
     """
 
     description: Description
@@ -34,6 +36,7 @@ class Connection:
     exchange_s: float
     slowest_s: float
     lost_cycles: int
+    torque_off: str = ""
 
 
 def connect(configuration: BenchConfiguration) -> Connection:
@@ -67,5 +70,6 @@ def _measure(drive: Drive, clock: Clock, period_s: float) -> Connection:
     rate_hz = CYCLES / (time.perf_counter() - began_s)
     exchanges_s.sort()
     return Connection(
-        drive.describe(), sample, period_s, rate_hz, exchanges_s[CYCLES // 2], exchanges_s[-1], clock.overruns
-    )
+        drive.describe(), sample, period_s, rate_hz, exchanges_s[CYCLES // 2], exchanges_s[-1], clock.overruns,
+        torque_off_reason(drive),
+    )  # fmt: skip

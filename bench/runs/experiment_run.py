@@ -14,6 +14,7 @@ from bench.control.commissioned import WATCHDOG_RESULT, WATCHDOG_SEEN
 from bench.control.cycle import Reading
 from bench.control.ending import Outcome, OutcomeName, StopRequest
 from bench.control.loop import ControlLoop
+from bench.control.power.torque_off import torque_off_reason
 from bench.control.recorder import Event, Sink
 from bench.control.station import Station
 from bench.errors import ExperimentError, LimitTrip
@@ -27,6 +28,7 @@ from bench.runs.watchdog_proof import WatchdogProof, prove_watchdog
 from bench.store import Store
 from bench.store.upkeep.space import SpaceNeed
 from drivers.contract import Watchdog
+from drivers.errors import DriveError
 
 PAUSE_POLL_S = 0.05
 
@@ -175,7 +177,9 @@ class ExperimentRun:
                 store.require_space(prepared.space, trials=1)
                 outcome = self._run_trial(plan, prepared, store, live)
             except Exception as error:
-                return "failed", f"trial '{plan.name}': {str(error) or type(error).__name__}"
+                why = torque_off_reason(prepared.station.drives[0]) if isinstance(error, DriveError) else ""
+                words = "; ".join(filter(None, (why, str(error) or type(error).__name__)))
+                return "refused" if why else "failed", f"trial '{plan.name}': {words}"
             if outcome.outcome != "completed":
                 return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
         return "completed", ""

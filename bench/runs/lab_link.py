@@ -8,23 +8,27 @@ import socket
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from bench.errors import ConfigurationError
 from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
+from bench.runs.lab_work import LabWork
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
 from bench.store import Store
 from bench.store.backend import shown
-from bench.store.errors import StoreError
+from bench.store.errors import StoreError, StoreUnreachableError
 from bench.store.tables.benches import BenchWord, SeenBench
+from bench.store.tables.lab_queue import OPEN, LabItem
 from bench.store.tables.queue import WAITING
 from bench.store.upkeep.hand_in import HandIn
 
 PERIOD_S = 5.0
+MOST_SHOWN = 200  # items of the laboratory's queue
 LAST_S = 2.0  # how long the end waits for what is under way: what is not handed in by then is handed in later
 
 
@@ -36,11 +40,13 @@ class LinkState:
         problem: why the laboratory is not reached; "" where it is.
         waiting: experiments that are recorded and not handed in, as last known.
         benches: of the laboratory, as last heard.
+        queue: of the laboratory: what waits, is taken or runs, the first of them.
     """
 
     problem: str = "not reached yet"
     waiting: int = 0
     benches: tuple[SeenBench, ...] = field(default=())
+    queue: tuple[LabItem, ...] = field(default=())
 
 
 def word_of(runner: BenchControl, lease: Lease, conductor: Conductor, waiting: int) -> BenchWord:
@@ -54,7 +60,16 @@ def word_of(runner: BenchControl, lease: Lease, conductor: Conductor, waiting: i
         state="running" if runs else "idle",
         doing=f"{status.kind}, {100 * status.progress:.0f} %" if runs else "",
         lease="" if holder is None else holder.in_words(),
-        queue=", ".join(filter(None, (f"{queued} waiting" if queued else "", conductor.held or ""))),
+        queue=", ".join(
+            filter(
+                None,
+                (
+                    f"{queued} waiting" if queued else "",
+                    conductor.held or "",
+                    "takes from the laboratory's" if runner.configuration.store.lab_queue else "",
+                ),
+            )
+        ),
         waiting=waiting,
     )
 
@@ -77,9 +92,11 @@ class LabLink:
         word: Callable[[int], BenchWord],
         period_s: float = PERIOD_S,
         shares: bool = False,
+        work: LabWork | None = None,
     ) -> None:
         self._state = LinkState()
         self._store, self._url, self._word, self._period_s, self._shares = store, url, word, period_s, shares
+        self._work = work
         self._lab: Store | None = None
         self._hand: HandIn | None = None
         self._closed = threading.Event()
@@ -96,6 +113,20 @@ class LabLink:
         if self.where:
             return self._state
         return LinkState("", 0, (SeenBench(self._word(0), datetime.now(UTC), 0.0),))
+
+    def laboratory(self) -> Store:
+        """The laboratory's store.
+
+        Raises:
+            ConfigurationError: there is none.
+            StoreUnreachableError: it is not reached.
+        """
+        if not self.where:
+            raise ConfigurationError("this bench is by itself; set store.lab_url to the laboratory's database")
+        lab = self._lab if self._url is not None else self._store
+        if lab is None:
+            raise StoreUnreachableError(f"the laboratory is not reached: {self._state.problem}")
+        return lab
 
     def start(self) -> None:
         """Begin to hand in."""
@@ -138,10 +169,13 @@ class LabLink:
 
     def _tell(self, lab: Store, waiting: int) -> None:
         lab.benches.tell(self._word(waiting))
-        self._state = LinkState("", waiting, tuple(lab.benches.all()))
+        if self._work is not None:
+            self._work.look(lab)
+        queue = lab.lab_queue.items(*OPEN, limit=MOST_SHOWN)
+        self._state = LinkState("", waiting, tuple(lab.benches.all()), tuple(queue))
 
     def _say(self, problem: str) -> None:
         if bool(problem) != bool(self._state.problem):
             event_log.note("laboratory lost" if problem else "laboratory reached", problem=problem)
         if problem:
-            self._state = LinkState(problem, self._state.waiting, self._state.benches)
+            self._state = replace(self._state, problem=problem)

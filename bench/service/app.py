@@ -14,6 +14,7 @@ from bench.commission.guide import ENDED, Guide
 from bench.runs.bench_control import BenchControl
 from bench.runs.calibrator import Calibrator
 from bench.runs.lab_link import LabLink, word_of
+from bench.runs.lab_work import LabWork
 from bench.runs.lease import Lease
 from bench.runs.queue import Conductor
 from bench.service import compute
@@ -143,7 +144,13 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     conductor = Conductor(runner, store, lease.starting)
     places = runner.configuration.store
     shares = places.lab_url is None and places.url.startswith("postgresql")
-    link = LabLink(store, places.lab_url, partial(word_of, runner, lease, conductor), shares=shares)
+
+    def is_free() -> bool:
+        under_way = _under_way(guide, calibrator, runner) is not None
+        return not (under_way or guide.engaged or calibrator.engaged or conductor.held or lease.current())
+
+    work = LabWork(runner.configuration, conductor, is_free)
+    link = LabLink(store, places.lab_url, partial(word_of, runner, lease, conductor), shares=shares, work=work)
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:

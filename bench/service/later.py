@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from bench.study.search import search as search
     from bench.study.suggestion.next_round import next_round as next_round
     from bench.study.suggestion.suggest import suggest as suggest
+    from bench.study.units import compare_units as compare_units
     from bench.study.use import use as use
 
 MODULES = {
@@ -50,6 +51,7 @@ MODULES = {
     "search": "search",
     "next_round": "suggestion.next_round",
     "suggest": "suggestion.suggest",
+    "compare_units": "units",
     "use": "use",
 }
 

@@ -51,6 +51,9 @@ class Backend(Protocol):
     def begin_write(self, connection: Connection) -> None:
         """First thing in a transaction that writes: wait for other writers, and make sure that it can be kept."""
 
+    def make_durable(self, connection: Connection) -> None:
+        """What this transaction writes is on disk when it is committed, whatever else is promised of others."""
+
     def sending(self, connection: Connection) -> AbstractContextManager[object]:
         """Statements in it may be sent without waiting for the ones before; what fails is raised at its end at last."""
 

@@ -42,8 +42,12 @@ class Database:
             yield connection
 
     @contextmanager
-    def writing(self) -> Iterator[Connection]:
-        """A transaction that writes: committed when the block ends, undone when it raises."""
+    def writing(self, durable: bool = False) -> Iterator[Connection]:
+        """A transaction that writes: committed when the block ends, undone when it raises.
+
+        Args:
+            durable: other machines act on it: a server keeps it, with all before it, whatever becomes of the server.
+        """
         if not self._writer.acquire(timeout=self.busy_timeout_s):
             raise StoreLockedError(
                 f"store '{self.where}': another thread has been writing for more than {self.busy_timeout_s:g} s; "
@@ -54,6 +58,8 @@ class Database:
                 connection = connection.execution_options(**self.backend.write_options)
                 with connection.begin():
                     self.backend.begin_write(connection)
+                    if durable:
+                        self.backend.make_durable(connection)
                     yield connection
         finally:
             self._writer.release()

@@ -8,7 +8,7 @@ from bench import __version__
 from bench.store.database import Database
 from bench.store.errors import StoreFileError, StoreVersionError
 
-HEAD = "0010"  # the newest revision in migrations/versions
+HEAD = "0011"  # the newest revision in migrations/versions
 MIGRATIONS = Path(__file__).parent / "migrations"
 
 

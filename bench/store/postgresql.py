@@ -77,6 +77,13 @@ class Postgresql:
         """Wait for other writers."""
         connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": WRITER_KEY})
 
+    def make_durable(self, connection: Connection) -> None:
+        """On disk when it is committed, also where the server is told to promise less."""
+        query = (
+            "SELECT set_config('synchronous_commit', 'on', true) WHERE current_setting('synchronous_commit') = 'off'"
+        )
+        connection.execute(text(query))
+
     @contextmanager
     def sending(self, connection: Connection) -> Iterator[None]:
         """By libpq's pipeline: one round trip for all of it, and the server works while the next block is made."""

@@ -293,6 +293,7 @@ QUEUE_ITEM = Table(
     Column("experiment_id", Integer, nullable=True),
     Column("created_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
+    Column("lab_claim", PlainText, nullable=True),  # of an item that was taken from the laboratory's queue
     Index(None, "bench", "state", "place"),
     Index(None, "campaign_id"),
 )
@@ -337,4 +338,31 @@ BENCH = Table(
     Column("queue", PlainText, nullable=False),
     Column("waiting", Integer, nullable=False),  # experiments that are to be handed in
     Column("seen_utc", UtcDateTime, nullable=False),  # by the clock of the database
+)
+
+# see tables/lab_queue.py
+LAB_ITEM = Table(
+    "lab_item",
+    METADATA,
+    Column("id", Integer, primary_key=True),
+    Column("kind", PlainText, nullable=False),
+    Column("parameters", JSON, nullable=False),
+    Column("operator", PlainText, nullable=False),
+    Column("note", PlainText, nullable=False),
+    Column("tags", JSON, nullable=False),
+    Column("pace", PlainText, nullable=True),
+    Column("asked_by", PlainText, nullable=False),  # who asked for it
+    Column("for_bench", PlainText, nullable=False),  # empty: any
+    Column("for_rig", PlainText, nullable=False),
+    Column("for_tags", JSON, nullable=False),
+    Column("state", PlainText, nullable=False),  # waiting, taken, running, or the outcome of its experiment
+    Column("reason", PlainText, nullable=False),
+    Column("bench", PlainText, nullable=False),  # that has it, or had it
+    Column("claim", PlainText, nullable=False),  # what the bench was given that has it
+    Column("declined", JSON, nullable=False),  # by bench: why it does not take it
+    Column("origin_id", Integer, nullable=True),  # its experiment, in the store of its bench
+    Column("created_utc", UtcDateTime, nullable=False),
+    Column("renewed_utc", UtcDateTime, nullable=True),  # when its bench last said that it has it, by this clock
+    Column("finished_utc", UtcDateTime, nullable=True),
+    Index(None, "state"),
 )

@@ -69,6 +69,9 @@ class Sqlite:
         if self.is_read_only:
             raise _read_only(self.path)
 
+    def make_durable(self, connection: Connection) -> None:
+        """As every transaction: a power cut may cost the last ones. A laboratory of several machines has a server."""
+
     def sending(self, connection: Connection) -> AbstractContextManager[object]:  # noqa: ARG002
         """Nobody is far: each statement is done when it returns."""
         return nullcontext()

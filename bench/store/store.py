@@ -11,6 +11,7 @@ from bench.store.tables.access_tokens import AccessTokens
 from bench.store.tables.audit import Audit
 from bench.store.tables.benches import Benches
 from bench.store.tables.calibrations import Calibrations
+from bench.store.tables.lab_queue import LabQueueTable
 from bench.store.tables.queue import QueueTable
 from bench.store.tables.start_keys import StartKeys
 from bench.store.trial_store import TrialStore
@@ -112,6 +113,11 @@ class Store(ExperimentStore, TrialStore, StudyStore):
     def benches(self) -> Benches:
         """The benches that share this store."""
         return Benches(self._database)
+
+    @property
+    def lab_queue(self) -> LabQueueTable:
+        """The queue of the laboratory whose store this is."""
+        return LabQueueTable(self._database)
 
     def hand_in_to(self, lab: "Store", bench: str) -> HandIn:
         """From this store of a bench to that of the laboratory."""

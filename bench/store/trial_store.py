@@ -18,6 +18,8 @@ from bench.store.upkeep.custody import Custody
 from compensator.lab.recordings.gaps import is_before_gap
 from compensator.lab.recordings.recording import FloatArray, Recording
 
+AT_ONCE = 400  # trials that one statement names: databases bound the number of its values
+
 
 class TrialStore:
     """Trials, their samples and their events; `Store` is one."""
@@ -55,6 +57,15 @@ class TrialStore:
         """One trial, or `NotFoundError`."""
         with self._database.reading() as connection:
             return self.custody.as_ended(trials.get(connection, trial_id))
+
+    def trials_of(self, trial_ids: Sequence[int]) -> list[Trial]:
+        """Trials in the order of their ids in a list, or `NotFoundError`."""
+        with self._database.reading() as connection:
+            starts = range(0, len(trial_ids), AT_ONCE)
+            found = [one for start in starts for one in trials.of_ids(connection, trial_ids[start : start + AT_ONCE])]
+            for missing in set(trial_ids).difference(one.id for one in found):
+                trials.get(connection, missing)
+        return list(map(self.custody.as_ended, found))
 
     def trials(
         self,
@@ -120,9 +131,11 @@ class TrialStore:
         Raises:
             NotFoundError: no such trial.
         """
-        trial = self.trial(trial_id)
-        samples = self.samples(trial_id, known_to_lab(trial.channels))
-        return Recording(trial.name, trial.kind, dict(trial.conditions), samples, self.events(trial_id))
+        with self._database.reading() as connection:
+            trial = trials.get(connection, trial_id)
+            measured = samples.read(connection, trial, known_to_lab(trial.channels))
+            events = trials.events(connection, trial_id)
+        return Recording(trial.name, trial.kind, dict(trial.conditions), measured, events)
 
     def part(self, trial: Trial, first_row: int, rows: int) -> FloatArray:
         """Some rows of a trial, all its channels, shape (channels, up to `rows`): for whoever goes through all of it.

@@ -197,7 +197,7 @@ def trials_of(model: ModelRow, definition: Definition) -> Definition:
 
 def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:
     """The material of a definition, whether it is kept already or not. Errors as `load`."""
-    trials = tuple(store.trial(trial_id) for trial_id in definition.trial_ids)
+    trials = tuple(store.trials_of(definition.trial_ids))
     source = _Source(store, definition.trial_ids)
     return Material(study_id, name, definition, trials, _dataset(source, definition), source)
 

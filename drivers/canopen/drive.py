@@ -17,7 +17,7 @@ from drivers.canopen.description import describe
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
-from drivers.errors import DriveError, DriveFault
+from drivers.errors import DriveConfigurationError, DriveError, DriveFault
 from drivers.joint import JointScale
 from drivers.refusal import check_mode, not_enabled, not_open, switched_itself_off
 
@@ -94,6 +94,8 @@ class CanopenDrive:
             if session is not None and power is not None:
                 # where the power-off fails nobody must tell the drive's watchdog to look away
                 with suppress(DriveError):
+                    if self.settings.brake is not None:
+                        session.set_brake(self.settings.brake, released=False, confirmed=False)
                     power.switch_off()
                     session.leave()
         finally:
@@ -134,6 +136,19 @@ class CanopenDrive:
         self._opened("quick_stop")
         self._mode, self._stopping = Mode.OFF, True
         self._exchange_off()
+
+    def set_brake(self, released: bool, confirmed: bool = True) -> None:
+        """Release or set the holding brake; see `drivers.contract.BrakeOutput`."""
+        session, _ = self._opened("set_brake")
+        if self.settings.brake is None:
+            raise DriveConfigurationError(self._device, "no output for a brake was configured; see drive.brake.by")
+        session.set_brake(self.settings.brake, released, confirmed)
+
+    def stand_down(self, engage_s: float) -> None:
+        """Have it set a brake of its own, then power off; see `drivers.contract.OwnBrake`."""
+        _, power = self._opened("stand_down")
+        self._mode, self._stopping = Mode.OFF, False
+        power.stand_down(engage_s)
 
     @property
     def objects(self) -> tuple[ObjectUse, ...]:
@@ -177,7 +192,8 @@ class CanopenDrive:
         current_a = nan
         if current is not None and counts is not None:
             current_a = scale.joint.motor_sign * counts * scale.current_a(current)
-        return Inspection(status, session.fault_name() if status is Status.FAULT else "", current_a=current_a)
+        fault = session.fault_name() if status is Status.FAULT else ""
+        return Inspection(status, fault, current_a=current_a, torque_off=session.torque_off())
 
     def clear_fault(self) -> None:
         """Reset a fault. The drive is left disabled.

@@ -8,6 +8,7 @@ from typing import Final
 from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
 from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import CONTROLWORD, STATUSWORD
+from drivers.canopen.cia402.bits import OUTPUTS
 from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE, QUICK_STOP, State, state_of
 from drivers.canopen.identity import Identity, identify
 from drivers.canopen.settings import CanopenSettings
@@ -57,7 +58,10 @@ def meet(
 
 
 def _switch_off(access: ObjectAccess, settings: CanopenSettings, found: State) -> None:
-    """Brake, then take the power away, by SDO alone."""
+    """Brake, then take the power away, by SDO alone; a holding brake on an output is set before."""
+    outputs = None if settings.brake is None else access.read_if_present(OUTPUTS)
+    if settings.brake is not None and outputs is not None:
+        access.write(OUTPUTS, settings.brake.word(outputs, released=False))
     access.write(CONTROLWORD, QUICK_STOP)
     _await(access, lambda state: state not in _POWERED, _BRAKE_S)
     access.write(CONTROLWORD, DISABLE_VOLTAGE)

@@ -12,11 +12,12 @@ from drivers.canopen.cia301.error_codes import HOST_LOST, error_codes
 from drivers.canopen.cia301.heartbeat import DriveMonitor, NmtState
 from drivers.canopen.cia301.link import CanLink
 from drivers.canopen.cia301.object_access import ObjectAccess
-from drivers.canopen.cia301.object_table import ObjectTable
+from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import ERROR_CODE, ERROR_FIELD, POSITION, PRODUCER_HEARTBEAT, STATUSWORD
 from drivers.canopen.cia301.presence import check_presence
 from drivers.canopen.cia301.strangers import Strangers
 from drivers.canopen.cia301.sync_cycle import SyncCycle, answer_wait_s
+from drivers.canopen.cia402.bits import OUTPUT_MASK, OUTPUTS, BrakeBit, download
 from drivers.canopen.cia402.limits import set_limits
 from drivers.canopen.cia402.measurement import Measurement
 from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE
@@ -34,6 +35,7 @@ _NMT_S: Final = 1.0  # longest wait for an NMT state, on top of a heartbeat
 _TRIAL_CYCLES: Final = 15
 _TRIAL_S: Final = 0.5  # a host that is held up tries for longer: the quickest cycle counts
 _MISSED_HEARTBEATS: Final = 3
+_LOOK_S: Final = 0.005
 _QUIET_S: Final = 0.1  # after that long without a cycle, the bus is listened to again before anything is sent
 
 
@@ -71,9 +73,11 @@ class Session:
         self.found: Capabilities = probe(self.table, settings, joint, identity)
         self.guard = Guard(self.table, link, settings, self.host_id)
         self.guard.prepare()
+        self.torque_off()
         self._sends_heartbeats = not self.guard.silences_heartbeat and self.table.try_set(
             PRODUCER_HEARTBEAT, heartbeat_ms(settings), "the drive's own sign of life"
         )
+        self._outputs = self._set_up_brake()
         set_limits(self.table, settings, self.found)
         set_interpolation(self.table, period_s)
         self.data = set_up_pdos(self.table, self.access, settings, self.found)
@@ -198,6 +202,56 @@ class Session:
     def lost_its_host(self) -> bool:
         """Whether the fault says only that a host was silent."""
         return self._error_code() in HOST_LOST
+
+    def set_brake(self, bit: BrakeBit, released: bool, confirmed: bool) -> None:
+        """Release or set the holding brake.
+
+        Args:
+            bit: of the outputs.
+            released: with current in its coil.
+            confirmed: wait for the drive's answer.
+
+        Raises:
+            DriveConfigurationError: the drive refuses.
+            DriveConnectionError: it does not confirm it.
+        """
+        outputs = bit.word(self._outputs, released)
+        if not confirmed:
+            self.link.send_message(0x600 + self.settings.node_id, download(outputs))
+            return
+        while self.poll.awaits(perf_counter()):  # one request at a time
+            self.link.receive(_LOOK_S)
+        self.access.write(OUTPUTS, outputs)
+
+    def _set_up_brake(self) -> int:
+        """Have the brake set and its output in the hand of this host; the outputs as they are then.
+
+        Raises:
+            DriveConfigurationError: the drive has no such output, or keeps it for itself.
+        """
+        bit = self.settings.brake
+        if bit is None:
+            return 0
+        outputs = bit.word(self.table.read(OUTPUTS, "brake"), released=False)
+        self.access.write(OUTPUTS, outputs)  # before the mask: what it lets through is right already
+        mask = self.table.ask(OUTPUT_MASK, "brake")
+        if mask is not None:
+            self.table.set(OUTPUT_MASK, mask | bit.mask, "brake")
+        return outputs
+
+    def torque_off(self) -> str:
+        """What says that safe torque off is active; "" where nothing does.
+
+        Raises:
+            DriveConfigurationError: the drive does not tell the object of the settings.
+            DriveConnectionError: it does not answer.
+        """
+        bit = self.settings.torque_off
+        if bit is None:
+            return ""
+        value = self.access.read_unsigned(bit.index, bit.subindex)
+        self.table.note(bit, Need.REQUIRED, "safe torque off", True, bit.seen(value))
+        return bit.seen(value) if bit.holds(value) else ""
 
     def await_until(self, condition: Callable[[], bool], what: str) -> None:
         """Take in frames until a condition holds.

@@ -6,6 +6,7 @@ from typing import Literal, get_args
 import can
 
 from drivers.can_bus.settings import BITRATES, BusSettings
+from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
 from drivers.canopen.cia402.profiles import PROFILES
 from drivers.canopen.cia402.units import VELOCITY_UNITS
 from drivers.errors import DriveConfigurationError
@@ -42,6 +43,8 @@ class CanopenSettings:
         poll_hz: how often supply and temperature are each asked for [Hz].
         host_node_id: node ID under which the host's heartbeat is sent; None for one that nobody on the bus uses.
         listen_s: how long the bus is listened to for other hosts before anything is sent [s].
+        brake: the output that this host sets the holding brake by; None where it sets none.
+        torque_off: the bit that tells that safe torque off is active; None where the drive has none.
         vendor_id, product_code, serial_number: what 0x1018 has to say; None for anything.
     """
 
@@ -69,6 +72,8 @@ class CanopenSettings:
     poll_hz: float = 4.0
     host_node_id: int | None = None
     listen_s: float = 0.25
+    brake: BrakeBit | None = None
+    torque_off: TorqueOffBit | None = None
     vendor_id: int | None = None
     product_code: int | None = None
     serial_number: int | None = None
@@ -113,6 +118,11 @@ class CanopenSettings:
             ("answer_s", "more than 0 s and less than the watchdog", 0 < self.answer_s < self.watchdog_s),
             *((name, "0.01 .. 60 s", 0.01 <= getattr(self, name) <= 60.0) for name in times),
             ("listen_s", "0 .. 10 s", 0.0 <= self.listen_s <= 10.0),
+            (
+                "torque_off",
+                "index 0x1000 .. 0xFFFF, subindex 0 .. 255, bit 0 .. 31, level 0 or 1",
+                self.torque_off is None or self.torque_off.is_possible,
+            ),
             ("poll_hz", "more than 0 and at most 20 Hz", 0 < self.poll_hz <= 20),
         ]
 

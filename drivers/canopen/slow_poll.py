@@ -45,10 +45,14 @@ class SlowPoll:
         """Keep a value that was read otherwise."""
         self.readings[item] = Reading(value, time_s)
 
+    def awaits(self, now_s: float) -> bool:
+        """Whether an answer may still come."""
+        return self._asked is not None and now_s - self._asked_s < self._lost_s
+
     def request(self, now_s: float) -> bytes | None:
         """The request to send now, if one is due and none is under way."""
         since_s = now_s - self._asked_s
-        if not self._items or since_s < self._interval_s or (self._asked is not None and since_s < self._lost_s):
+        if not self._items or since_s < self._interval_s or self.awaits(now_s):
             return None
         item = self._items[self._next]
         self._next = (self._next + 1) % len(self._items)

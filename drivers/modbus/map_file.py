@@ -95,7 +95,7 @@ class _Reader:
             watchdog=self._watchdog(),
             control=self._words("control", ("off", "quick_stop", "clear_fault", *_MODE_WORDS)),
             mode=self._words("mode", _MODE_WORDS),
-            status=self._words("status", ("enabled", "quick_stop", "fault")),
+            status=self._words("status", ("enabled", "quick_stop", "fault", "torque_off")),
             fault=self._register(fault["register"], "fault") if fault else None,
             fault_names={int(number, 0): name for number, name in fault.get("names", {}).items()},
             fault_is_bits=bool(fault.get("bits", False)),

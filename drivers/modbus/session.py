@@ -127,8 +127,11 @@ class Session:
             values |= block.decode(self.link.read(block))
         self._follow(values)
         is_fault = self.state is Status.FAULT
-        told = self.state if is_fault or self._map.status is not None else None
-        return Inspection(told, self.fault_text() if is_fault else "", *self._sampling.output(values))
+        status = self._map.status
+        told = self.state if is_fault or status is not None else None
+        is_off = status is not None and status.holds("torque_off", values[status.register.name])
+        seen = f"bit or word 'torque_off' of its {status.register.name}" if status is not None and is_off else ""
+        return Inspection(told, self.fault_text() if is_fault else "", *self._sampling.output(values), seen)
 
     def fault_text(self) -> str:
         """The fault in words."""

@@ -4,6 +4,7 @@ from math import isfinite, isnan, pi
 from typing import NamedTuple, Protocol
 
 from drivers.contract import Sample, Status
+from sim_backend.drive.holding_brake import HoldingBrake
 from sim_backend.drive.overload import OverloadMeter
 from sim_backend.errors import ParameterError
 from sim_backend.faults.play import FaultPlay
@@ -60,6 +61,7 @@ class Axis:
 
     def __init__(self, parameters: PlantParameters, law: Law, seed: int = 0) -> None:
         self.plant = Plant(parameters, seed)
+        self.brake = HoldingBrake(self.plant)
         self.script = FaultScript()
         self.applied = OFF
         self.power = Power(False, 0.0)
@@ -150,6 +152,7 @@ class Axis:
             if self.trip() is not None or self.torque_is_disabled():
                 demand = OFF
         self._apply(demand)
+        self.brake.advance()
         measured = self.plant.advance(self.applied.stage, self._motor_sign * self.applied.value, _STEPS)
         if self._held_rad is not None:
             self.plant.place(self._held_rad, self._held_rad)

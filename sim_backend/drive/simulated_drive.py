@@ -6,6 +6,7 @@ from math import ceil, isfinite, nan
 from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
 from sim_backend.drive.description import describe
+from sim_backend.drive.holding_brake import HoldingBrake
 from sim_backend.drive.overload import OverloadMeter
 from sim_backend.errors import ParameterError
 from sim_backend.faults.play import FaultPlay
@@ -45,6 +46,7 @@ class SimulatedDrive:
         if parameters.wiring != Wiring():
             raise ParameterError("wiring: the drive in process has no leads to be swapped; simulate a device instead")
         self.plant = Plant(parameters, seed)
+        self._brake = HoldingBrake(self.plant) if parameters.brake.torque_n_m > 0.0 else None
         self._seed = seed
         self._device = device
         self._watchdog_s = watchdog_s
@@ -87,7 +89,13 @@ class SimulatedDrive:
     def close(self) -> None:
         """Power off and disconnect."""
         self._switch(Status.DISABLED)
+        self.set_brake(released=False)
         self._open = False
+
+    def set_brake(self, released: bool, confirmed: bool = True) -> None:  # noqa: ARG002  there is no line to wait for
+        """Switch the coil of the joint's brake, where the plant has one."""
+        if self._brake is not None:
+            self._brake.energise(released)
 
     def enable(self, mode: Mode) -> None:
         """Power the stage for a mode, with zero demand.
@@ -123,7 +131,9 @@ class SimulatedDrive:
         """State, fault and applied output; no time passes."""
         self._require_open("inspect")
         stage, demand = self._held
-        return Inspection(self._status, self._fault, demand if stage == VOLTAGE else 0.0 if stage == OPEN else nan)
+        duty = demand if stage == VOLTAGE else 0.0 if stage == OPEN else nan
+        is_off = self._script.holding(TorqueDisabled, self.plant.time_s) is not None
+        return Inspection(self._status, self._fault, duty, torque_off="its circuit is open" if is_off else "")
 
     def clear_fault(self) -> None:
         """Acknowledge a fault. The drive is left disabled.
@@ -204,6 +214,8 @@ class SimulatedDrive:
         plant, faulty = self.plant, self._script.faults
         if faulty and self._meet_faults():
             stage, demand, duty = OPEN, 0.0, 0.0
+        if self._brake is not None:
+            self._brake.advance()
         position_rad, velocity_rad_s, current_a, temperature_c, supply_v = plant.advance(stage, demand, self._steps)
         if self._overload is not None and self._overload.overloads(current_a, self._period_s):
             self._trip(f"I2t overload, {current_a:.3g} A")
@@ -244,6 +256,8 @@ class SimulatedDrive:
         stage, demand = self._held
         if self._script.faults and self._meet_faults():
             stage, demand = self._held
+        if self._brake is not None:
+            self._brake.advance()
         self.plant.advance(stage, demand, self._steps)
         self._silent_cycles += 1
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
+from sim_backend.drive.holding_brake import Brake
 from sim_backend.drive.overload import Overload
 from sim_backend.environment.end_stops import EndStops, Wall
 from sim_backend.environment.operator import Operator
@@ -87,6 +88,7 @@ class PlantParameters:
     eccentricity: Eccentricity = field(default_factory=Eccentricity)
     hose: Hose = field(default_factory=Hose)
     friction_jump: FrictionJump = field(default_factory=FrictionJump)
+    brake: Brake = field(default_factory=Brake)
     supply_ripple: SupplyRipple = field(default_factory=SupplyRipple)
 
     def __post_init__(self) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sim_backend.environment.end_stops import Wall
 from sim_backend.environment.operator import Operator
 from sim_backend.errors import ParameterError
+from sim_backend.mechanisms.friction.friction import Friction
 from sim_backend.mechanisms.joint.clutch import Clutch
 from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2, Load
 from sim_backend.plant.constants import constants_of
@@ -71,6 +72,7 @@ class Plant:
 
     def __init__(self, parameters: PlantParameters, seed: int = 0, step_s: float = COARSEST_STEP_S) -> None:
         self.parameters = parameters
+        self._unbraked: Friction | None = None
         self._whole = pack(Whole(parameters, constants_of(parameters), at_rest(seed, parameters.heat.start_c)))
         self._state = self._whole["state"]  # a view of it
         self._state["supply_v"] = parameters.supply.voltage_v
@@ -145,6 +147,14 @@ class Plant:
     def loosen_clutch(self, limit_n_m: float) -> None:
         """Let the clutch slip at a torque [N m]; 0 is rigid again."""
         self._change(clutch=Clutch(limit_n_m=limit_n_m))
+
+    def hold_by_brake(self, holds: bool) -> None:
+        """Let the holding brake add its torque to the dry friction of the motor shaft, or take it away again."""
+        if self._unbraked is None:
+            self._unbraked = self.parameters.friction
+        free, torque_n_m = self._unbraked, self.parameters.brake.torque_n_m
+        locked = replace(free, coulomb_n_m=free.coulomb_n_m + torque_n_m, static_n_m=free.static_n_m + torque_n_m)
+        self._change(friction=locked if holds else free)
 
     def put_wall(self, wall: Wall) -> None:
         """Put a wall in the arm's way, or take it away.

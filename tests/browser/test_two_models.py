@@ -75,3 +75,19 @@ def test_a_model_and_its_plots_are_kept_as_files(open_page, studies, changed):
     page.locator(".plot.ladder").hover()
     assert saved(page.locator(".plot.ladder [data-title='Save the picture (SVG)']"))[1].startswith(b"<svg")
     assert b"held-out" in saved(page.locator(".plot.ladder [data-title='Save its numbers (CSV)']"))[1]
+
+
+def test_units_of_one_kind_stand_beside_each_other(service, open_page, studies):
+    numbers = service.client.get(f"/studies/{studies[0]}").json()
+    experiment = service.client.get(f"/trials/{numbers['trials'][0]['trial_id']}").json()["experiment_id"]
+    third = service.client.post("/studies", json={"name": "unit 3", "experiment_ids": [experiment]}).json()["study_id"]
+    page = open_page("#study", width=1440)
+    page.get_by_text("Units of one kind").click()
+    units = page.locator("details", has_text="Units of one kind")
+    for number in (*studies, third):
+        units.get_by_label(f"{number}: ").check()
+    page.get_by_role("button", name="Compare units").click()
+    page.get_by_text("None of the 3 units is shown to be an outlier.").wait_for()
+    rows = page.locator("[aria-label='Each unit beside the others'] tr", has_text="unit 3")
+    assert rows.count() == page.locator("[aria-label='What units have in common'] tbody tr").count()
+    service.client.request("DELETE", f"/studies/{third}", params={"reason": "test"})

@@ -102,3 +102,22 @@ def test_what_a_study_suggests_goes_into_the_queue_with_the_study_s_note(asked, 
     both = command("study", "suggest", "4", "--queue", "--start")
     assert both.exit_code == 2
     assert "--queue on the service" in both.stderr
+
+
+def test_the_laboratorys_queue_needs_no_service(command, tmp_path):
+    added = command("lab-queue", "add", "steps", "repeats=2", "--needs", "torque sensor", "--rig", "paper", "--json")
+    assert added.exit_code == 0, added.output
+    [first] = json.loads(added.stdout)["item_ids"]
+    (tmp_path / "loads.toml").write_text(CAMPAIGN, encoding="utf-8")
+    assert command("lab-queue", "campaign", tmp_path / "loads.toml", "--bench", "gear 3").exit_code == 0
+    found = json.loads(command("lab-queue", "list", "--json").stdout)["open"]
+    assert [(one["kind"], one["for_bench"], one["for_rig"], one["for_tags"], one["state"]) for one in found] == [
+        ("steps", "", "paper", ["torque sensor"], "waiting"),
+        ("coast-down", "gear 3", "", [], "waiting"),
+        ("coast-down", "gear 3", "", [], "waiting"),
+    ]
+    assert "3 waiting; see friction-bench lab-queue list" in command("benches").stdout
+    assert "torque sensor" in command("lab-queue", "list").stdout
+    assert command("lab-queue", "remove", first).exit_code == 0
+    assert command("lab-queue", "remove", first).exit_code != 0
+    assert command("lab-queue", "add", "magic").exit_code != 0

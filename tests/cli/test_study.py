@@ -32,6 +32,14 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path):
     again = command("study", "report", study, "--html", "study.html", "--no-suggest")
     assert again.exit_code != 0
     assert "is there already" in again.stderr
+    others = [
+        json.loads(command("study", "new", "unit", "--experiment", 1, "--json").stdout)["study_id"] for _ in range(2)
+    ]
+    beside = command("study", "units", study, *others)
+    assert beside.exit_code == 0, beside.output
+    assert "What 3 units have in common" in beside.stdout
+    assert "None of the 3 units is shown to be an outlier." in beside.stdout
+    assert command("study", "units", study, others[0]).exit_code == 3
     refused = command("study", "suggest", study)
     assert refused.exit_code == 3
     assert "of another rig than this bench" in refused.stderr

@@ -146,6 +146,13 @@ def test_a_study_names_what_is_missing(bench, study):
     assert study.compare().model_id == changed.model_id
 
 
+def test_units_of_one_kind(bench, service, study):
+    beside = [bench.study(int(study_path(service, f"unit {n}").split("/")[-1])) for n in range(2)]
+    found = study.units(beside)
+    assert [one.name for one in found.units] == ["arm", "unit 0", "unit 1"]
+    assert found.sentence in repr(found)
+
+
 def test_a_record_is_removed_for_a_reason(bench, service):
     made = bench.study(int(study_path(service, "to be removed").split("/")[-1]))
     trial = service.client.get(f"/trials/{made.facts.trials[0].trial_id}").json()

@@ -143,7 +143,8 @@ def run(
     try:
         outcome = loop.run(procedure, sink, stop or StopRequest())
     finally:
-        powered = [name for name, one in drives.items() if one.powered or one.calls[-1] != "disable"]
+        written = {name: [call for call in one.calls if call != "inspect"] for name, one in drives.items()}
+        powered = [name for name, one in drives.items() if one.powered or written[name][-1] != "disable"]
         if powered:
             raise StillPowered(powered, outcome)
     return Ran(setup, outcome, sink, drives)

@@ -67,7 +67,7 @@ ENDS = [
     ({"kind": "over-current", "at_s": 0.4, "current_a": 12.0}, "failed", "over-current, 12 A"),
     ({"kind": "supply-lost", "at_s": 0.4}, "failed", "under-voltage"),
     ({"kind": "drive-failed", "at_s": 0.4, "text": "brake open"}, "failed", "brake open"),
-    ({"kind": "torque-disabled", "at_s": 0.4}, "failed", "DISABLED"),
+    ({"kind": "torque-disabled", "at_s": 0.4}, "failed", "safe torque off is active"),
 ]
 
 

@@ -515,3 +515,12 @@ def test_an_echo_that_does_not_come_is_named(line):
         link.read_one(SPEED)
     drive.join()
     link.close()
+
+
+def test_safe_torque_off_is_told_beside_the_state(answers, made):
+    drive = made(text=MAP.replace("\nenabled = 1\n", "\nenabled = 1\ntorque_off = 7\n"))
+    drive.open(0.01)
+    assert drive.inspect().torque_off == ""
+    answers.holding[20] = 7
+    assert drive.inspect().torque_off.startswith("bit or word 'torque_off' of its status")
+    assert drive.inspect().fault == ""

@@ -97,6 +97,7 @@ def queue(asking: Asking, service: RunningService) -> None:
     ask("POST /campaigns", CAMPAIGN)
     ask("DELETE /queue")
     ask("POST /queue/resume")
+    asking.kept["POST /api/v1/benches/queue"] = {"item_ids": [7]}  # this bench is by itself
 
 
 def calibrations(asking: Asking, service: RunningService) -> None:
@@ -135,6 +136,8 @@ def studies(asking: Asking, service: RunningService) -> None:
     ask("POST /studies/{number}/search", {"most": 1}, number=number)
     again = service.client.post("/recording-sets?name=again", **body).json()["experiment_id"]
     ask("POST /studies/{number}/trials", {"experiment_ids": [again]}, number=number)
+    beside = [service.client.post("/studies", json=new).json()["study_id"] for _ in range(2)]
+    ask("GET /studies/{number}/units", query={"beside": beside}, number=number)
     excited = service.start("excitation", **EXCITATION)
     service.runner.wait()
     own = service.client.post("/studies", json={"name": "own", "experiment_ids": [excited]}).json()["study_id"]

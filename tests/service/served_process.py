@@ -19,7 +19,14 @@ UP_WITHIN_S = 60.0
 
 @contextmanager
 def served_process(folder: Path, *options: str) -> Iterator[str]:
-    """Its address; `TOKEN` may all. The store is `bench.sqlite` in the folder, and may be there already.
+    """Its address; see `started_process`."""
+    with started_process(folder, *options) as (_process, url):
+        yield url
+
+
+@contextmanager
+def started_process(folder: Path, *options: str) -> "Iterator[tuple[subprocess.Popen[bytes], str]]":
+    """Process and address; `TOKEN` may all. The store is `bench.sqlite` in the folder, and may be there already.
 
     Args:
         folder: where it runs.
@@ -34,7 +41,7 @@ def served_process(folder: Path, *options: str) -> Iterator[str]:
     url = f"http://127.0.0.1:{port}"
     try:
         _wait_until_up(url)
-        yield url
+        yield process, url
     finally:
         process.send_signal(signal.SIGTERM)
         process.wait(UP_WITHIN_S)

@@ -142,3 +142,17 @@ def test_a_model_of_another_rig_cannot_be_used(service, study):
     refused = service.client.post(path, json={})
     assert refused.status_code == 422
     assert "of another rig than this bench" in refused.json()["detail"]
+
+
+def test_units_of_one_kind_stand_beside_each_other(service, study, experiment_id):
+    body = {"name": "unit", "experiment_ids": [experiment_id]}
+    beside = [service.client.post("/studies", json=body).json()["study_id"] for _ in range(2)]
+    path = f"/studies/{study['study_id']}/units"
+    found = service.stranger.get(path, params={"beside": beside, "model_id": study["model_id"]}).json()
+    assert [one["study_id"] for one in found["units"]] == [study["study_id"], *beside]
+    assert found["sentence"].startswith("None of the 3 units is shown to be an outlier.")
+    coulomb = next(one for one in found["parameters"] if one["effect"] == "coulomb")
+    assert [one["study_id"] for one in coulomb["values"]] == [study["study_id"], *beside]
+    assert coulomb["next_low"] <= coulomb["mean"] <= coulomb["next_high"]
+    assert service.stranger.get(path, params={"beside": beside[:1]}).status_code == 422
+    assert service.stranger.get(path, params={"beside": [beside[0], 999]}).status_code == 404

@@ -144,7 +144,9 @@ def test_long_lists_carry_their_conditions(store: Store) -> None:
     experiment_id = begin(store)
     for repeat in range(600):
         begin_trial(store, experiment_id, f"{repeat}", repeat=repeat)
-    assert [trial.conditions["repeat"] for trial in store.trials()] == list(range(600))
+    found = store.trials()
+    assert [trial.conditions["repeat"] for trial in found] == list(range(600))
+    assert store.trials_of([trial.id for trial in found[::-1]]) == found[::-1]
 
 
 def test_events_are_in_order_of_time(store: Store) -> None:
@@ -162,6 +164,8 @@ def test_a_trial_that_is_not_there_is_named(store: Store) -> None:
     for call in (store.trial, store.samples, store.events):
         with pytest.raises(NotFoundError, match="trial 9 is not in the store"):
             call(9)
+    with pytest.raises(NotFoundError, match="trial 9 is not in the store"):
+        store.trials_of([begin_trial(store, begin(store)).trial_id, 9])
 
 
 def test_a_text_with_a_nul_in_it_is_refused_and_nothing_is_kept(store: Store) -> None:

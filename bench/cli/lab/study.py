@@ -150,6 +150,20 @@ def diagnose_many_command(
     print_json(found) if as_json else diagnosis_tables.diagnoses(found)
 
 
+@app.command("units")
+def units_command(
+    context: typer.Context,
+    study: StudyId,
+    beside: Annotated[list[int], typer.Argument(metavar="STUDY...", help="One study for each other unit.")],
+    model: Model = None,
+    as_json: Json = False,
+) -> None:
+    """Units of one kind, fitted with the study's model: what is common, how they scatter, which is an outlier."""
+    from bench.study.units import compare_units
+
+    _show(context, as_json, study_tables.units, compare_units, study, beside, model)
+
+
 @app.command("add")
 def add_command(
     context: typer.Context, study: StudyId, effect: Effect, model: Model = None, as_json: Json = False

@@ -13,6 +13,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.study.models.coverage import Coverage
     from bench.study.models.ladder import Ladder, Rung
     from bench.study.models.study import Study
+    from bench.study.models.units import UnitComparison, UnitParameter
     from bench.study.refit import Refitted
 
 
@@ -126,6 +127,57 @@ def refitted(found: "Refitted") -> None:
     table("Parameters", ["effect", "name", "study#", "all#", "unit"], rows)
     for reason in found.skipped:
         say(f"left out: {reason}")
+
+
+def units(found: "UnitComparison") -> None:
+    """What units have in common, and each unit that stands out or has the largest deviation."""
+    rows = [
+        (
+            one.name,
+            one.mean,
+            _interval(one.mean_low, one.mean_high),
+            one.scatter,
+            _interval(one.scatter_low, one.scatter_high),
+            _interval(one.next_low, one.next_high),
+            one.unit,
+            "yes" if one.differs else "not shown",
+            chance_cell(one.p_value),
+        )
+        for one in found.parameters
+    ]
+    table(
+        f"What {len(found.units)} units have in common",
+        ["parameter", "mean#", "95 %#", "scatter#", "95 %#", "one more unit#", "unit", "units differ", "p#"],
+        rows,
+    )
+    shown = [row for one in found.parameters for row in _unit_rows(one)]
+    table("Unit by unit", ["parameter", "unit", "value#", "beside the others#", "95 %#", "expected#", "p#", ""], shown)
+    errors = [(one.study_id, one.name, one.trials, percent(one.error)) for one in found.units]
+    table("Units", ["study#", "name", "trials#", "error#"], errors)
+    if found.undetermined:
+        say(f"determined by the trials of fewer than three units: {'; '.join(found.undetermined)}")
+    for sentence in (*found.notes, found.sentence):
+        say(sentence)
+
+
+def _unit_rows(found: "UnitParameter") -> list[tuple[object, ...]]:
+    return [
+        (
+            found.name,
+            one.name,
+            one.value,
+            one.deviation,
+            _interval(one.deviation_low, one.deviation_high),
+            _interval(one.expected_low, one.expected_high),
+            chance_cell(one.p_value),
+            "outlier" if one.outlier else "",
+        )
+        for one in found.values
+    ]
+
+
+def _interval(low: float, high: float) -> str:
+    return f"{low:.3g} .. {high:.3g}"
 
 
 def change(found: "Changed") -> None:

@@ -1,5 +1,6 @@
 """`friction-bench benches`: the benches that share a laboratory's database."""
 
+from collections import Counter
 from dataclasses import asdict
 from typing import Annotated
 
@@ -19,6 +20,7 @@ def benches(
     """List the benches of the laboratory: state, lease, queue, and what is not handed in yet."""
     from bench.errors import ConfigurationError
     from bench.store import Store
+    from bench.store.tables.lab_queue import OPEN
 
     session = session_of(context)
     configuration = session.configuration()
@@ -31,7 +33,7 @@ def benches(
                 hand = store.hand_in_to(lab, configuration.name)
                 for experiment_id in hand.waiting():
                     say(f"experiment {experiment_id} is {hand.hand_in(experiment_id)} in the laboratory")
-        found = lab.benches.all()
+        found, queue = lab.benches.all(), lab.lab_queue.items(*OPEN)
     if as_json:
         told = [asdict(one.word) | {"state": one.state, "silent_s": one.silent_s} for one in found]
         print_json([row | {"seen_utc": one.seen_utc.isoformat()} for row, one in zip(told, found, strict=True)])
@@ -41,3 +43,7 @@ def benches(
         for one in found
     ]
     table("Benches", ["name", "state", "doing", "lease", "queue", "to hand in#", "seen"], rows)
+    if queue:
+        counts = Counter(one.state for one in queue)
+        words = ", ".join(f"{count} {state}" for state, count in sorted(counts.items()))
+        say(f"queue of the laboratory: {words}; see friction-bench lab-queue list")

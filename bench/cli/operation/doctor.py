@@ -128,6 +128,8 @@ def _show(found: "Connection") -> None:
         (name, unit_of(name), _value(found, name), description.resolution.get(name), _age_ms(found, name))
         for name in QUANTITIES
     ])  # fmt: skip
+    if found.torque_off:
+        say(found.torque_off)
     say(
         f"The joint stands at {degrees(found.sample.position_rad):.2f} degrees. Where the arm hangs straight down now, "
         "'friction-bench doctor --set-zero' makes that 0."

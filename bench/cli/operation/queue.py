@@ -49,7 +49,7 @@ def add(
     """Add an experiment: it starts when it is its turn, at once where nothing is before it."""
     item = {
         "kind": kind,
-        "parameters": _given(kind, parameters or []),
+        "parameters": given_parameters(kind, parameters or []),
         "operator": operator,
         "note": note,
         "tags": [tag for tag in tags.split(",") if tag],
@@ -119,7 +119,7 @@ def _minutes(seconds: float) -> str:
     return f"{seconds / 60.0:.1f} min" if seconds >= 60.0 else f"{seconds:.0f} s"
 
 
-def _given(name: str, words: list[str]) -> "Values":
+def given_parameters(name: str, words: list[str]) -> "Values":
     """NAME=VALUE words as the parameters of a kind."""
     from bench.cli.parameters import given
     from bench.experiments.registry import find_kind

@@ -3,13 +3,36 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Literal, TypeVar
 
 from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
+from bench.config.quantities import quantity
 from bench.config.rig import Rig, Section
 from drivers.contract import Drive, Mode
 from drivers.follower import Follower
+
+
+class BrakeSettings(Section):
+    """A brake that holds the joint while the drive has no power. Spring-applied: without current it is set."""
+
+    by: Literal["none", "drive", "output"] = quantity(
+        "none",
+        "",
+        "Who sets and releases it: 'drive', by itself with its power stage; 'output', this bench by an output of the "
+        "drive; 'none': there is none",
+    )
+    release_s: float = quantity(
+        0.1, "s", "From the word to release it until the joint is free, by its data sheet", gt=0, le=5
+    )
+    engage_s: float = quantity(0.1, "s", "From the word to set it until it holds, by its data sheet", gt=0, le=5)
+    move_rad: float = quantity(
+        0.02, "rad", "Farthest that the joint may move while the brake is set, and while it is released or set", gt=0
+    )
+    output_bit: int = quantity(
+        0, "", "Bit of the output: of 0x60FE, where CiA 402 has 'set brake' as bit 0", ge=0, le=31
+    )
+    set_level: Literal[0, 1] = quantity(1, "", "That bit while the brake is set")
 
 
 class DriveSettings(Section):
@@ -19,6 +42,7 @@ class DriveSettings(Section):
     """
 
     kind: str
+    brake: BrakeSettings = BrakeSettings()
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,10 @@ def simulate(
     deaf: Annotated[
         bool, typer.Option("--deaf", help="Take what a host writes to its watchdog objects, and never watch.")
     ] = False,
+    sets_brake: Annotated[
+        bool,
+        typer.Option("--sets-brake", help="The drive sets the joint's brake itself; else bit 0 of 0x60FE sets it."),
+    ] = False,
     reaction: Annotated[
         str,
         typer.Option(
@@ -66,7 +70,8 @@ def simulate(
     def start() -> Simulated:
         conduct = Conduct(
             look_s=look_s, enable_s=enable_s, mode_shown_enabled=mode_shown_enabled, answer_s=answer_s,
-            absent_code=_code(absent_code), refused_code=_code(refused_code), deaf=deaf, reaction=reaction,
+            absent_code=_code(absent_code), refused_code=_code(refused_code), deaf=deaf, sets_brake=sets_brake,
+            reaction=reaction,
         )  # fmt: skip
         settings = CanOpenSettings(
             family=family, eds=eds, node_id=node, interface=interface, channel=channel, conduct=conduct,

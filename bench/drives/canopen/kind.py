@@ -52,9 +52,14 @@ def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: flo
 
 def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettings":
     from drivers.canopen import BusSettings, CanopenSettings
+    from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
 
     values = driver_values(settings)
     del values["tpdo_mapping"]
+    if settings.brake.by == "output":
+        values["brake"] = BrakeBit(settings.brake.output_bit, settings.brake.set_level)
+    if values["torque_off"] is not None:
+        values["torque_off"] = TorqueOffBit(**values["torque_off"])
     bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
     return CanopenSettings(bus=bus, torque_constant_n_m_a=rig.motor.torque_constant_n_m_a, **values)
 

@@ -4,9 +4,19 @@ from typing import Literal
 
 from bench.config.drives.real import RealDriveSettings
 from bench.config.quantities import quantity
+from bench.config.rig import Section
 
 Bitrate = Literal[10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000]
 VelocityUnit = Literal["rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s"]
+
+
+class TorqueOffSettings(Section):
+    """One bit of an object of the drive, by its manual."""
+
+    index: int = quantity(..., "", "Index of the object; 0x60FD are the digital inputs", ge=0x1000, le=0xFFFF)
+    subindex: int = quantity(0, "", "Its subindex", ge=0, le=255)
+    bit: int = quantity(..., "", "Number of the bit, from 0", ge=0, le=31)
+    level: Literal[0, 1] = quantity(1, "", "The bit while safe torque off is active")
 
 
 class CanopenDriveSettings(RealDriveSettings):
@@ -82,6 +92,11 @@ class CanopenDriveSettings(RealDriveSettings):
         None, "", "Node ID under which the host's heartbeat is sent; left out: one that nobody uses", ge=1, le=127
     )
     listen_s: float = quantity(0.25, "s", "How long the bus is listened to for other hosts when opened", ge=0, le=10)
+    torque_off: TorqueOffSettings | None = quantity(
+        None,
+        "",
+        "Bit that tells that safe torque off is active; left out: only a drive that does not switch on shows it",
+    )
     vendor_id: int | None = quantity(None, "", "What 0x1018:01 has to say; left out: anything", ge=0)
     product_code: int | None = quantity(None, "", "What 0x1018:02 has to say; left out: anything", ge=0)
     serial_number: int | None = quantity(None, "", "What 0x1018:04 has to say; left out: anything", ge=0)

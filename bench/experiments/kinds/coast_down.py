@@ -18,7 +18,7 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.experiments.parts.excursion import Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
-from bench.experiments.parts.refusal import refuse_currents, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_coasting, refuse_currents, refuse_load, refuse_speed
 from bench.experiments.parts.stroke import StrokeSettings, refuse_travel
 from bench.json_types import Value, numbers
 from drivers.contract import Command, Mode
@@ -156,6 +156,8 @@ def _plan(parameters: CoastDownParameters, configuration: BenchConfiguration) ->
 
 def _refuse(parameters: CoastDownParameters, configuration: BenchConfiguration) -> None:
     refuse_load("load_kg", parameters.load_kg, configuration)
+    if parameters.released == "off":
+        refuse_coasting(configuration)
     excursion = _excursion(configuration, parameters)
     travel = StrokeSettings(
         excursion.low_rad, excursion.high_rad, max(parameters.speeds_rad_s),

@@ -13,7 +13,7 @@ from bench.experiments.analysis.identification import Identified, identified
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.push import PushSettings, push
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents
+from bench.experiments.parts.refusal import refuse_angles, refuse_coasting, refuse_currents
 from bench.json_types import Value
 from compensator.line_fit import Interval
 from drivers.contract import Mode
@@ -62,6 +62,7 @@ def _refuse(parameters: IdentificationParameters, configuration: BenchConfigurat
     farthest_rad = FARTHER * (1.0 + COAST_SHARE) * max(parameters.excursions_rad)
     refuse_angles("angle 0", [0.0], farthest_rad, configuration)
     refuse_currents(configuration)
+    refuse_coasting(configuration)
     limit_a = configuration.limits.current_a
     if parameters.ceiling_a > limit_a:
         raise LimitError(quantity_message("ceiling_a", parameters.ceiling_a, f"at most {limit_a:g}", "A"))

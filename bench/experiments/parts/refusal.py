@@ -5,11 +5,21 @@ from math import pi, radians
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.servo import closes_positions_alone
-from bench.errors import LimitError, quantity_message
+from bench.errors import ConfigurationError, LimitError, quantity_message
 from bench.experiments.parts.profile import Trapezoid
 from drivers.contract import Description, Mode
 
 LONGEST_MOVE_S = 600.0
+
+
+def refuse_coasting(configuration: BenchConfiguration) -> None:
+    """Raise `ConfigurationError` where a joint without power would not coast: its drive sets the brake by itself."""
+    if configuration.drive.brake.by == "drive":
+        raise ConfigurationError(
+            "the joint is to coast with the power off, and drive.brake.by is 'drive': its drive would set the brake "
+            "while it moves. Have it coast at a current of 0 (coast-down: released = 'current'), or the bench set the "
+            "brake ('output')"
+        )
 
 
 def refuse_load(name: str, load_kg: float, configuration: BenchConfiguration) -> None:

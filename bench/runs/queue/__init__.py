@@ -2,7 +2,7 @@
 
 from bench.runs.queue.campaign import Campaign, CampaignPlan, plan_campaign
 from bench.runs.queue.conductor import Conductor
-from bench.runs.queue.items import Order, checked_item
+from bench.runs.queue.items import Order, checked_item, known_item
 from bench.runs.queue.overview import QueueState, queue_state
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "Order",
     "QueueState",
     "checked_item",
+    "known_item",
     "plan_campaign",
     "queue_state",
 ]

@@ -10,12 +10,13 @@ from bench.runs.bench_control import BenchControl, Pace
 from bench.runs.lease import LeaseHeldError
 from bench.runs.queue.items import Order, checked_item
 from bench.store import Store
-from bench.store.errors import StoreError
+from bench.store.errors import NotFoundError, StoreError, StoreStateError
 from bench.store.tables.queue import WAITING, NewItem, QueueItem, QueueTable
 from drivers.errors import DriveError
 
 RESTARTED = "the service was started anew; look at the bench, then resume"
 STOPPED = "stopped"
+LABORATORY = "the laboratory's queue"
 BUSY_S = 0.2  # until a bench is asked again that runs something that is not of the queue
 Starting = Callable[[str], AbstractContextManager[object]]
 """Entered round each start with the name of who lets the queue run; raises `LeaseHeldError` where that may not be."""
@@ -31,11 +32,15 @@ class Conductor:
         runner: of the bench.
         store: where the queue is kept.
         starting: entered round each start.
+
+    Attributes:
+        confirm: whether an item of the laboratory's queue, by its claim, may start now; asked before each.
     """
 
     def __init__(self, runner: BenchControl, store: Store, starting: Starting = lambda _name: nullcontext()) -> None:
         self.table: QueueTable = store.queue(runner.configuration.name)
         self.running: QueueItem | None = None
+        self.confirm: Callable[[str], bool] = lambda _claim: False
         self._runner, self._store, self._starting = runner, store, starting
         self._held: str | None = None
         self._kept: str | None = None  # as the store has it
@@ -145,7 +150,8 @@ class Conductor:
     def _carry_out(self, item: QueueItem) -> float:
         self.running = item  # before it waits no longer: at no moment does it seem that there is nothing to do
         try:
-            self.table.begin(item.id)
+            if not self._begin(item):
+                return 0.0
             experiment_id = self._start(item)
             if experiment_id is None:
                 return BUSY_S
@@ -154,15 +160,31 @@ class Conductor:
             self.running = None
         return 0.0
 
+    def _begin(self, item: QueueItem) -> bool:
+        """It waits no longer. False where it is not to be started: the laboratory has it back, or gets it."""
+        if item.lab_claim is None:
+            self.table.begin(item.id)
+            return True
+        confirmed = self.confirm(item.lab_claim)
+        try:
+            if not confirmed:
+                self.table.remove(item.id)
+            elif self._held is None:  # else it is held since the laboratory was asked
+                self.table.begin(item.id)
+                return True
+        except (NotFoundError, StoreStateError):
+            pass  # it was given back meanwhile
+        return False
+
     def _start(self, item: QueueItem) -> int | None:
         """The experiment; None where there is none."""
         pace = cast(Pace | None, item.pace)
         try:
-            with self._starting(self._acting_for):
+            with self._starting(self._acting_for if item.lab_claim is None else LABORATORY):
                 return self._runner.start(item.kind, item.parameters, item.operator, item.note, pace, self._hung)
         except (BusyError, LeaseHeldError) as error:
             self.table.give_back(item.id)
-            if isinstance(error, LeaseHeldError):
+            if isinstance(error, LeaseHeldError) and item.lab_claim is None:
                 self._hold(str(error))
         except (BenchError, DriveError) as error:
             status = self._runner.status()

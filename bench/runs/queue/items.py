@@ -1,13 +1,14 @@
 """Items of the queue: checked before they are taken in, as a start would be; and the order with the fewest loads."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.json_types import Json
 from bench.runs.bench_control import Pace
+from bench.store.tables.lab_queue import NewLabItem
 from bench.store.tables.queue import NewItem, QueueItem
 from bench.store.tables.tags import checked
 
@@ -53,6 +54,17 @@ def checked_item(order: Order, configuration: BenchConfiguration) -> NewItem:
         duration_s=kind.duration_s(parameters, configuration),
         loads=[list(load) for load, _ in groupby(loads)],
     )
+
+
+def known_item(item: NewLabItem) -> NewLabItem:
+    """An item for another bench, whose kind and parameters are known; the limits are that bench's to say.
+
+    Raises:
+        UnknownKindError, ParameterError: no such kind, or not its parameters.
+        StoreValueError: a tag that cannot be kept.
+    """
+    parse_parameters(find_kind(item.kind), item.parameters)
+    return replace(item, tags=checked(item.tags), for_tags=checked(item.for_tags))
 
 
 def load_changes(items: Sequence[NewItem | QueueItem]) -> int:

@@ -25,6 +25,12 @@ class DriveState(BaseModel):
     device: str = Field(examples=["/dev/ttyUSB0 unit 1"])
     state: str = Field(description="of the power stage; empty where the drive has no word for it", examples=["fault"])
     fault: str = Field(description="in words; empty where there is none", examples=["over-current"])
+    torque_off: str = Field(
+        "",
+        description="what says that safe torque off is active: no power, and no fault of the joint; empty where "
+        "nothing does",
+        examples=["its circuit is open"],
+    )
 
 
 class DriveStates(BaseModel):

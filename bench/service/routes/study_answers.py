@@ -17,6 +17,7 @@ from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
 from bench.study.models.plots import Action, DriversOverTime, ErrorMap, Moments
 from bench.study.models.study import Study
+from bench.study.models.units import UnitComparison
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
@@ -113,6 +114,17 @@ async def closed_loop(
 ) -> ClosedLoop:
     """Error of the motion beside that of the effort. Takes seconds."""
     return await in_lab(request, later.simulate, study_id, model_id, refine)
+
+
+@router.get("/{study_id}/units", summary="Units of one kind, and which is an outlier", responses=problems(404, 422))
+async def units(
+    request: Request,
+    study_id: StudyId,
+    beside: Annotated[list[int], Query(min_length=2, max_length=1000, description="a study for each other unit")],
+    model_id: ModelId = None,
+) -> UnitComparison:
+    """All are fitted with this study's model: what they have in common, how they scatter. Takes seconds."""
+    return await in_lab(request, later.compare_units, study_id, beside, model_id)
 
 
 @router.get("/{study_id}/error-map", summary="Error over speed and load", responses=problems(404, 422))

@@ -28,6 +28,7 @@ class NewItem:
         tags: given to the experiment.
         duration_s: estimate.
         loads: [load_kg, balanced] of its trials, one entry where the next trials have the same.
+        lab_claim: of one that was taken from the laboratory's queue.
     """
 
     kind: str
@@ -38,6 +39,7 @@ class NewItem:
     pace: str | None = None
     duration_s: float = 0.0
     loads: list[list[Any]] = field(default_factory=list)
+    lab_claim: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +70,7 @@ class QueueItem:
     experiment_id: int | None
     created_utc: datetime
     finished_utc: datetime | None
+    lab_claim: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +131,13 @@ class QueueTable:
         with self._database.reading() as connection:
             found = connection.execute(query.order_by(ITEM.finished_utc.desc(), ITEM.id.desc()).limit(limit))
             return [_item(row) for row in found]
+
+    def claimed(self, claim: str) -> QueueItem | None:
+        """The item that was taken from the laboratory's queue under a claim; None where there is none any more."""
+        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.lab_claim == claim)
+        with self._database.reading() as connection:
+            row = connection.execute(query).one_or_none()
+            return None if row is None else _item(row)
 
     def item(self, item_id: int) -> QueueItem:
         """One item, or `NotFoundError`."""

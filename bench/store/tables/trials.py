@@ -129,7 +129,8 @@ def find(
 
 def of_ids(connection: Connection, ids: Sequence[int]) -> list[Trial]:
     """Trials in the order of their ids in a list; those that were removed meanwhile are left out."""
-    rows = {row.id: row for row in connection.execute(select(TRIAL).where(TRIAL.c.id.in_(ids)))}
+    query = select(TRIAL).where(TRIAL.c.id.in_(ids), TRIAL.c.outcome.not_in(HIDDEN))
+    rows = {row.id: row for row in connection.execute(query)}
     found = condition_rows.of_trials(connection, rows)
     return [_record(rows[trial_id], found) for trial_id in ids if trial_id in rows]
 

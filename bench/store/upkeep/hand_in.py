@@ -79,7 +79,7 @@ class HandIn:
             there, complete = self._begin(connection, origin)
         if not complete:
             trials = {trial["id"]: self._copy_trial(trial, there) for trial in origin.trials}
-            with self._lab.writing() as connection:
+            with self._lab.writing(durable=True) as connection:
                 if not self._begin(connection, origin)[1]:  # another process of this bench may have been faster
                     self._finish(connection, origin, there, trials)
         self._known().add((experiment_id, origin.row["started_utc"]))

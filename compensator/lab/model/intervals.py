@@ -75,14 +75,20 @@ def _note(kept: bool, bound: bool) -> str:
 
 def _half_widths(fit: Fit) -> FloatArray:
     """Half widths of the intervals of all coefficients, shape (K,); NaN where there are too few units."""
-    without, half = without_each(fit), np.full(fit.columns.shape[1], np.nan)
+    errors, count = standard_errors(fit)
+    half: FloatArray = errors * stdtrit(max(count - 1, 1), 0.5 + 0.5 * CONFIDENCE)
+    return half
+
+
+def standard_errors(fit: Fit) -> tuple[FloatArray, int]:
+    """Of all coefficients, shape (K,), NaN where they are not known; and how many independent units tell them."""
+    without, errors = without_each(fit), np.full(fit.columns.shape[1], np.nan)
     count = len(without)
     if count > 2:
         spread = without - np.mean(without, axis=0)
-        error = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))
         kept = np.concatenate([term.kept for term in fit.terms])
-        half[kept] = (error * stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE))[kept]
-    return half
+        errors[kept] = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))[kept]
+    return errors, count
 
 
 def without_each(fit: Fit) -> FloatArray:

@@ -10,26 +10,34 @@ from dataclasses import replace
 
 import numpy as np
 
-from compensator.lab.effects.effect import Motion
+from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fitted import Fit, Term
 from compensator.lab.model.reading import at_true_position
 from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 
+PlainColumns = dict[tuple[int, str, Shape], FloatArray]
+"""Columns (k, n) at the full rate of effects that build on no prediction, by trial, effect and shape."""
 
-def with_own_prediction(fit: Fit) -> Dataset:
-    """The fit's rows, with its own predicted load and effort in every motion."""
+
+def with_own_prediction(fit: Fit, kept: PlainColumns | None = None) -> Dataset:
+    """The fit's rows, with its own predicted load and effort in every motion.
+
+    Args:
+        fit: of a model.
+        kept: filled, and used where the same motions are predicted once more, as in each pass of a fit; None: none are.
+    """
     fit = replace(fit, dataset=at_true_position(fit.dataset, fit.terms))
     per_torque = effort_per_torque(fit)
     loads, totals, beyond, wholes = [], [], [], []
-    for trial in fit.dataset.trials:
+    for index, trial in enumerate(fit.dataset.trials):
         load = np.zeros(len(trial.motion.time_s))
         total = np.zeros(len(trial.motion.time_s))
         for term in fit.terms:
             if term.effect.builds_on == "effort":
                 continue  # its column is made of the rest
-            part = term.coefficients @ term.effect.columns(trial.motion, term.shape)
+            part = term.coefficients @ _at_full_rate(term, index, trial.motion, kept)
             total += part
             if term.effect.carried:
                 load += part
@@ -46,6 +54,16 @@ def with_own_prediction(fit: Fit) -> Dataset:
         return dataset
     motions = [trial.motion for trial in dataset.trials]
     return dataset.with_bend([_bend(steep, one) for one in motions], [_doubt(steep, one) for one in motions])
+
+
+def _at_full_rate(term: Term, index: int, motion: Motion, kept: PlainColumns | None) -> FloatArray:
+    """The columns (k, n) of a term over the motion of a trial."""
+    if kept is None or term.effect.uses_prediction:
+        return term.effect.columns(motion, term.shape)
+    key = index, term.effect.name, term.shape
+    if key not in kept:
+        kept[key] = term.effect.columns(motion, term.shape)
+    return kept[key]
 
 
 def beyond_tangent(fit: Fit, index: int, coefficients: FloatArray) -> FloatArray:

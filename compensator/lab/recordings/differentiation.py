@@ -20,15 +20,18 @@ def rate_of_change(values: FloatArray, rate_hz: float) -> FloatArray:
         few: FloatArray = np.gradient(values, 1.0 / rate_hz)
         return few
     derived = np.empty(len(values))
-    derived[: reach + 1] = np.gradient(values[: reach + 2], 1.0 / rate_hz)[:-1]
-    derived[-reach - 1 :] = np.gradient(values[-reach - 2 :], 1.0 / rate_hz)[1:]
-    _inner(np.asarray(values, dtype=np.float64), WEIGHTS, rate_hz, derived)
+    _differences(np.asarray(values, dtype=np.float64), WEIGHTS, rate_hz, derived)
     return derived
 
 
 @njit(cache=True)
-def _inner(values: FloatArray, weights: FloatArray, rate_hz: float, derived: FloatArray) -> None:
-    reach = len(weights)
+def _differences(values: FloatArray, weights: FloatArray, rate_hz: float, derived: FloatArray) -> None:
+    reach, last, step_s = len(weights), len(values) - 1, 1.0 / rate_hz
+    derived[0] = (values[1] - values[0]) / step_s
+    derived[last] = (values[last] - values[last - 1]) / step_s
+    for row in range(1, reach):
+        derived[row] = (values[row + 1] - values[row - 1]) / (2.0 * step_s)
+        derived[last - row] = (values[last - row + 1] - values[last - row - 1]) / (2.0 * step_s)
     for row in range(reach, len(values) - reach):
         total = 0.0
         for distance in range(1, reach + 1):

@@ -241,11 +241,13 @@ class Dataset:
         """Filter and thin arrays (k, n) given per trial, one after the other; shape (N, k)."""
         parts: list[FloatArray] = []
         waiting: list[FloatArray] = []
+        values = 0
         for rows in full_rate:
             waiting.append(rows)
-            if sum(map(np.size, waiting)) >= SIDE_BY_SIDE * rows.shape[1]:
+            values += rows.size
+            if values >= SIDE_BY_SIDE * rows.shape[1]:
                 parts += self._filtered(len(parts), waiting)
-                waiting = []
+                waiting, values = [], 0
         parts += self._filtered(len(parts), waiting)
         assert len(parts) == len(self.trials)
         return np.concatenate(parts, axis=1).T
@@ -378,11 +380,12 @@ class Dataset:
 
 def _used(columns: FloatArray) -> BoolArray:
     """Which columns (k, n) hold anything."""
-    begins: BoolArray = columns[:, 0] != 0.0  # most are seen at once
-    return begins if begins.all() else np.asarray(columns.any(axis=1))
+    # most are seen at once: by the first sample, or by the middle one where the joint begins at rest
+    seen: BoolArray = (columns[:, 0] != 0.0) | (columns[:, columns.shape[1] // 2] != 0.0)
+    return seen if seen.all() else np.asarray(columns.any(axis=1))
 
 
 def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:
     """The effect's columns (k, n), and what the model makes of them where it bends."""
     columns = effect.columns(motion, shape)
-    return columns if effect.builds_on == "effort" else columns * (1.0 + motion.bend)
+    return columns * (1.0 + motion.bend) if effect.builds_on != "effort" and motion.bend.any() else columns

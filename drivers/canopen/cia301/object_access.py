@@ -85,6 +85,15 @@ class ObjectAccess:
         except ObjectRefusedError:
             return None
 
+    def read_unsigned(self, index: int, subindex: int) -> int:
+        """An object as a number without sign, of whatever length.
+
+        Raises:
+            ObjectRefusedError: the drive refuses.
+            DriveConnectionError: it does not answer.
+        """
+        return int.from_bytes(self._transfer(DriveObject(index, subindex, DataType.U8, "object"), None), "little")
+
     def read_text(self, index: int) -> str:
         """A visible string; empty where the drive does not have it."""
         try:

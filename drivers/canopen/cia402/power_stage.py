@@ -13,6 +13,7 @@ from drivers.canopen.cia402.mode_switch import ModeSwitch
 from drivers.canopen.cia402.state_machine import (
     DISABLE_VOLTAGE,
     FAULT_RESET,
+    SWITCH_ON,
     State,
     state_of,
     status_of,
@@ -68,6 +69,20 @@ class PowerStage:
             self._try_guard()
             demand = self._power(mode)
         return demand
+
+    def stand_down(self, engage_s: float) -> None:
+        """Leave operation enabled by the drive's own order: it stops, sets its brake, lets go. Then power off.
+
+        Args:
+            engage_s: time that its brake takes [s].
+
+        Raises:
+            DriveConnectionError: it does not confirm the power-off.
+        """
+        try:
+            _repeat(self._disabled_once, engage_s + SWITCH_OFF_S)
+        finally:
+            self.switch_off()
 
     def switch_off(self) -> None:
         """Take the power away, and see that it is gone. The host gives no sign of life meanwhile.
@@ -127,6 +142,8 @@ class PowerStage:
                 f"cannot be enabled in state '{self.state.value}' ({session.fault_name()}); find the cause, then "
                 "clear it",
             )
+        if seen := session.torque_off():
+            raise DriveStateError(self._device, f"cannot be enabled: safe torque off is active ({seen})")
         if self.state in (State.ENABLED, State.QUICK_STOP):
             self.switch_off()
         session.emergency = None
@@ -208,6 +225,10 @@ class PowerStage:
 
     def _answers(self, controlword: int) -> bool:
         return self._session.idle(controlword)
+
+    def _disabled_once(self) -> bool:
+        self._session.keep_alive()
+        return self._answers(SWITCH_ON) and self.state is not State.ENABLED
 
     def _off_once(self) -> bool:
         return self._answers(DISABLE_VOLTAGE) and self.state not in _POWERED

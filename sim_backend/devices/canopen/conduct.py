@@ -20,6 +20,7 @@ class Conduct:
         absent_code: abort code where an object is not there; None: 0x06020000 or 0x06090011.
         refused_code: abort code where an object may not be written; None: 0x06010002.
         deaf: it takes what is written to 0x1016, 0x100C, 0x100D and the event timer of RPDOs, and never watches.
+        sets_brake: it sets and releases the joint's brake itself; else bit 0 of 0x60FE does.
         reaction: of `REACTIONS`, where it has no 0x6007.
     """
 
@@ -30,6 +31,7 @@ class Conduct:
     absent_code: int | None = None
     refused_code: int | None = None
     deaf: bool = False
+    sets_brake: bool = False
     reaction: str = "fault"
 
     def __post_init__(self) -> None:

@@ -32,6 +32,7 @@ from sim_backend.plant.parameters import PlantParameters
 
 _REMOTE, _LIMITED, _WARNING, _VOLTAGE = 1 << 9, 1 << 11, 1 << 7, 1 << 4
 _FOLLOWING_ERROR = 1 << 13
+_INTERLOCK = 1 << 3  # of 0x60FD: safe torque off is active
 _WARM_C = 85.0
 _CODES: dict[type[Trip], ErrorCode] = {
     OverCurrent: ErrorCode.OVER_CURRENT,
@@ -83,6 +84,7 @@ class ServoDrive:
         self._ending: Ending | None = None
         self._limited = False
         self._astray_since_s: float | None = None
+        self._follow_output()
 
     def _wire(self) -> None:
         book = self.dictionary
@@ -90,6 +92,7 @@ class ServoDrive:
             (0x6041, 0): self._statusword,
             (0x6061, 0): self._mode_shown,
             (0x6062, 0): lambda: self._measured.position(self._position_demand()),
+            (0x60FD, 0): lambda: _INTERLOCK if self.axis.torque_is_disabled() else 0,
             (0x60F4, 0): lambda: self._measured.position(self._position_demand() - self.axis.counts()),
         }
         book.live = {place: source for place, source in live.items() if place in book}
@@ -97,6 +100,7 @@ class ServoDrive:
         book.checks[0x605A, 0] = _check_quick_stop
         book.reactions[0x6040, 0] = lambda: self._controlwords.append(book.number(0x6040))
         book.reactions[0x607A, 0] = self._aim
+        book.reactions[0x60FE, 1] = book.reactions[0x60FE, 2] = self._follow_output
         self.node.on_reset = self._begin
         self.node.on_lost = self._lose_master
 
@@ -119,6 +123,7 @@ class ServoDrive:
             "mode": self._mode_number,
             "error_code": self.dictionary.number(0x603F),
             "watchdog_trips": self.node.losses,
+            "brake": "set" if self.axis.brake.holds else "released",
         }
 
     # the real-time half ---------------------------------------------------------------------------------
@@ -139,8 +144,12 @@ class ServoDrive:
         self._ending = None
         if machine.state is not State.OPERATION_ENABLED:
             self._enabled = False
+            if self._conduct.sets_brake:
+                self.axis.brake.energise(False)
             return None
         self._choose_mode(seen)
+        if self._conduct.sets_brake:
+            self.axis.brake.energise(True)
         return 0.0 if self._mode is None else self._mode.torque(seen)
 
     def _brake(self, ending: Ending, seen: Seen) -> float:
@@ -148,9 +157,24 @@ class ServoDrive:
             self._ending, self._enabled = ending, False
             self._braking.start(seen)
         if self._braking.done:
-            self._machine.braked()
+            self._set_own_brake()
         deceleration = self._measured.counts_per_s(self.dictionary.number(ending.ramp.value))
         return self._braking.torque(seen, deceleration)
+
+    def _set_own_brake(self) -> None:
+        """The motor stands: it is held until the brake does that, where the drive sets it."""
+        if self._conduct.sets_brake:
+            self.axis.brake.energise(False)
+        if not self._conduct.sets_brake or self.axis.brake.holds:
+            self._machine.braked()
+
+    def _follow_output(self) -> None:
+        """Let the brake's coil follow bit 0 of the outputs, where the mask lets it through."""
+        book = self.dictionary
+        if self._conduct.sets_brake or (0x60FE, 1) not in book:
+            return
+        mask = book.number(0x60FE, 2) if (0x60FE, 2) in book else 1
+        self.axis.brake.energise(bool(mask & 1) and not book.number(0x60FE, 1) & 1)
 
     def _choose_mode(self, seen: Seen) -> None:
         wanted = self.dictionary.number(0x6060)
@@ -246,6 +270,9 @@ class ServoDrive:
 
     def _lose_master(self, code: ErrorCode) -> None:
         before = self._machine.state
+        if (0x60FE, 1) in self.dictionary:  # outputs fall back
+            self.dictionary.put(0x60FE, 1, 1)
+            self._follow_output()
         self._machine.lose_master()
         if self._machine.state is not before and self._machine.state in (State.FAULT, State.FAULT_REACTION_ACTIVE):
             self.dictionary.put(0x603F, 0, code)

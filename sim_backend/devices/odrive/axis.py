@@ -48,7 +48,7 @@ class OdriveAxis:
             0x00: lambda: bytes((2, 4, 4, 58, 0, 6, 11, UNRELEASED)),
             0x03: lambda: pack("<II", self._errors, self._disarmed_for),
             0x09: self._estimates,
-            0x14: lambda: pack("<ff", self._torque_n_m / self._torque_constant_n_m_a, self._current_a()),
+            0x14: lambda: pack("<ff", self._wanted_a(), self._current_a()),
             0x15: lambda: pack("<ff", *(2 * [self._temperature_c()])),
             0x17: lambda: pack("<ff", self.axis.seen.supply_v, abs(self._current_a() * self.axis.seen.duty)),
             0x1C: lambda: pack("<ff", self._torque_n_m, self._current_a() * self._torque_constant_n_m_a),
@@ -104,8 +104,10 @@ class OdriveAxis:
             self.watchdog_trips += 1
             self._disarm(WATCHDOG)
             return OFF
-        current_a = self._torque_n_m / self._torque_constant_n_m_a
-        return Demand(CURRENT, max(-_LIMIT_A, min(_LIMIT_A, current_a)))
+        return Demand(CURRENT, self._wanted_a())
+
+    def _wanted_a(self) -> float:
+        return max(-_LIMIT_A, min(_LIMIT_A, self._torque_n_m / self._torque_constant_n_m_a))
 
     def _disarm(self, reason: int) -> None:
         if self._state == CLOSED_LOOP or reason & ~WATCHDOG:

@@ -6,6 +6,7 @@ import can
 import pytest
 
 from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.canopen.cia402.bits import TorqueOffBit
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
 from tests.drivers.canopen.conftest import JOINT
@@ -364,3 +365,38 @@ def test_a_host_that_is_held_up_again_and_again_is_no_silence_of_the_drive(node,
     assert cycle.silence_s < 0.05, "it has listened for one wait of 10 ms, however long that took"
     drive._link.receive = receive
     assert drive.exchange(PUSH).status is Status.ENABLED
+
+
+STO = TorqueOffBit(0x60FD, 0, 3)
+
+
+def test_safe_torque_off_is_no_fault_and_is_seen_before_the_power_comes(node, drive_of):
+    node.objects[0x60FD, 0] = ["<I", 1 << 3]
+    drive = drive_of(torque_off=STO)
+    drive.open(0.005)
+    found = drive.inspect()
+    assert (found.status, found.fault) == (Status.DISABLED, "")
+    assert found.torque_off == "bit 3 of 0x60FD:00 is 1"
+    node.received.clear()
+    with pytest.raises(DriveStateError, match="safe torque off is active"):
+        drive.enable(Mode.CURRENT)
+    assert not any(cob == 0x205 and data[0] == 0x0F for cob, data in node.received), "it was told to switch on"
+    node.put(0x60FD, 0, 1 << 4)  # others do not matter
+    assert drive.inspect().torque_off == ""
+    drive.enable(Mode.CURRENT)
+    assert node.enabled
+
+
+def test_the_level_of_its_bit_may_be_the_other_one_in_an_object_of_a_byte(node, drive_of):
+    node.objects[0x3240, 4] = ["<B", 3]
+    drive = drive_of(torque_off=TorqueOffBit(0x3240, 4, 0, level=0))
+    drive.open(0.005)
+    assert drive.inspect().torque_off == ""
+    node.put(0x3240, 4, 2)
+    assert drive.inspect().torque_off == "bit 0 of 0x3240:04 is 0"
+
+
+def test_a_bit_that_the_drive_does_not_tell_is_refused_when_it_is_opened(node, drive_of):
+    with pytest.raises(DriveConfigurationError, match=r"0x60FD:00.*refused"):
+        drive_of(torque_off=STO).open(0.005)
+    assert not node.enabled

@@ -11,8 +11,9 @@ from threading import Timer
 import pytest
 
 from drivers.canopen import CanopenDrive, CanopenSettings
+from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
 from drivers.contract import Command, Mode, Status
-from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault
+from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault, DriveStateError
 from tests.drivers.canopen.conversation import (
     JOINT,
     TRANSPORTS,
@@ -267,6 +268,61 @@ def test_torque_that_is_taken_away_is_noticed(slcan):
     error, _ = _raises(drive, DriveFault)
     assert "switched itself off" in str(error)
     device.wait_for_power(on=False)
+
+
+def test_the_interlock_bit_tells_safe_torque_off_until_its_circuit_is_closed(slcan_device):
+    with driver_of(slcan_device, torque_off=TorqueOffBit(0x60FD, 0, 3)) as drive:
+        drive.open(0.005)
+        assert drive.inspect().torque_off == ""
+        slcan_device.side.ask("fault", name="torque-disabled")
+        found = drive.inspect()
+        assert (found.fault, found.torque_off) == ("", "bit 3 of 0x60FD:00 is 1")
+        with pytest.raises(DriveStateError, match="safe torque off is active"):
+            drive.enable(Mode.CURRENT)
+        slcan_device.side.ask("repair")
+        drive.enable(Mode.CURRENT)
+        drive.disable()
+
+
+@pytest.fixture(scope="module", params=[(), ("--sets-brake",)], ids=["by an output", "by the drive"])
+def braked(request, tmp_path_factory):
+    plant = tmp_path_factory.mktemp("plant") / "plant.toml"
+    plant.write_text("[brake]\ntorque_n_m = 0.2\nrelease_s = 0.05\nengage_s = 0.1\n")
+    with started("slcan", "--plant", str(plant), *request.param) as device:
+        yield device, bool(request.param)
+
+
+def test_a_holding_brake_is_set_without_power_and_holds_when_the_host_is_gone(braked):
+    device, is_own = braked
+    with driver_of(device, brake=None if is_own else BrakeBit()) as drive:
+        drive.open(0.005)
+        drive.enable(Mode.CURRENT)
+        if not is_own:  # powered and pushed, and still held
+            assert exchange_for(drive, 0.3, PUSH)[-1].position_rad == pytest.approx(0.0, abs=0.02)
+            drive.set_brake(released=True)
+        exchange_for(drive, 0.5, PUSH)
+        time.sleep(2.0 * WATCHDOG_S)  # nobody is there any more
+        device.wait_for_power(on=False)
+    time.sleep(0.5)
+    assert device.truth()["joint"]["arm_rad_s"] == pytest.approx(0.0, abs=0.05)
+    assert device.truth()["device"]["brake"] == "set"
+
+
+def test_a_drive_with_a_brake_of_its_own_holds_the_arm_until_the_brake_does(braked):
+    device, is_own = braked
+    if not is_own:
+        pytest.skip("the host sets it")
+    device.side.hang_load(0.25, False)
+    device.side.ask("hold", angle_rad=1.0)
+    with driver_of(device) as drive:
+        drive.open(0.005)
+        device.side.ask("release")
+        here_rad = drive.exchange(OFF).position_rad
+        drive.enable(Mode.POSITION)
+        exchange_for(drive, 0.5, Command(Mode.POSITION, here_rad))
+        drive.stand_down(0.1)
+        device.wait_for_power(on=False)
+        assert exchange_for(drive, 0.5, OFF)[-1].position_rad == pytest.approx(here_rad, abs=0.03)
 
 
 def test_another_unit_than_configured_is_refused_before_motion(slcan):

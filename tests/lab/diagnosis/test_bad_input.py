@@ -26,6 +26,9 @@ LINEAR = Facts(joint="linear")
 FEW = plans((0.0, 0.25))
 
 
+Made = Callable[[], list[Recording]]  # recorded when its test runs, not whenever tests are collected
+
+
 def changed(change: Callable[[Recording], None], which: slice = slice(None)) -> list[Recording]:
     made = recordings(trials=FEW, seed=3)
     for recording in made[which]:
@@ -63,35 +66,41 @@ def jitter_of_the_encoder(old: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(
     ("made", "words"),
     [
-        ([], "no recordings: choose at least one trial"),
-        (changed(put("position_rad", 0.3)), "the joint does not move in any trial, under .*; record trials with"),
-        (changed(put("position_rad", jitter_of_the_encoder)), "0 rows where the joint moves faster than 0.000"),
-        (steps_only(), "0 rows where the joint moves faster than"),
-        (changed(put("torque_n_m", 0.3)), "torque_n_m is 0.3 N m all the time; check the channel's mapping"),
-        (changed(put("torque_n_m", 0.0)), "torque_n_m is 0 N m all the time"),
-        (changed(put("torque_n_m", np.nan)), "'load-0g-0-1' has no effort channel"),
-        (changed(put("torque_n_m", np.nan), slice(2, 3)), "'load-0g-2-1' has no effort channel"),
-        (changed(put("position_rad", np.nan), slice(2, 3)), "'load-0g-2-1': position_rad has no finite sample"),
+        (list, "no recordings: choose at least one trial"),
         (
-            changed(put("enabled", 0.0)),
+            lambda: changed(put("position_rad", 0.3)),
+            "the joint does not move in any trial, under .*; record trials with",
+        ),
+        (lambda: changed(put("position_rad", jitter_of_the_encoder)), "0 rows where the joint moves faster than 0.000"),
+        (steps_only, "0 rows where the joint moves faster than"),
+        (lambda: changed(put("torque_n_m", 0.3)), "torque_n_m is 0.3 N m all the time; check the channel's mapping"),
+        (lambda: changed(put("torque_n_m", 0.0)), "torque_n_m is 0 N m all the time"),
+        (lambda: changed(put("torque_n_m", np.nan)), "'load-0g-0-1' has no effort channel"),
+        (lambda: changed(put("torque_n_m", np.nan), slice(2, 3)), "'load-0g-2-1' has no effort channel"),
+        (lambda: changed(put("position_rad", np.nan), slice(2, 3)), "'load-0g-2-1': position_rad has no finite sample"),
+        (
+            lambda: changed(put("enabled", 0.0)),
             "no usable rows: the power stage is off in 100% of the samples; record with it on",
         ),
-        (changed(put("duty", 1.0)), "no usable rows: the duty is at its limit in 100% of the samples"),
-        (first_samples(2), "'short' has 2 samples; at least .* are needed to filter"),
-        (first_samples(1), r"'short' has 1 sample\(s\); record longer"),
-        (first_samples(0), "'short' has no effort channel"),
-        ([*recordings(seed=3), *first_samples(50)], "'short' has 50 samples; at least"),
+        (lambda: changed(put("duty", 1.0)), "no usable rows: the duty is at its limit in 100% of the samples"),
+        (lambda: first_samples(2), "'short' has 2 samples; at least .* are needed to filter"),
+        (lambda: first_samples(1), r"'short' has 1 sample\(s\); record longer"),
+        (lambda: first_samples(0), "'short' has no effort channel"),
+        (lambda: [*recordings(seed=3), *first_samples(50)], "'short' has 50 samples; at least"),
         (
-            changed(put("time_s", lambda t: 1e3 * t)),
+            lambda: changed(put("time_s", lambda t: 1e3 * t)),
             "0.2 samples a second; at least 4 .* check that time_s is in seconds",
         ),
-        (changed(condition("load_kg", "heavy")), "'load-0g-0-1': condition load_kg is 'heavy', wanted is a number"),
-        (changed(condition("arm_m", float("nan"))), "condition arm_m is 'nan', wanted is a number"),
+        (
+            lambda: changed(condition("load_kg", "heavy")),
+            "'load-0g-0-1': condition load_kg is 'heavy', wanted is a number",
+        ),
+        (lambda: changed(condition("arm_m", float("nan"))), "condition arm_m is 'nan', wanted is a number"),
     ],
 )
-def test_unusable_data_say_what_is_wrong_and_what_to_do(made, words):
+def test_unusable_data_say_what_is_wrong_and_what_to_do(made: Made, words: str) -> None:
     with pytest.raises(UnusableDataError, match=words):
-        fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+        fit_model(make_dataset(made(), FACTS, Processing()), default_effects(FACTS))
 
 
 def diagnosed(made: list[Recording], facts: Facts = FACTS) -> Diagnosis:
@@ -116,26 +125,26 @@ def cold(recording: Recording) -> None:
 @pytest.mark.parametrize(
     "made",
     [
-        changed(lost_stretches),
-        changed(cold),
-        changed(lambda recording: recording.channels["torque_n_m"].__setitem__(500, np.inf)),
-        recordings(seed=3)[:1],
-        recordings(seed=3)[3:5],
-        recordings(trials=plans((0.2,)), seed=3),
-        recordings(trials=plans((0.1, 0.1, 0.1)), seed=3),
-        [replace(one, name="same") for one in recordings(seed=3)],
-        [*recordings(seed=3)[:5], *recordings(bench=Bench(rate_hz=50.0), seed=3)[5:]],
-        recordings(bench=Bench(noise=0.0, quantum=0.0), seed=3),
-        changed(put("torque_n_m", lambda torque: 1e-6 * torque), slice(0, 3))[:3],
-        changed(put("torque_n_m", lambda torque: 1e9 * torque), slice(0, 3))[:3],
+        lambda: changed(lost_stretches),
+        lambda: changed(cold),
+        lambda: changed(lambda recording: recording.channels["torque_n_m"].__setitem__(500, np.inf)),
+        lambda: recordings(seed=3)[:1],
+        lambda: recordings(seed=3)[3:5],
+        lambda: recordings(trials=plans((0.2,)), seed=3),
+        lambda: recordings(trials=plans((0.1, 0.1, 0.1)), seed=3),
+        lambda: [replace(one, name="same") for one in recordings(seed=3)],
+        lambda: [*recordings(seed=3)[:5], *recordings(bench=Bench(rate_hz=50.0), seed=3)[5:]],
+        lambda: recordings(bench=Bench(noise=0.0, quantum=0.0), seed=3),
+        lambda: changed(put("torque_n_m", lambda torque: 1e-6 * torque), slice(0, 3))[:3],
+        lambda: changed(put("torque_n_m", lambda torque: 1e9 * torque), slice(0, 3))[:3],
     ],
     ids=[
         "lost stretches", "no temperature", "infinite effort", "one trial", "two trials", "one load", "alike loads",
         "one name for all", "mixed rates", "no noise", "micro-units", "giga-units",
     ],
 )  # fmt: skip
-def test_a_complete_model_of_poor_data_lacks_nothing(made):
-    found = diagnosed(made)
+def test_a_complete_model_of_poor_data_lacks_nothing(made: Made) -> None:
+    found = diagnosed(made())
     assert found.verdict == "nothing", found.sentence
     assert found.data_problems == []
 

@@ -23,4 +23,5 @@ def test_a_parabola_is_exact_up_to_the_last_samples_and_short_signals_work():
     time_s = 0.01 * np.arange(30)
     found = rate_of_change(3.0 * time_s**2, 100.0)
     assert found[1:-1] == pytest.approx(6.0 * time_s[1:-1])
+    assert found[[0, -1]] == pytest.approx([0.03, 6.0 * 0.29 - 0.03])  # half a step off
     assert rate_of_change(np.array([0.0, 1.0, 2.0]), 10.0) == pytest.approx([10.0, 10.0, 10.0])

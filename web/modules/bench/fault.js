@@ -27,5 +27,7 @@ export function faultPanel(place, live) {
 
 function line(drive) {
   const name = drive.joint === "joint" ? "" : `${drive.joint}: `;
-  return h("p", { class: drive.fault ? "problem" : "" }, `${name}${drive.device}: ${drive.fault ? `fault: ${drive.fault}` : drive.state || "no fault"}`);
+  const off = drive.torque_off ? `safe torque off is active (${drive.torque_off}); the joint is not at fault: release the emergency stop or the guard` : "";
+  const said = drive.fault ? `fault: ${drive.fault}` : drive.state || "no fault";
+  return h("p", { class: drive.fault || off ? "problem" : "" }, `${name}${drive.device}: ${[said, off].filter(Boolean).join("; ")}`);
 }

@@ -8,6 +8,7 @@ import { when } from "../ui/format.js";
 import { removeButton } from "../ui/removal.js";
 import { newStudy } from "./newstudy.js";
 import { studyView } from "./study.js";
+import { unitsForm } from "./units.js";
 
 export function studiesView(place, { rest, query }) {
   const wanted = rest[0] === "new" ? Number(rest[1]) : null; // an experiment to make a study of
@@ -30,5 +31,6 @@ function studyTable(items, changed) {
     { title: "Name", cell: (study) => h("a", { href: `#study/${study.study_id}` }, study.name) },
     { title: "Created", cell: (study) => when(study.created_utc) },
     { title: "", cell: ({ study_id: number }) => withFiles((place) => removeButton(place, { what: `study ${number}`, path: `/studies/${number}`, done: changed, loses: "with its models, but not its trials" }), []) },
-  ], items), items.length > 1 && h("p", {}, h("a", { href: `#compare/${items[1].study_id}./${items[0].study_id}.` }, "Two studies beside each other"))];
+  ], items), items.length > 1 && h("p", {}, h("a", { href: `#compare/${items[1].study_id}./${items[0].study_id}.` }, "Two studies beside each other")),
+  items.length > 2 && unitsForm(items)];
 }

@@ -48,6 +48,13 @@ def _objects(rating: Rating) -> list[Object]:
             Entry(1, "Interpolation time period value", U8, RW, 10),
             Entry(2, "Interpolation time index", I8, RW, -3, low=-4, high=0),
         ),
+        variable(0x60FD, "Digital inputs", U32, RO, mappable=True),  # bit 3: interlock, here safe torque off
+        record(
+            0x60FE,
+            "Digital outputs",
+            Entry(1, "Physical outputs", U32, RW, 1, mappable=True),  # bit 0: set brake
+            Entry(2, "Bit mask", U32, RW, 1, mappable=True),
+        ),
     ]
 
 
