@@ -5,8 +5,9 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 import uuid
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -18,10 +19,15 @@ FAST = {"fsync": "off", "synchronous_commit": "off", "full_page_writes": "off", 
 
 
 class PostgresqlServer:
-    """Makes databases in a running server."""
+    """Makes databases in a running server.
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    Args:
+        folder: of its data and its socket.
+        control: runs pg_ctl with a verb and options.
+    """
+
+    def __init__(self, folder: Path, control: Callable[..., None]) -> None:
+        self._folder, self._control = folder, control
         self._admin = create_engine(
             self.url("postgres").replace("postgresql:", "postgresql+psycopg:"), isolation_level="AUTOCOMMIT"
         )
@@ -48,6 +54,12 @@ class PostgresqlServer:
         children = Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
         return sum(int(Path(f"/proc/{one}/schedstat").read_text().split()[0]) for one in children) * 1e-9
 
+    def crash(self, down_s: float = 0.0) -> None:
+        """End all its processes at once, and start it anew."""
+        self._control("stop", "-m", "immediate")
+        time.sleep(down_s)
+        self._control("start")
+
     def close(self) -> None:
         self._admin.dispose()
 
@@ -64,14 +76,18 @@ def postgresql_server(settings: Mapping[str, str] = FAST) -> Iterator[Postgresql
         _run(user, programs / "initdb", "-D", folder / "data", "-U", "postgres", "-A", "trust", "-E", "UTF8", "-N")
         options = " ".join(f"-c {name}={value}" for name, value in settings.items())
         options += f" -c listen_addresses='' -c unix_socket_directories={folder}"
-        start = ("-D", folder / "data", "-o", options, "-l", folder / "log", "-w")
-        _run(user, programs / "pg_ctl", "start", *start)
-        server = PostgresqlServer(folder)
+        place = ("-D", folder / "data", "-o", options, "-l", folder / "log", "-w")
+
+        def control(verb: str, *more: str) -> None:
+            _run(user, programs / "pg_ctl", verb, *(place if verb == "start" else place[:2]), *more)
+
+        control("start")
+        server = PostgresqlServer(folder, control)
         try:
             yield server
         finally:
             server.close()
-            _run(user, programs / "pg_ctl", "stop", "-D", folder / "data", "-m", "immediate")
+            control("stop", "-m", "immediate")
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 

@@ -6,7 +6,7 @@ compensated gravity is that of an angle which the arm does not have.
 
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
-from math import degrees, isfinite
+from math import degrees, isfinite, pi
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.drives.real import RealDriveSettings
@@ -19,6 +19,7 @@ from drivers.contract import Description
 
 COUNTS = 2.0  # off 0: a joint that creeps by a count after it was switched on
 MOVED_RAD = 0.1  # that the arm is elsewhere by its count; gravity is off by a tenth then
+TURN_SHARE = 0.05  # of a motor turn: as near to whole turns no hand puts an arm by chance more than once in ten times
 GAP = timedelta(seconds=20.0)  # nobody has switched a supply off and on between two experiments of a queue
 LOOKED_AT = 50  # newest experiments
 CHANNEL = "position_rad"
@@ -27,8 +28,9 @@ CHANNEL = "position_rad"
 def count_doubt(store: Store, bench: BenchConfiguration, found: Description, read_rad: Callable[[], float]) -> str:
     """What a person has to look at before the joint moves; "" where the count is not in doubt.
 
-    The count is in doubt where it is 0, the arm stood elsewhere at the end of the last experiment, and nobody has set
-    the zero since. An arm that hangs where the drive was switched on has a count of 0, too: only eyes can tell.
+    The count of an incremental encoder is in doubt where it is 0, the arm stood elsewhere at the end of the last
+    experiment, and nobody has set the zero since; that of an absolute one where it is off by whole motor turns. An arm
+    that hangs where the drive was switched on has a count of 0, too: only eyes can tell.
 
     Args:
         store: with the experiments before.
@@ -41,6 +43,8 @@ def count_doubt(store: Store, bench: BenchConfiguration, found: Description, rea
     if last is None or not isinstance(settings, RealDriveSettings):
         return ""
     experiment, stood_rad = last
+    if settings.homing is not None and settings.homing.method == "absolute":
+        return _turn_doubt(bench, found, experiment, stood_rad, read_rad())
     if abs(stood_rad + settings.zero_rad) <= MOVED_RAD:  # it was near 0 before, too
         return ""
     position_rad = read_rad()
@@ -51,6 +55,26 @@ def count_doubt(store: Store, bench: BenchConfiguration, found: Description, rea
         f"{degrees(stood_rad):.0f} degrees at the end of experiment {experiment.id}; by the count it stands at "
         f"{degrees(position_rad):.0f} degrees now. Go on only if it does. If not, stop, let it hang straight down, and "
         "run 'friction-bench doctor --set-zero'."
+    )
+
+
+def _turn_doubt(
+    bench: BenchConfiguration, found: Description, experiment: Experiment, stood_rad: float, position_rad: float
+) -> str:
+    """What is in doubt of an absolute encoder: it knows where in a turn it is, and may have lost count of the turns."""
+    ratio = bench.rig.gear.ratio
+    if ratio is None or not isfinite(position_rad):
+        return ""
+    turn_rad = 2.0 * pi / ratio
+    turns = round((position_rad - stood_rad) / turn_rad)
+    if turns == 0 or abs(position_rad - stood_rad - turns * turn_rad) > TURN_SHARE * turn_rad:
+        return ""
+    return (
+        f"The count of drive '{found.device}' is off by {turns} whole motor turns ({degrees(turns * turn_rad):.0f} "
+        f"degrees of the joint) from the end of experiment {experiment.id}, as where an absolute encoder has lost "
+        f"its turns. By the count the arm stands at {degrees(position_rad):.0f} degrees now. Go on only if it does. "
+        "If not, stop, look after the encoder's battery, let it hang straight down, and run 'friction-bench doctor "
+        "--set-zero'."
     )
 
 

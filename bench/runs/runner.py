@@ -19,6 +19,7 @@ from bench.control.ending import StopRequest
 from bench.control.prompt import PromptDesk
 from bench.control.station import Station, make_station
 from bench.errors import BenchError, BusyError, ParameterError
+from bench.experiments.kinds import homing
 from bench.experiments.parts.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
 from bench.json_types import Values
@@ -222,7 +223,8 @@ class Runner(BenchControl):
                 refuse_modes(kind.name, kind.modes(parameters), description)
             if kind.name not in commissioned.BEFORE_IT:
                 self._require_commissioned(station)
-            doubt = self._count_doubt(station)
+            # a count that was reset is what a search for the zero is for
+            doubt = "" if kind.name == homing.NAME else self._count_doubt(station)
         except BaseException:
             station.close()
             raise

@@ -69,6 +69,11 @@ class JointUnderLoad:
         loss = self.gear_loss
         return loss.carried_a / (loss.driving + loss.back_driving) if loss.carried_a > 0.0 else 0.0
 
+    @property
+    def inertia_a_s2_rad(self) -> float:
+        """Current per joint acceleration of rotor, arm and load together; 0 where it is not known."""
+        return self.rotor_inertia_a_s2_rad + self.arm_inertia_a_s2_rad
+
     def gravity_at(self, angle_rad: float) -> float:
         """What the load takes at an angle [A]."""
         return self.gravity_a * sin(angle_rad)

@@ -104,6 +104,24 @@ class LoadEstimate(NamedTuple):
     friction_current_a: float = nan
 
 
+class Hit(NamedTuple):
+    """What a joint struck, and what that left.
+
+    Attributes:
+        way: of the motion that it ended, 1 or -1.
+        load_a: what teeth and wall, once pressed, hold between them [A].
+        position_rad: where the joint came to rest.
+        holds_rad: way from there, either way, within which it is still pressed.
+        cycles: since it was seen.
+    """
+
+    way: float
+    load_a: float
+    position_rad: float
+    holds_rad: float
+    cycles: int = 0
+
+
 class EstimatorState(NamedTuple):
     """Everything the estimator remembers between cycles."""
 
@@ -116,12 +134,14 @@ class EstimatorState(NamedTuple):
     extreme_rad: float = nan  # farthest in the present direction
     direction: float = 0.0  # of the last motion
     turned_rad: float = nan  # where it last turned back
+    came_rad: float = 0.0  # way of the motion before that
     moving_cycles: int = 0  # in one direction, without a rest
     still_cycles: int = 0
     rest: RestResult | None = None  # of the present rest
     estimate: LoadEstimate = LoadEstimate(nan, inf, Branch.LOST)
     known_a: float = nan  # what was given out, less the load's gravity by the model
     offset_a: float = 0.0  # of the output over the present branch's own value
+    hit: Hit | None = None  # that ended the last motion, while it holds
     leant: bool = False  # it has been stuck, and not come into motion since
     mean_a: float = nan  # of `known_a` in motion, and its variance, over the last few windows
     variance_a2: float = 0.0

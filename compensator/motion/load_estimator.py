@@ -6,8 +6,7 @@
                 pressed to the end of that band at which friction is that of motion towards the set point, and this is
                 the rule                                                                       (paper, section 3.2.1)
     in motion   I - J dw/dt - s F(w), F of the curve that the present F_load selects; then what the gear loses
-    struck      stopped at once, under a current that would move it: what stops its momentum presses on, see
-                `standing_load.struck`
+    struck      stopped at once, under a current that would move it: what its momentum wedged, see `hit`
     leaving     moving back from what it was stuck against: as in motion, between the weight and what it leant with,
                 since a wall cannot pull
     turning     just set off, turned back, or within the free play after that: held, as static friction allows it while
@@ -19,7 +18,7 @@ between the two dies away with `blend_s`; until then it is part of the band.
 
 from math import copysign, exp, inf, isnan, nan
 
-from compensator.motion import free_play, standing_load
+from compensator.motion import free_play, hit, standing_load
 from compensator.motion.joint_model import JointModel, JointUnderLoad
 from compensator.motion.load_estimate import (
     Branch,
@@ -55,6 +54,7 @@ def advance(
         return _lose(state)
     joint, state = _joint(model, state, observation)
     state = _remember(joint, settings, _track(settings, state, observation), observation)
+    state = state._replace(hit=hit.struck(joint, settings, state, observation))
     branch = _branch(joint, settings, state, observation)
     leans = branch in (Branch.STUCK, Branch.STRUCK)
     state = state._replace(leant=leans or (state.leant and branch is not Branch.MOVING))
@@ -88,10 +88,11 @@ def _track(settings: EstimatorSettings, state: EstimatorState, observation: Obse
         moving = 0 if still > settings.rest_cycles else state.moving_cycles + 1
         return state._replace(still_cycles=still, moving_cycles=moving)
     way = copysign(1.0, ahead_rad)
-    state = state._replace(extreme_rad=position_rad, still_cycles=0)
     if way == state.direction:
-        return state._replace(moving_cycles=state.moving_cycles + 1)
-    return state._replace(direction=way, turned_rad=position_rad - ahead_rad, moving_cycles=1)
+        return state._replace(extreme_rad=position_rad, still_cycles=0, moving_cycles=state.moving_cycles + 1)
+    came_rad = abs(state.extreme_rad - state.turned_rad) if state.direction else 0.0
+    state = state._replace(extreme_rad=position_rad, still_cycles=0)
+    return state._replace(direction=way, turned_rad=position_rad - ahead_rad, came_rad=came_rad, moving_cycles=1)
 
 
 def _remember(
@@ -131,7 +132,7 @@ def _branch(
     travel_rad = abs(state.extreme_rad - state.turned_rad)
     # what follows the last motion may be at rest already, held by any friction
     window_moves = state.moving_cycles > settings.window and state.still_cycles <= MISSED_CYCLES
-    if travel_rad > settings.free_play_rad and standing_load.strikes(joint, settings, state, observation):
+    if state.hit is not None:
         return Branch.STRUCK
     if not window_moves or travel_rad <= settings.free_play_rad:
         return Branch.LEAVING if _leaves(joint, settings, state) else Branch.TURNING
@@ -154,13 +155,14 @@ def _own(
         return standing_load.at_rest(joint, settings, state, held_a)
     if branch is Branch.STUCK:
         return standing_load.stuck(joint, settings, state, observation, held_a)
-    if branch is Branch.STRUCK:
-        return standing_load.struck(joint, settings, state, held_a)
+    if state.hit is not None and branch is Branch.STRUCK:
+        return hit.estimate(joint, state, state.hit, held_a)
     if branch is Branch.MOVING:
         return moving_load(joint, settings, state, observation)
     if branch is Branch.LEAVING:
         return standing_load.leaving(joint, state, observation)
-    if branch is Branch.TURNING and state.still_cycles > settings.onset_cycles and not isnan(held_a):
+    stands = state.still_cycles > settings.onset_cycles or standing_load.creeps(settings, state)
+    if branch is Branch.TURNING and stands and not isnan(held_a):
         return standing_load.allowed(joint, settings, state, held_a, nan, branch)
     return LoadEstimate(held_a, state.estimate.half_width_a, branch)
 

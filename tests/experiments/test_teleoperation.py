@@ -70,8 +70,8 @@ def test_a_hit_is_felt_at_once_and_a_push_that_is_let_go_is_gone(leant):
     assert told["compensated_rise_s"] < 0.04
     # nobody who is a cycle late does better: the hit itself is over by then
     assert told["compensated_reflected_error_max_g"] < 1.1 * told["compensated_least_error_max_g"] + 30.0
-    # static friction hides up to 75 g of what a wall wedges
-    assert told["compensated_late_error_max_g"] < 80.0 < told["raw_late_error_max_g"]
+    # what a hit wedges is told by its momentum; static friction hides the rest
+    assert told["compensated_late_error_max_g"] < 60.0 < 80.0 < told["raw_late_error_max_g"]
 
 
 def test_raw_reflection_drags_and_the_compensated_one_hardly_drives_the_hand(carried, leant):

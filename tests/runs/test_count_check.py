@@ -3,12 +3,14 @@
 import json
 import time
 from datetime import timedelta
+from math import degrees, pi
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from bench.cli.app import app
+from bench.config.drives.real import HomingSettings
 from bench.control.cycle import OFF
 from bench.control.drive_factory import make_equipment
 from bench.provenance import provenance
@@ -71,6 +73,21 @@ def test_what_the_records_and_the_count_say_together(bench, store):
     assert f"80 degrees at the end of experiment {made}" in said
     assert "doctor --set-zero" in said
     assert doubt(store, configuration, found, 0.01) == ""  # a count that goes on from where it was is not 0
+
+
+def test_an_absolute_encoder_that_has_lost_count_of_its_turns(bench, store):
+    drive = bench.configuration.drive.model_copy(update={"homing": HomingSettings(method="absolute")})
+    configuration = bench.configuration.model_copy(update={"drive": drive})
+    found, _ = drive_of(configuration)
+    turn_rad = 2.0 * pi / configuration.rig.gear.ratio
+    made = ended_at(store, configuration, found, 0.0, 0.2)
+    said = doubt(store, configuration, found, 0.2 + 2.0 * turn_rad + 0.002)
+    assert f"off by 2 whole motor turns ({degrees(2.0 * turn_rad):.0f} degrees" in said
+    assert f"experiment {made}" in said
+    assert "off by -1 whole" in doubt(store, configuration, found, 0.2 - turn_rad)
+    assert doubt(store, configuration, found, 0.2) == ""
+    assert doubt(store, configuration, found, 0.2 + 0.5 * turn_rad) == ""  # somebody has moved the arm
+    assert doubt(store, configuration, found, 0.0) == ""  # a count of 0 is no news of it
 
 
 def test_a_zero_that_was_set_since_or_an_experiment_of_just_now_leaves_no_doubt(bench, store, monkeypatch):

@@ -102,12 +102,13 @@ class Bench:
 
 
 @contextmanager
-def kills_bench(folder: Path, joints: int = 1) -> Iterator[Bench]:
+def kills_bench(folder: Path, joints: int = 1, lab_url: str | None = None) -> Iterator[Bench]:
     """A bench whose drives have passed the commissioning move, as the store remembers it.
 
     Args:
         folder: for store and configuration.
         joints: 1, or 2 for a master and a slave.
+        lab_url: database of the laboratory that its service hands in to; None: it is by itself.
     """
     with ExitStack() as stack:
         devices = [stack.enter_context(device_process("modbus", "--transport", "tcp")) for _ in range(joints)]
@@ -119,6 +120,8 @@ def kills_bench(folder: Path, joints: int = 1) -> Iterator[Bench]:
             told = calibrated_configuration().model_dump(mode="json", exclude_none=True, include={"friction", "rest"})
             master = {"drive": _section(devices[1]), "limits": values["limits"]}
             values |= {**told, "master": master}
+        if lab_url is not None:
+            values["store"] = {"lab_url": lab_url}
         (folder / "bench.toml").write_text(tomli_w.dumps(values))
         found = Bench(folder, tuple(devices), parse_configuration(values, "bench.toml"))
         _commission(found)

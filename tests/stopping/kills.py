@@ -1,11 +1,14 @@
 """Ends runs at random moments, in every way a run can end, and looks at what is left: `python -m tests.stopping.kills`.
 
-    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"] [--joints 2]
+    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"] [--joints 2] [--lab]
 
 The drive is a simulated device in a process of its own, over Modbus TCP; when the motor was off is what the device
 says. All runs share one store and one drive: that the next run starts is part of what is tested. After each: the
 database is sound, every row that was seen committed is there, the rows have no gap, how much was lost, and what the
 record says. A line for each run as it ends, and a table at the end, also after Ctrl-C.
+
+With --lab the service hands in to a PostgreSQL server, whose link is cut and which is killed at random moments all the
+while. No run may end otherwise for it, and at the end the laboratory has every row of the bench, once.
 """
 
 import argparse
@@ -28,6 +31,7 @@ from bench.store import Store
 from bench.store.records import Trial
 from tests.drivers.conformance.benches import PERIOD_S
 from tests.stopping.bench import OPTIONS, Bench, Service, is_there, kills_bench, wait_for
+from tests.stopping.laboratory import laboratory
 from tests.stopping.ways import WAYS, Scene, Way
 
 ALLOWED_LOSS_S = 0.2
@@ -115,7 +119,7 @@ class Killer:
             return True
         try:
             return scene.service is not None and not scene.service.runs()
-        except httpx.TransportError:  # the service is just ending
+        except (httpx.TransportError, ValueError):  # the service is just ending; what it was answering may be cut short
             return False
 
 
@@ -194,16 +198,17 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--way", action="append", help="only this one; repeatable")
     parser.add_argument("--joints", type=int, choices=(1, 2), default=1, help="2: a master and a slave, served")
+    parser.add_argument("--lab", action="store_true", help="hand in to a PostgreSQL server that is cut off and killed")
     arguments = parser.parse_args()
     for number in (signal.SIGINT, signal.SIGTERM):  # a shell has what it starts in the background ignore the first
         signal.signal(number, signal.default_int_handler)
     ways = [way for way in WAYS if not arguments.way or way.name in arguments.way]
     ways = [way for way in ways if way.served or arguments.joints == 1]
-    endings = []
-    with (
-        tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder,
-        kills_bench(Path(folder), arguments.joints) as bench,
-    ):
+    endings, astray = [], 0
+    with ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="friction-bench-kills-"))
+        lab = stack.enter_context(laboratory(arguments.seed)) if arguments.lab else None
+        bench = stack.enter_context(kills_bench(Path(folder), arguments.joints, lab and lab.link.url))
         killer = Killer(bench, arguments.seed)
         try:
             for number in range(arguments.kills):
@@ -215,7 +220,11 @@ def main() -> None:
         finally:
             print("\n".join(table(endings)), flush=True)
             killer.leave()
-    sys.exit(len(endings) < arguments.kills or any(ending.problems for ending in endings))
+        if lab is not None:
+            lost, doubled, told = lab.held_against(bench.database, bench.configuration.name)
+            print(f"{told}: rows lost {lost}, doubled {doubled}", flush=True)
+            astray = lost + doubled
+    sys.exit(len(endings) < arguments.kills or any(ending.problems for ending in endings) or astray > 0)
 
 
 if __name__ == "__main__":

@@ -2,11 +2,13 @@
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from tests.stopping.bench import kills_bench
 from tests.stopping.kills import Killer
+from tests.stopping.laboratory import laboratory
 from tests.stopping.ways import WAYS
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
@@ -28,3 +30,17 @@ def test_what_was_committed_is_there_the_motor_off_and_the_record_says_why(kille
     ending = killer.end_one(way)
     assert ending.problems == []
     assert ending.rows > 0
+
+
+@pytest.mark.timeout(300)
+def test_what_a_killed_service_recorded_comes_to_a_laboratory_that_breaks_down_itself(
+    tmp_path: Path,
+) -> None:
+    (way,) = (way for way in WAYS if way.name == "kill -9 of the service")
+    with laboratory(seed=2) as lab, kills_bench(tmp_path, lab_url=lab.link.url) as bench:
+        made = Killer(bench, seed=2)
+        try:
+            assert made.end_one(way).problems == []
+        finally:
+            made.leave()
+        assert lab.held_against(bench.database, bench.configuration.name)[:2] == (0, 0)

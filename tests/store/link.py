@@ -58,7 +58,12 @@ class Link:
                         near.close()
                         continue
                     far = socket.socket(socket.AF_UNIX)
-                    far.connect(self._server)
+                    try:
+                        far.connect(self._server)
+                    except OSError:  # the server is down
+                        near.close()
+                        far.close()
+                        continue
                     self._open += [near, far]
                 threading.Thread(target=_pass_on, args=(near, far), daemon=True).start()
 

@@ -30,6 +30,10 @@ def doctor(
     at_deg: Annotated[
         float, typer.Option(help="With --set-zero: it stands at this angle [degrees], at an end stop for instance.")
     ] = 0.0,
+    home: Annotated[
+        bool,
+        typer.Option("--home", help="Find the zero as [drive.homing] says, and write it: the joint moves slowly."),
+    ] = False,
     operator: Annotated[str, typer.Option(help="Who stands at the bench; kept with the record.")] = "",
     as_json: Json = False,
 ) -> None:
@@ -46,7 +50,7 @@ def doctor(
     doubt = _count_doubt(session, found)
     if not as_json:
         _show(found)
-    if doubt and not as_json and not set_zero:
+    if doubt and not as_json and not set_zero and not home:
         say(doubt)
     if set_zero:
         _set_zero(session, found.sample.position_rad - radians(at_deg), as_json)
@@ -56,9 +60,11 @@ def doctor(
     answer: dict[str, object] = {
         "connection": _represent(found), "count_doubt": doubt, "scope": [one._asdict() for one in scope],
     }  # fmt: skip
-    passed = True
-    if move:
+    passed = _home(session, found, doubt, operator, answer, as_json) if home else True
+    if move and passed:
         passed = _move(session, operator, answer, as_json)
+    elif home:
+        pass
     elif not as_json:
         say("Nothing was powered. 'friction-bench doctor --move' checks signs and scales with a small move.")
     if as_json:
@@ -92,6 +98,34 @@ def _set_zero(session: BenchSession, off_rad: float, quiet: bool) -> None:
     set_number(session.config, "drive", "zero_rad", zero_rad)
     if not quiet:
         say(f"drive.zero_rad was {drive.zero_rad:g}, and is {zero_rad:g} rad now, in {session.config}.")
+
+
+def _home(
+    session: BenchSession, found: "Connection", doubt: str, operator: str, answer: dict[str, object], quiet: bool
+) -> bool:
+    """Find the zero as the bench says, and write it where nothing is in doubt. Returns whether it stands.
+
+    Raises:
+        ConfigurationError: the bench does not say how.
+        LimitError: the search asks for more than the bench allows.
+    """
+    from bench.cli.operation.run import carry_out
+    from bench.experiments.kinds import homing
+
+    bench = session.configuration()
+    if homing.settings_of(bench).method == "absolute":
+        if not quiet:
+            say(doubt or "The encoder keeps its count: nothing was moved, and the zero stays as it is.")
+        return not doubt
+    narrow = homing.search_bench(bench, found.sample.position_rad)
+    ended, _ = carry_out(session, homing.NAME, {}, operator, "friction-bench doctor --home", None, quiet, bench=narrow)
+    answer["homing"] = {"outcome": ended.outcome, "reason": ended.reason, "results": ended.results}
+    if not quiet:
+        say(f"homing: {ended.outcome}{f': {ended.reason}' if ended.reason else ''}")
+    if ended.outcome != "completed":
+        return False
+    _set_zero(session, float(ended.results[homing.OFF_RAD]), quiet)
+    return True
 
 
 def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet: bool) -> bool:

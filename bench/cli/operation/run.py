@@ -14,6 +14,7 @@ from bench.cli.operation.watch import watch
 from bench.cli.output import print_json, say, table
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
+    from bench.config.configuration import BenchConfiguration
     from bench.experiments.kind import ExperimentKind
     from bench.json_types import Values
     from bench.runs.bench_control import RunnerStatus
@@ -103,17 +104,18 @@ def carry_out(
     pace: Pace | None,
     quiet: bool,
     hung: tuple[float, bool] | None = None,
+    bench: "BenchConfiguration | None" = None,
 ) -> "tuple[Experiment, int | None]":
     """Run it to its end, whatever that is.
 
     Returns its record, and the exit code where a signal ended it. What hangs there already (load_kg, balanced) is not
-    asked for again.
+    asked for again. It is run on `bench` where that is not the session's.
     """
     from bench.control import scheduling
     from bench.control.drive_factory import is_simulated
     from bench.runs.runner import HostProcess, Runner
 
-    configuration = session.configuration()
+    configuration = bench or session.configuration()
     wanted = pace or (Pace.FAST if is_simulated(configuration) else Pace.REAL_TIME)
     loop = {"process": "that of the command", "scheduling": scheduling.describe()}
     host = HostProcess(during_run=scheduling.undisturbed, facts={"control_loop": loop})

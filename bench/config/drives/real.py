@@ -5,12 +5,31 @@ from typing import Any, Literal
 
 from bench.config.drives.kind import DriveSettings
 from bench.config.quantities import quantity
-from bench.config.rig import Rig
+from bench.config.rig import Rig, Section
 from bench.errors import ConfigurationError
 from drivers.joint import JointScale
 
 Sign = Literal[1, -1]
 Bitrate = Literal[10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000]
+
+
+class HomingSettings(Section):
+    """How `friction-bench doctor --home` finds the zero again: bounded in way, speed, current and time."""
+
+    method: Literal["end-stop", "absolute"] = quantity(
+        ...,
+        "",
+        "'end-stop': the joint is moved slowly against a stop; 'absolute': nothing moves, the encoder keeps its count, "
+        "and one that is off by whole motor turns is noticed",
+    )
+    angle_rad: float = quantity(0.0, "rad", "Joint angle at the end stop; 0 hangs straight down")
+    direction: Sign = quantity(1, "", "Which way the joint turns to the end stop: 1 to positive angles")
+    speed_rad_s: float = quantity(0.2, "rad/s", "Speed of the search", gt=0, le=2)
+    current_a: float = quantity(0.5, "A", "Highest motor current of the search, so also against the stop", gt=0)
+    travel_rad: float = quantity(3.0, "rad", "Longest way of the search", gt=0, le=12)
+    back_off_rad: float = quantity(0.1, "rad", "Way back from the stop before it is approached again", gt=0, le=1)
+    stand_s: float = quantity(0.2, "s", "Standstill under that current that counts as the stop", ge=0.05, le=5)
+    repeat_rad: float = quantity(0.02, "rad", "Most that two approaches of the stop may differ by", gt=0, le=0.2)
 
 
 class RealDriveSettings(DriveSettings):
@@ -19,6 +38,7 @@ class RealDriveSettings(DriveSettings):
     motor_sign: Sign = quantity(1, "", "-1 where a positive demand turns the joint to negative angles")
     encoder_sign: Sign = quantity(1, "", "-1 where the count falls while the joint turns to positive angles")
     zero_rad: float = quantity(0.0, "rad", "Joint angle by the drive's count while the arm hangs straight down")
+    homing: HomingSettings | None = quantity(None, "", "How the zero is found again after a power cycle")
     side_channel: str = quantity(
         "", "", "Only of a simulated device: where its loads are hung, as host:port; left out: a person is asked"
     )

@@ -1,0 +1,143 @@
+"""`friction-bench doctor --home` on a simulated device whose count begins anew with each power cycle."""
+
+import json
+from math import radians
+
+import pytest
+import tomli_w
+
+from bench.config.configuration import default_configuration, read_configuration
+from bench.errors import ConfigurationError
+from bench.experiments.kinds import homing
+from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
+from tests.cli.conftest import command  # noqa: F401  a fixture
+
+pytestmark = pytest.mark.virtual_time
+
+STOP_RAD = radians(80.0)
+WRONG_RAD = 0.7  # the zero that is written before: the arm hangs straight down all the same
+
+
+@pytest.fixture
+def device():
+    stops = {"present": True, "upper_rad": STOP_RAD, "lower_rad": -STOP_RAD}
+    with serve_roboclaw(RoboClawSettings(plant={"end_stops": stops})) as running:
+        yield running
+
+
+@pytest.fixture
+def bench(command, device, tmp_path):  # noqa: F811
+    """Runs `friction-bench --config bench.toml ...` on the device, with a way of homing."""
+
+    def made(homing, **tables):
+        values = default_configuration().model_dump(mode="json", exclude_none=True)
+        values["control"]["period_s"] = 0.02
+        values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+        for name, table in tables.items():
+            values[name] |= table
+        values["drive"] = {
+            "kind": "roboclaw", "port": device.path, "side_channel": device.side_channel, "watchdog_s": 1.0,
+            "answer_timeout_s": 0.3, "homing": homing,
+        }  # fmt: skip
+        (tmp_path / "bench.toml").write_text(tomli_w.dumps(values))
+        return lambda *words: command("--config", "bench.toml", *words)
+
+    return made
+
+
+def zero(folder):
+    return read_configuration(folder / "bench.toml").drive.zero_rad
+
+
+def is_powered(device):
+    """A moment later, by the device's own clock, and before its watchdog could be the reason."""
+    axis = device.device.axis
+    axis.advance_to(axis.time_s + 0.1)
+    return axis.power.on
+
+
+def spoil(folder):
+    """A count that was reset: the zero in the file is that of another day."""
+    path = folder / "bench.toml"
+    path.write_text(path.read_text().replace("[drive.homing]", f"zero_rad = {WRONG_RAD}\n\n[drive.homing]"))
+    assert zero(folder) == WRONG_RAD
+
+
+END_STOP = {
+    "method": "end-stop", "angle_rad": STOP_RAD, "direction": 1, "speed_rad_s": 0.5, "current_a": 0.6,
+    "travel_rad": 2.0,
+}  # fmt: skip
+
+
+def test_the_end_stop_gives_the_zero_back_and_the_arm_hangs_down_afterwards(bench, device, tmp_path):
+    run = bench(END_STOP)
+    assert run("doctor", "--move").exit_code == 0
+    spoil(tmp_path)
+    found = run("doctor", "--home")
+    assert found.exit_code == 0, found.output
+    assert "homing: completed" in found.output
+    # the stop gives way, and the teeth are wound up, by what the current presses
+    assert zero(tmp_path) == pytest.approx(0.0, abs=0.03)
+    assert not is_powered(device)
+    assert device.device.axis.plant.truth().arm_rad == pytest.approx(0.0, abs=0.1)
+    # a new zero, and how it was found, ask for no new commissioning move
+    assert "has not passed" not in run("run", "steps", "--repeats", "1").output
+
+
+def test_no_stop_within_the_travel_writes_nothing(bench, device, tmp_path):
+    run = bench(END_STOP | {"travel_rad": 0.4})
+    assert run("doctor", "--move").exit_code == 0
+    spoil(tmp_path)
+    found = run("doctor", "--home")
+    assert found.exit_code != 0
+    words = found.output.replace("\n", " ")
+    assert "no end stop was found within 0.4 rad" in words
+    assert zero(tmp_path) == WRONG_RAD
+    assert not is_powered(device)
+    record = json.loads(run("experiments", "--json").stdout)[0]
+    assert (record["kind"], record["outcome"]) == ("homing", "failed")
+
+
+def test_a_stop_that_is_not_twice_at_the_same_place_writes_nothing(bench, device, tmp_path):
+    run = bench(END_STOP | {"repeat_rad": 1e-9})
+    assert run("doctor", "--move").exit_code == 0
+    spoil(tmp_path)
+    device.device.axis.plant.loosen_clutch(0.2)  # it slips against the stop
+    found = run("doctor", "--home")
+    assert found.exit_code != 0, found.output
+    assert zero(tmp_path) == WRONG_RAD
+
+
+def test_a_drive_whose_signs_nobody_has_checked_is_not_moved_against_a_stop(bench, tmp_path):
+    found = bench(END_STOP)("doctor", "--home")
+    assert found.exit_code != 0
+    assert "has not passed the commissioning move" in found.output.replace("\n", " ")
+    assert zero(tmp_path) == 0.0
+
+
+def test_more_current_than_the_servo_may_give_is_refused(bench):
+    found = bench(END_STOP | {"current_a": 1.9})("doctor", "--home")
+    assert found.exit_code != 0
+    assert "drive.homing.current_a is 1.9 A; allowed is at most 1.6 A" in found.output.replace("\n", " ")
+
+
+def test_any_other_way_than_doctor_is_refused(bench, tmp_path):
+    run = bench(END_STOP)
+    assert run("run", "homing").exit_code == 2
+    configuration = read_configuration(tmp_path / "bench.toml")
+    with pytest.raises(ConfigurationError, match="doctor --home"):
+        homing.KIND.refuse(homing.HomingParameters(), configuration)
+
+
+def test_a_bench_that_does_not_say_how_is_told(command):  # noqa: F811
+    found = command("doctor", "--home")
+    assert found.exit_code == 3
+    assert "add [drive.homing]" in found.output.replace("\n", " ")
+
+
+def test_an_absolute_encoder_moves_nothing(bench, device, tmp_path):
+    found = bench({"method": "absolute"})("doctor", "--home")
+    assert found.exit_code == 0, found.output
+    assert "nothing was moved" in found.output.replace("\n", " ")
+    assert device.device.axis.plant.truth().arm_rad == 0.0
+    assert zero(tmp_path) == 0.0
