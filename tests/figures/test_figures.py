@@ -58,6 +58,7 @@ def results(
                 "compensated_drag_n_m": -0.01,
                 "raw_drag_n_m": 0.2,
             },
+            "margin": {"compensated_stability_margin": 20.0, "raw_stability_margin": 2.5},
             "quick": {"rows": [{**raised, "search_s": search_s}]},
             "paper": {"rows": [{**raised, "search_s": 8.0, "reflected_load_kg": 0.1 + 4e-4}]},
         },
@@ -164,6 +165,15 @@ def test_a_wall_tells_the_compensated_load_from_the_raw_current():
     assert row(rows, "wall: torque that drives the hand on").measured == pytest.approx(0.01)
     assert row(rows, "the same of the raw current").measured == pytest.approx(-0.2)
     assert row(rows, "wall, raw current").measured == 90.0
+
+
+def test_a_stability_margin_tells_the_compensated_load_from_the_raw_current():
+    alike = results()
+    alike.results["margin"]["raw_stability_margin"] = 20.0
+    found = row(table(results()), "force scale up to which")
+    assert (found.measured, found.asked, found.reached) == (8.0, "at least 1.5", True)
+    assert row(table(alike), "force scale up to which").reached is False
+    assert row(table(results()), "the force scale itself, raw").measured == 2.5
 
 
 def test_a_drawn_rig_may_err_by_more_where_the_table_says_so():

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from math import isnan, nan
+from math import inf, isnan, nan
 
 import numpy as np
 
@@ -131,7 +131,7 @@ def _allowed(asked: Asked) -> str:
     if isnan(asked.high):
         return "-"
     if asked.low > 0.0:
-        return f"{asked.low:g} .. {asked.high:g}"
+        return f"at least {asked.low:g}" if asked.high == inf else f"{asked.low:g} .. {asked.high:g}"
     drawn = "" if asked.drawn_high is None else f"; drawn rigs {asked.drawn_high:.4g}"
     return f"at most {asked.high:.4g}{drawn}"
 

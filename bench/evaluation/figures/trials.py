@@ -32,6 +32,11 @@ TRIALS = {
     "sinusoid": Measurement("sinusoid", {}),
     "wall": Plan().measurements()["wall"],
 }
+# a stability margin of the pair: neither most torque nor slew of what is reflected may hide a swing
+MARGIN = Measurement(
+    "teleoperation", {"angles_rad": (1.0,), "rest_s": 1.0, "find_margin": True, "largest_force_scale": 20.0}
+)
+FREE_TORQUE_N_M, FREE_SLEW_N_M_S, FREE_CURRENT_A = 5.0, 500.0, 6.0
 DRAWN = 5  # loads, and as many angles
 FLATTEST_RAD = 0.25  # of the angles drawn, either side of straight down: below, hardly any load reaches the teeth
 # of a drawn rig, that its intervals are judged by. With intervals that are exactly right, 18 of 20 rigs come out within
@@ -46,8 +51,8 @@ class SeedResults:
     """Summaries of the experiments of one seed, by name; and why one is missing.
 
     Attributes:
-        results: "loads", "steps", "speeds", "sinusoid", "wall"; "drawn": loads and angles drawn at random; "paper" and
-            "quick": one flow chart, and one search of two breakaways each way, under the same loads.
+        results: "loads", "steps", "speeds", "sinusoid", "wall", "margin"; "drawn": loads and angles drawn at random;
+            "paper" and "quick": one flow chart, and one search of two breakaways each way, under the same loads.
         failures: name -> reason.
     """
 
@@ -76,8 +81,21 @@ def run_seed(configuration: BenchConfiguration) -> SeedResults:
         ("drawn", configuration, drawn_loads(seed_of(configuration))),
         ("paper", configuration.model_copy(update={"search": flow_chart, "rest": None}), SHORT),
         ("quick", configuration.model_copy(update={"search": quick}), SHORT),
+        ("margin", unhindered(configuration), MARGIN),
     ]
     return _run(wanted)
+
+
+def unhindered(configuration: BenchConfiguration) -> BenchConfiguration:
+    """The same pair, whose master may make any torque at once."""
+    master = configuration.require_master()
+    free = {
+        "limits": master.limits.model_copy(update={"current_a": FREE_CURRENT_A}),
+        "reflection": master.reflection.model_copy(
+            update={"torque_n_m": FREE_TORQUE_N_M, "slew_n_m_s": FREE_SLEW_N_M_S}
+        ),
+    }
+    return configuration.model_copy(update={"master": master.model_copy(update=free)})
 
 
 def drawn_loads(seed: int) -> Measurement:

@@ -1,4 +1,4 @@
-"""What a master is given while its slave hits a wall and lets go of it: `teleoperation` with a wall, of each seed."""
+"""What a master is given while its slave hits a wall and lets go of it; up to which force scale the pair is calm."""
 
 from collections.abc import Callable
 from math import inf, nan
@@ -8,6 +8,7 @@ from bench.evaluation.figures.rows import Asked, Numbers, mean, most, summary
 from bench.evaluation.figures.trials import SeedResults
 
 MS = 1e3
+TRIED = 0.01  # least force scale that a ratio is taken to
 
 
 def _of(key: str, scale: float = 1.0) -> Callable[[SeedResults, BenchConfiguration], Numbers]:
@@ -15,6 +16,18 @@ def _of(key: str, scale: float = 1.0) -> Callable[[SeedResults, BenchConfigurati
         return summary(seed, "wall", key, scale)
 
     return numbers
+
+
+def _margin(way: str) -> Callable[[SeedResults, BenchConfiguration], Numbers]:
+    def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
+        return summary(seed, "margin", f"{way}_stability_margin")
+
+    return numbers
+
+
+def _margins(seed: SeedResults, configuration: BenchConfiguration) -> Numbers:
+    ours, raw = _margin("compensated")(seed, configuration), _margin("raw")(seed, configuration)
+    return [one / max(other, TRIED) for one, other in zip(ours, raw, strict=False)]
 
 
 ASKED_AT_A_WALL = (
@@ -28,6 +41,11 @@ ASKED_AT_A_WALL = (
         "wall: torque that drives the hand on", "N m", -inf, 0.03, "-", _of("compensated_drag_n_m", -1.0), mean,
         "mean over the hand's way, beyond what the load does; the master's own friction takes 0.07 N m and more",
     ),
+    Asked(
+        "force scale up to which the pair is calm, compensated / raw", "", 1.5, inf, "-", _margins, mean,
+        "of changes of a weight of 100 g, after a nudge; the master may make any torque at once. Tried up to 20: what "
+        "is calm there counts as 20",
+    ),
 )  # fmt: skip
 BESIDE_A_WALL = (
     Asked("the same of the raw current: it drags", "N m", 0.0, nan, "-", _of("raw_drag_n_m", -1.0), mean),
@@ -40,6 +58,12 @@ BESIDE_A_WALL = (
     Asked(
         "bound of it: the truth itself, a cycle late", "g", 0.0, nan, "-", _of("compensated_least_error_max_g"), most,
         "and changed no faster than the master may change it",
+    ),
+    Asked("the force scale itself, compensated", "", 0.0, nan, "-", _margin("compensated"), mean),
+    Asked("the force scale itself, raw current", "", 0.0, nan, "-", _margin("raw"), mean),
+    Asked(
+        "the largest error of the raw current at a wall", "g", 0.0, nan, "-", _of("raw_reflected_error_max_g"), most,
+        "in a trial of its own: what drags slows the hand, and the hit is softer",
     ),
 )  # fmt: skip
 """Shown beside, for what bounds the others, or to tell the raw current apart."""

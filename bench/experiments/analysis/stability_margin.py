@@ -14,7 +14,7 @@ CALM_S = 0.5  # without reflection, before each nudge
 STAGE_S = CALM_S + 2.0 * NUDGE_S + DIE_AWAY_S + WATCH_S
 LEAST = 0.5  # force scale that is tried first
 GROWTH = 1.5
-HALVINGS = 3
+HALVINGS = 5
 
 
 def ladder(largest: float) -> list[float]:
