@@ -40,8 +40,8 @@ test: $(STAMP)   ## the tests: first those that only compute or run in virtual t
 test-services: $(STAMP)  ## those that the wall clock times: services and browsers
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers
 
-test-drivers: $(STAMP)  ## of these, drivers on real ports: one by one, as a cycle that is late is a fault there
-	$(BIN)/pytest -m wall_clock tests/drivers
+test-drivers: $(STAMP)  ## of these, drivers on real ports, beside nothing else: a cycle that is late is a fault there
+	$(BIN)/pytest --numprocesses 2 -m wall_clock tests/drivers
 
 test-virtual: $(STAMP)  ## drivers and simulated devices in one process, in virtual time: a busy machine changes nothing
 	$(BIN)/pytest -p tests.virtual.plugin --numprocesses auto -m virtual_time tests/drivers

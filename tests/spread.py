@@ -14,6 +14,12 @@ from xdist.workermanage import WorkerController
 CONFORMANCE = "tests/drivers/conformance/"
 FUZZ = "tests/fuzz/"
 LONG = (
+    "canopen-socketcand",
+    "roboclaw",
+    "modbus-tcp",
+    "canopen",
+    "tests/drivers/canopen/test_simulated_device.py",
+    "tests/drivers/test_follow.py",
     "tests/browser/test_walk.py",
     "tests/browser/test_tour.py",
     "tests/stopping/test_commission.py",
@@ -34,14 +40,14 @@ LONG = (
     "tests/parallel/test_cluster.py",
     "tests/lab/effects/test_supply_sag.py",
 )
-"""Those that `--durations` names most, the longest first."""
+"""Those that `--durations` names most, the longest first; of conformance tests, their bench."""
 
 
 class FileAndBench(LoadScopeScheduling):
     """Which tests go to the same process."""
 
     def _assign_work_unit(self, node: WorkerController) -> None:
-        long = next((path for path in LONG if path in self.workqueue), None)
+        long = next((scope for scope in LONG if scope in self.workqueue), None)
         if long is not None:
             self.workqueue.move_to_end(long, last=False)
         super()._assign_work_unit(node)
