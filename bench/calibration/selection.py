@@ -7,7 +7,8 @@ from bench.errors import ConfigurationError
 from bench.json_types import Value, Values
 from bench.store import CalibrationRow, Experiment, Store
 
-_NOT_THE_JOINT = ("seed", "faults")  # settings of a drive that say nothing about the joint's friction
+# settings of a drive that say nothing about the joint's friction
+_NOT_THE_JOINT = ("seed", "faults", "brake", "homing", "torque_off")
 
 
 def in_use(store: Store, configuration: BenchConfiguration) -> CalibrationRow | None:

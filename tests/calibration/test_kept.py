@@ -5,6 +5,7 @@ import pytest
 
 from bench import calibration
 from bench.calibration.calibrate import FROM_CURVE, FROM_SEARCH
+from bench.config.drives.kind import BrakeSettings
 from bench.errors import ConfigurationError
 from bench.recording_set import export_experiment, import_recording_set, read_recording_set
 from bench.runs.runner import Runner
@@ -103,6 +104,8 @@ def test_another_rig_or_plant_does_not_fit(store, configuration, row):
     assert calibration.in_use(store, configuration.model_copy(update={"drive": drive})) is None
     reseeded = configuration.drive.model_copy(update={"seed": 99})
     assert calibration.in_use(store, configuration.model_copy(update={"drive": reseeded})) is not None
+    braked = configuration.drive.model_copy(update={"brake": BrakeSettings(by="drive")})
+    assert calibration.in_use(store, configuration.model_copy(update={"drive": braked})) is not None
 
 
 def test_an_experiment_runs_with_the_curves_in_use_and_its_record_says_so(store, configuration, row):

@@ -29,6 +29,8 @@ CHANGES = [
     ("DELETE", "/queue/1"),
     ("POST", "/queue/pause"),
     ("POST", "/queue/resume"),
+    ("POST", "/benches/queue"),
+    ("DELETE", "/benches/queue/1"),
     ("POST", "/campaigns"),
     ("POST", "/campaigns/plan"),
     ("POST", "/recording-sets?name=x"),

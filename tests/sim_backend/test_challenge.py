@@ -16,9 +16,11 @@ OF_THE_JOINT = {
     "motor", "supply", "gear", "arm", "load", "encoder", "friction", "arm_friction", "heat", "scatter",
     "current_sensor",
 }  # fmt: skip
-NOT_HIDDEN = {"current_loop", "overload", "end_stops", "wall", "arm_bristle", "arm_dwell", "operator", "wiring"}
-"""What does not explain an effort, is seen at a glance (swapped leads: commissioning finds them), or is on the arm's
-side what another is on the drive's."""
+NOT_HIDDEN = {
+    "current_loop", "overload", "end_stops", "wall", "arm_bristle", "arm_dwell", "operator", "wiring", "brake",
+}  # fmt: skip
+"""What does not explain an effort, is seen at a glance (swapped leads: commissioning finds them; a brake that is set),
+or is on the arm's side what another is on the drive's."""
 
 
 def _plant(drawn: DrawnPlant, without: str | None = None) -> Plant:
