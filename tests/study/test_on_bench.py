@@ -51,8 +51,8 @@ def test_a_model_is_chosen_like_a_calibration(store, number):
         use(store, number, bare)
     base = store.calibrations.add(
         note="", source="simulated", rig=bare.rig.model_dump(mode="json", exclude_none=True),
-        drive={**bare.drive.model_dump(mode="json", exclude_none=True, exclude={"seed", "faults"})}, provenance={},
-        experiment_ids=[], trial_ids=[],
+        drive=bare.drive.model_dump(mode="json", exclude_none=True, exclude={"seed", "faults", "brake"}),
+        provenance={}, experiment_ids=[], trial_ids=[],
         result={"curves": [one.model_dump() for one in CURVES], "rest": REST.model_dump()},
     )  # fmt: skip
     used = use(store, number, bare)
