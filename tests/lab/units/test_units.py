@@ -45,6 +45,13 @@ def test_holm_corrects_by_rank_and_keeps_the_order():
     assert corrected_by_holm([0.02, 0.001, 0.03, 0.5], 4) == pytest.approx([0.06, 0.004, 0.06, 0.5])
 
 
+def test_chances_of_units_that_are_no_outliers_are_corrected_for_all_quantities():
+    random = np.random.default_rng(11)
+    found = [one for quantity in deviations(_five(random, 6, 0.05)) for one in quantity]
+    assert not any(one.is_outlier for one in found)
+    assert [one.corrected for one in found] == pytest.approx(corrected_by_holm([one.chance for one in found], 30))
+
+
 def test_two_outliers_do_not_hide_each_other_where_there_are_enough_others():
     random = np.random.default_rng(3)
     values = drawn(random, 12, 0.05, 0.01, 9)
