@@ -23,7 +23,7 @@ HELD_RAD_S = (0.05, 0.1, 0.2, 0.35, 0.6, 1.0)
 HELD_A = (0.2, 0.3, 0.4, 0.5)
 CALIBRATION = (
     Measurement("speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": HELD_A, "speeds_rad_s": HELD_RAD_S}),
-    # what is told of one side alone errs on the other: unequal friction and gear loss look alike there
+    # what is told of one side alone errs on the other, see `bench.calibration.sides`
     Measurement(
         "load-sweep",
         {"loads_kg": CALIBRATED_KG, "angles_rad": (0.0, RIGHT_ANGLE_RAD, -RIGHT_ANGLE_RAD), "searches": 5},
@@ -64,12 +64,14 @@ class SeedResults:
     failures: dict[str, str]
 
 
-def calibrated(configuration: BenchConfiguration) -> BenchConfiguration:
+def calibrated(
+    configuration: BenchConfiguration, measurements: Sequence[Measurement] = CALIBRATION
+) -> BenchConfiguration:
     """The rig's configuration with what its calibration told."""
     with TemporaryDirectory() as folder:
         store = Store.open(f"sqlite:///{Path(folder) / 'calibration.sqlite'}")
         try:
-            ids = [measure(configuration, store, one, quietly).id for one in CALIBRATION]
+            ids = [measure(configuration, store, one, quietly).id for one in measurements]
             row = store.calibrations.get(calibrate(store, ids))
         finally:
             store.close()
