@@ -11,7 +11,7 @@ from bench.recording_set.guess.magnitude import magnitude_questions
 from bench.recording_set.guess.said import Said
 from bench.recording_set.guess.units_told import Units
 from bench.recording_set.mapping import Column, Mapping
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 
 EFFORTS = ("torque", "force", "current", "voltage", "duty")
 

@@ -16,8 +16,7 @@ from compensator.lab.effects.effect import Effect, Parameter, Shape
 from compensator.lab.model.linear import Bounds, solve
 from compensator.lab.model.prediction import whole_inertia
 from compensator.lab.model.validation import FEWEST_TRIALS, HeldOut, HeldOutKind, relative_error, rms
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 LAG = "onset_lag"  # what stands for seeing the motion late
 NORMAL = 1.4826  # standard deviation over median absolute deviation

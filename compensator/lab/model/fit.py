@@ -9,14 +9,15 @@ import numpy as np
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fitted import Fit, Term, bounds_of, with_terms
+from compensator.lab.model.fitted import Fit, bounds_of, trained_trials, with_terms
 from compensator.lab.model.linear import Solution, solve
 from compensator.lab.model.prediction import PlainColumns, with_own_prediction
 from compensator.lab.model.shape_search import find_shapes, first_shapes
+from compensator.lab.model.term import Term
 from compensator.lab.model.weights import regime_weights
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray, Regime
-from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
+from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.rows.dataset import Dataset, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
 MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
@@ -63,22 +64,6 @@ def fit_sliding(
     steady = [effect for effect in chosen if effect.rows == "sliding"] or chosen
     rows = training & (dataset.regime == Regime.SLIDING)
     return _fit(dataset, steady, rows, shapes or {}, np.ones(len(rows)))
-
-
-def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
-    """Which trials a model may be fitted to: those of its training rows, and those that nobody held out.
-
-    A trial of reversals or starts alone has no sliding row, and so no training row of a model of sliding; it is not
-    held out by that. Where other trials are held out on purpose, it stays out of either.
-
-    Args:
-        dataset: of the rows.
-        training: rows of the study's choice that the model is fitted to, shape (N,).
-    """
-    trained = np.unique(dataset.trial_index[training])
-    counted = np.unique(dataset.trial_index[dataset.counted])
-    every = np.arange(len(dataset.trials), dtype=np.int64)
-    return every if np.isin(counted, trained).all() else trained
 
 
 def widened(fit: Fit, rows: RowChoice) -> Fit:

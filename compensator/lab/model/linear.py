@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 DEPENDENT = 1e-4  # share of a column's norm left after projection below which it is no new direction
 

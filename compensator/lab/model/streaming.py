@@ -18,8 +18,7 @@ from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.processing import EDGE_PERIODS
-from compensator.lab.recordings.recording import Condition, FloatArray, Recording
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, Condition, FloatArray, Recording
 from compensator.lab.rows.assembly import more_trials
 
 PIECE_ROWS = 200_000

@@ -18,8 +18,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.evidence import Base
 

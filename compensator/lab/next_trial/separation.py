@@ -11,9 +11,8 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry, rows_per_independent_row
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.discrepancy import model_columns
 from compensator.lab.screening.evidence import Block, inflation_of
