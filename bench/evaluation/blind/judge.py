@@ -4,13 +4,14 @@ import time
 
 from bench.evaluation.blind.baseline_methods import RIVALS
 from bench.evaluation.blind.items import FAMILIES, Item
-from bench.evaluation.blind.lab_answer import ask_lab
 from bench.evaluation.blind.oracle import standing, standing_at_breakaway
 from bench.evaluation.blind.recorded import base_fit, bench_for, recorded, unexplained
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
 from bench.evaluation.blind.settling import settle
 from bench.evaluation.challenge.names import accepted
 from bench.evaluation.challenge.owner import rig_of
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.search import search
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
@@ -18,6 +19,35 @@ from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates, gather
+
+SHOWN = 3  # effects of a ranking that a reader looks at
+
+
+def ask_lab(fit: Fit, several: bool) -> LabAnswer:
+    """Diagnose; where several effects may be missing, search: forward, swap, backward, as `study search` does.
+
+    Args:
+        fit: of the base model.
+        several: whether to go on after the first name.
+    """
+    first = last = diagnose(fit)
+    classes = first.classes[:1] if first.verdict == "missing" else []
+    named = list(classes)
+    if several:
+        found = search(fit, first=first)
+        fit, last, named = found.fit, found.last, [(name,) for name in found.added]
+    elif classes:
+        fit = fit_effects(fit.dataset, [*fit.names, classes[0][0]], fit.training)
+    return LabAnswer(
+        verdict=first.verdict,
+        first=classes[0] if classes else (),
+        named=tuple(named),
+        unknown=last.remains,
+        p_value=first.p_value,
+        detectability=first.candidates[0].detectability if first.candidates else 0.0,
+        error=held_out(fit).relative,
+        ranked=tuple(one.effect.name for one in first.candidates[:SHOWN]),
+    )
 
 
 def judge(item: Item) -> Result:

@@ -8,8 +8,8 @@ import numpy as np
 from compensator.lab.closed_loop.stepping import Resistance
 from compensator.lab.effects.effect import Motion
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.linear import Term
 from compensator.lab.model.prediction import with_own_prediction
-from compensator.lab.model.term import Term
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 

@@ -10,10 +10,9 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit, bounds_of, trained_trials, with_terms
-from compensator.lab.model.linear import Solution, solve
+from compensator.lab.model.linear import Solution, Term, solve
 from compensator.lab.model.prediction import PlainColumns, with_own_prediction
 from compensator.lab.model.shape_search import find_shapes, first_shapes
-from compensator.lab.model.term import Term
 from compensator.lab.model.weights import regime_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.regimes import Regime

@@ -7,8 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Shape
-from compensator.lab.model.linear import Bounds
-from compensator.lab.model.term import Term
+from compensator.lab.model.linear import Bounds, Term
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset

@@ -12,8 +12,8 @@ import numpy as np
 
 from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.linear import Term
 from compensator.lab.model.reading import at_true_position
-from compensator.lab.model.term import Term
 from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset

@@ -20,8 +20,8 @@ import numpy as np
 
 from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.linear import Term
 from compensator.lab.model.reading import at_position
-from compensator.lab.model.term import Term
 from compensator.lab.recordings.recording import FloatArray
 
 OFFSET = "offset"

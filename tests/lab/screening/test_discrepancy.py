@@ -11,7 +11,7 @@ from compensator.lab.effects.catalogue import catalogue, default_effects, effect
 from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.term import Term
+from compensator.lab.model.linear import Term
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
