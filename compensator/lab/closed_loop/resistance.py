@@ -24,7 +24,7 @@ def resistances(fit: Fit, motions: Dataset) -> list[Resistance]:
         motions: trials whose motion is that around which the model is taken.
     """
     terms = tuple(term for term in fit.terms if not term.effect.pipeline)
-    predicted = with_own_prediction(replace(fit, terms=terms, dataset=motions))
+    predicted = with_own_prediction(motions, terms)
     return [_around(terms, trial.motion) for trial in predicted.trials]
 
 

@@ -99,7 +99,7 @@ def _fit(
         return fit
     fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept}, weight)
     for _ in range(MOST_SEARCHES):
-        before, own = fit.shapes, with_own_prediction(fit)
+        before, own = fit.shapes, with_own_prediction(fit.dataset, fit.terms)
         shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before)
         if shapes == before and not misread:
             break
@@ -118,7 +118,7 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], we
     last, given, before, earlier = np.inf, fit, fit.predicted, None
     kept: PlainColumns | None = None if misread else {}  # else the motions themselves change
     for _ in range(MOST_PASSES):
-        fit = fit_linear(with_own_prediction(given, kept), effects, fit.training, shapes, weight)
+        fit = fit_linear(with_own_prediction(given.dataset, given.terms, kept), effects, fit.training, shapes, weight)
         step = fit.predicted - before
         change = float(np.linalg.norm(step))
         if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or (change >= last and earlier is None):
@@ -172,7 +172,7 @@ def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Sol
 def with_coefficients(fit: Fit, coefficients: FloatArray) -> Fit:
     """The fit with other coefficients (K,), and what the model then predicts."""
     changed = with_terms(fit, coefficients)
-    dataset = with_own_prediction(changed)
+    dataset = with_own_prediction(changed.dataset, changed.terms)
     columns = dataset.columns_of_model(fit.effects, fit.shapes)
     return replace(changed, dataset=dataset, columns=columns, target=dataset.target)
 

@@ -161,7 +161,7 @@ def later_by(conditions: Mapping[str, Condition], seconds: float) -> dict[str, C
 def _sums(fit: Fit, recording: Recording, kept: BoolArray) -> Sums:
     """Normal equations of one piece, on the rows that the model is fitted to."""
     part = more_trials(fit.dataset, [recording])
-    dataset = with_own_prediction(replace(fit, dataset=part))
+    dataset = with_own_prediction(part, fit.terms)
     made = dataset.columns_of_effects([(term.effect, [term.shape]) for term in fit.terms])
     columns = np.concatenate([block for (block,) in made], axis=1)[:, kept]
     rows = dataset.in_regimes(dataset.choice_for(fit.effects))

@@ -161,7 +161,9 @@ def _beyond_tangent(fit: Fit, kept: BoolArray, coefficients: FloatArray, rows: B
     trials = fit.dataset.trial_index
     whole = np.zeros(len(kept))
     whole[kept] = coefficients
-    return np.concatenate([beyond_tangent(fit, i, whole)[rows[trials == i]] for i in np.unique(trials[rows])])
+    return np.concatenate(
+        [beyond_tangent(fit.dataset, fit.terms, i, whole)[rows[trials == i]] for i in np.unique(trials[rows])]
+    )
 
 
 def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:

@@ -55,7 +55,7 @@ class Separation(Rivalry):
     def of_trials(self, dataset: Dataset) -> Equations:
         """Normal equations that trials to come would add, by the model's own prediction."""
         planned = replace(self._fit, dataset=dataset)
-        dataset = with_own_prediction(planned)
+        dataset = with_own_prediction(planned.dataset, planned.terms)
         columns = [dataset.unchecked_columns(term.effect, [term.shape])[0] for term in self._fit.terms]
         counted = dataset.in_regimes(self._show_in)
         fit = replace(planned, dataset=dataset, columns=np.concatenate(columns, axis=1))

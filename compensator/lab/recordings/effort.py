@@ -1,39 +1,12 @@
-"""The effort: the measured quantity that the models predict (torque, force, current or terminal voltage)."""
+"""Which effort a study predicts: torque, force, current or terminal voltage, as its recordings measure it."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.recordings.facts import EffortQuantity, Facts
-from compensator.lab.recordings.recording import FloatArray, Recording
-
-
-@dataclass(frozen=True, slots=True)
-class Effort:
-    """The predicted quantity: its name, its unit, and how it is had from a recording.
-
-    Attributes:
-        quantity: which one.
-        title: in words, for axes.
-        unit: of the values.
-        channels: that a recording must have.
-        factor: applied to the product of the channels.
-    """
-
-    quantity: EffortQuantity
-    title: str
-    unit: str
-    channels: tuple[str, ...]
-    factor: float = 1.0
-
-    def of(self, recording: Recording) -> FloatArray:
-        """The effort over the recording's own time stamps, shape (n,), in `unit`."""
-        values = np.full(len(recording), self.factor)
-        for name in self.channels:
-            values = values * recording.channels[name]
-        return values
+from compensator.lab.recordings.facts import Effort, EffortQuantity, Facts
+from compensator.lab.recordings.recording import Recording
 
 
 def _torque(_: Facts) -> Effort:

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import rate_of_change
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.low_pass import low_pass_each
 from compensator.lab.recordings.processing import Signals
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray

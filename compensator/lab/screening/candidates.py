@@ -139,7 +139,7 @@ def gather_curves(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
 
 
 def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
-    dataset = with_own_prediction(fit)
+    dataset = with_own_prediction(fit.dataset, fit.terms)
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
     weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
