@@ -66,13 +66,13 @@ def left_over(gathered: Candidates) -> LeftOver:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
     if not steady:
         return LeftOver(remainder, None, swing)
-    constants = tested_constants(gathered)
+    constants = gather_constants(gathered)
     change = change_of(constants)
     if not _is_plain(gathered.fit):
         # where the formula was found
         return LeftOver(remainder, change, swing, wandering_of(constants, NAMED.wandering) if change is None else None)
     in_motion = gather_in_motion(gathered.fit)
-    wandering = wandering_of(tested_constants(in_motion), PLAIN.wandering) if change is None else None
+    wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering) if change is None else None
     white = WhiteRows.of(gathered)
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
@@ -82,7 +82,7 @@ def left_over(gathered: Candidates) -> LeftOver:
     return LeftOver(remainder, change, swing, wandering, line, following_of(gathered, white), varying)
 
 
-def tested_constants(gathered: Candidates) -> Constants:
+def gather_constants(gathered: Candidates) -> Constants:
     """What a model takes for constant on the tested rows."""
     fit, rows = gathered.fit, gathered.rows
     base = gathered.as_measured(WITH_CHAIN)
