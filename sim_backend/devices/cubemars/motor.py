@@ -1,9 +1,9 @@
 """One actuator: takes commands of the MIT protocol, and answers each. Silence does not stop it."""
 
 from sim_backend.devices.can.frame import Frame
-from sim_backend.devices.mit.motor import MitMotor, tripped
+from sim_backend.devices.mit.motor import MitMotor
 from sim_backend.devices.mit.short_frames import Top, command_of, motion_of
-from sim_backend.faults.script import Trip
+from sim_backend.faults.script import Trip, tripped
 from sim_backend.plant.parameters import PlantParameters
 
 HOT, OVER_CURRENT, UNDER_VOLTAGE, ENCODER = 1, 2, 4, 5

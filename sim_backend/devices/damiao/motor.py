@@ -3,9 +3,9 @@
 from struct import pack, unpack
 
 from sim_backend.devices.can.frame import Frame
-from sim_backend.devices.mit.motor import Command, MitMotor, tripped
+from sim_backend.devices.mit.motor import Command, MitMotor
 from sim_backend.devices.mit.short_frames import Top, command_of, motion_of
-from sim_backend.faults.script import Trip
+from sim_backend.faults.script import Trip, tripped
 from sim_backend.plant.parameters import PlantParameters
 
 SOFTWARE = 0xFFFFFFFF  # so that no record of it is taken for one of hardware

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
 from sim_backend.devices.can.frame import Frame, QuietNode
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import Trip
 from sim_backend.plant.parameters import PlantParameters
 
 _DEFAULT_C = 25.0
@@ -136,12 +136,3 @@ def number(word: int, bits: int, low: float, high: float) -> float:
 def word_of(value: float, bits: int, low: float, high: float) -> int:
     """Return the word of a value over a range."""
     return round((max(low, min(high, value)) - low) * ((1 << bits) - 1) / (high - low))
-
-
-def tripped(cause: Trip | None, hot: int, over_current: int, under_voltage: int, other: int) -> int:
-    """The error of a cause, of those that a kind has; a supply that a hand has cut is a voltage that is too low."""
-    if isinstance(cause, OverTemperature):
-        return hot
-    if isinstance(cause, OverCurrent):
-        return over_current
-    return under_voltage if cause is None or isinstance(cause, SupplyLost) else other

@@ -3,8 +3,8 @@
 from struct import pack, unpack
 
 from sim_backend.devices.can.frame import Frame
-from sim_backend.devices.mit.motor import Command, MitMotor, number, tripped, word_of
-from sim_backend.faults.script import Trip
+from sim_backend.devices.mit.motor import Command, MitMotor, number, word_of
+from sim_backend.faults.script import Trip, tripped
 from sim_backend.plant.parameters import PlantParameters
 
 SERIAL = b"SIMULATE"  # so that no record of it is taken for one of hardware
