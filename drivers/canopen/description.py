@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import isnan, nan
 from typing import Final
 
-from drivers.canopen.cia301.bus_load import cycle_s
+from drivers.canopen.cia301.period import cycle_s
 from drivers.canopen.cia402.power_stage import SWITCH_OFF_S
 from drivers.canopen.cia402.state_machine import State
 from drivers.canopen.session import Session
