@@ -40,7 +40,7 @@ test: $(STAMP)   ## the tests: first those that only compute or run in virtual t
 test-services: $(STAMP)  ## those that the wall clock times: services and browsers
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers
 
-test-drivers: $(STAMP)  ## of these, drivers on real ports, beside nothing else: a cycle that is late is a fault there
+test-drivers: $(STAMP)  ## of these, drivers on real ports: a cycle that is late is a fault there
 	$(BIN)/pytest --numprocesses 2 -m wall_clock tests/drivers
 
 test-virtual: $(STAMP)  ## drivers and simulated devices in one process, in virtual time: a busy machine changes nothing

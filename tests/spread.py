@@ -18,7 +18,6 @@ LONG = (
     "roboclaw",
     "modbus-tcp",
     "canopen",
-    "tests/drivers/canopen/test_simulated_device.py",
     "tests/drivers/test_follow.py",
     "tests/browser/test_walk.py",
     "tests/browser/test_tour.py",
@@ -36,7 +35,6 @@ LONG = (
     "tests/cli/test_paper.py",
     "tests/cli/test_study.py",
     "tests/queue/test_over_wires.py",
-    "tests/sim_backend/test_batch.py",
     "tests/parallel/test_cluster.py",
     "tests/lab/effects/test_supply_sag.py",
 )

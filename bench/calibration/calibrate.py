@@ -10,6 +10,7 @@ from bench.calibration.points import FrictionPoint, Row, friction_points, identi
 from bench.calibration.rest import rest_of
 from bench.calibration.samples import points_of_recording
 from bench.calibration.selection import drive_of_experiment
+from bench.calibration.sides import one_sided
 from bench.config.rig import Rig
 from bench.json_types import Value
 from bench.provenance import software
@@ -92,6 +93,7 @@ def fit_trials(
         "motor": _motor(rows),
         "rest": None if rest.settings is None else rest.settings.model_dump(),
         "rest_unidentified": rest.why_not,
+        "rest_one_sided": "" if rest.settings is None else one_sided(trials),
     }
     return result, sorted(used)
 

@@ -10,7 +10,6 @@ from bench.store import CalibrationRow
 from compensator.motor import dc_motor as motor
 from compensator.motor.dc_motor import MotorConstants
 
-FloatArray = NDArray[np.float64]
 CURVE_POINTS = 80
 
 

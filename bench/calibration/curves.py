@@ -1,4 +1,4 @@
-"""From points to friction curves and their look-up."""
+"""From points to friction curves."""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,7 +7,6 @@ from pydantic import BaseModel, Field
 from bench.calibration.points import FrictionPoint
 from compensator.errors import CalibrationError
 from compensator.motion.friction_calibration import FrictionFit, fit
-from compensator.motion.friction_lookup import FrictionLookup
 
 
 class Estimate(BaseModel):
@@ -47,15 +46,6 @@ def friction_fits(points: Mapping[float, Sequence[FrictionPoint]], stribeck: boo
         CalibrationError: the points of a load cannot carry a curve; the load is named.
     """
     return {load_kg: _fit(load_kg, found, stribeck) for load_kg, found in points.items()}
-
-
-def friction_lookup(fits: Mapping[float, FrictionFit]) -> FrictionLookup:
-    """The look-up over the load [kg].
-
-    Raises:
-        CalibrationError: there is one load only.
-    """
-    return FrictionLookup.over_load({load_kg: one.curve for load_kg, one in fits.items()})
 
 
 def inertia_of(found: FrictionFit) -> float:

@@ -6,11 +6,12 @@ from math import inf
 
 from bench.calibration.points import FrictionPoint
 from bench.calibration.sequential import Batch, SequentialDesign, loads_of, measured
+from bench.calibration.sides import sides_rad
 from bench.config.configuration import BenchConfiguration
 from bench.json_types import Values
 from bench.store import Experiment, Store, Trial
 
-SEARCHES, RIGHT_ANGLE_RAD = 3, 1.5708
+SEARCHES = 3
 SEARCH_S = 10.5  # of one load at one angle, roughly
 Run = Callable[[str, Values, tuple[float, bool] | None], Experiment]
 """Runs one experiment (kind, parameters, what hangs on the arm) to its completion, or raises."""
@@ -82,15 +83,15 @@ class SequentialCalibration:
 
     def carry_out(self) -> list[int]:
         """All experiments that are still due; the ids of all. What `run` raises is passed on."""
-        design, searched = self._design(self._ends_kg()), self._search_kg()
-        search_s = 2 * len(searched) * SEARCH_S
+        design, searched, sides = self._design(self._ends_kg()), self._search_kg(), sides_rad(self._bench)
+        search_s = (1 + len(sides)) * len(searched) * SEARCH_S
         if not any("friction_current_a" in trial.results for trial in self._trials()):
             first = (
-                f"{len(searched)} loads are searched at rest, then curves are measured until each is known to "
-                f"{1e3 * self._wish.accuracy_a:g} mA"
+                f"{len(searched)} loads are searched at rest, {_where(sides)}. Then curves are measured until each is "
+                f"known to {1e3 * self._wish.accuracy_a:g} mA"
             )
             self._tell(Stand(first, design.longest_s + search_s, 0.0))
-            asked: Values = {"loads_kg": searched, "angles_rad": [0.0, RIGHT_ANGLE_RAD], "searches": SEARCHES}
+            asked: Values = {"loads_kg": searched, "angles_rad": [0.0, *sides], "searches": SEARCHES}
             self._run("load-sweep", asked, (searched[-1], False))
         design = self._design(self._curves_kg())
         points, spent = self._measured()
@@ -125,6 +126,16 @@ class SequentialCalibration:
     def _run(self, kind: str, parameters: Values, hung: tuple[float, bool]) -> None:
         self.ids.append(self._run_one(kind, parameters, self._hung).id)
         self._hung = hung
+
+
+def _where(sides_rad: Sequence[float]) -> str:
+    """On which sides, and what one alone costs."""
+    if len(sides_rad) > 1:
+        return "hanging and on both sides"
+    return (
+        f"hanging and at {sides_rad[0]:g} rad, for the limits leave no angle on the other side: there an estimate at "
+        "rest will err by more than its interval says"
+    )
 
 
 def _stand(batch: Batch, longest_s: float, spent_s: float) -> Stand:

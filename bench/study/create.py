@@ -1,4 +1,4 @@
-"""Create a study, describe it, list studies."""
+"""Create a study, describe it."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,7 +12,7 @@ from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import keep_model
 from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
-from bench.study.models.study import ModelName, Study, StudyName
+from bench.study.models.study import ModelName, Study
 from bench.study.selection import keep, split
 from compensator.lab import progress
 from compensator.lab.effects.catalogue import default_effects, effect_named
@@ -92,12 +92,6 @@ def definition_of(
 def describe(store: Store, study_id: int) -> Study:
     """A study: its trials with their roles, its effort, its models."""
     return _describe(store, load(store, study_id))
-
-
-def list_studies(store: Store) -> list[StudyName]:
-    """All studies, newest first."""
-    rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
-    return [StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in rows]
 
 
 def _create(store: Store, name: str, definition: Definition) -> Study:

@@ -2,11 +2,9 @@
 
     I = (Vs d - Ke w) / R                       (3)
     I_motor = I_load + I_friction               (5)
-    d_load = (Vs (d - d_friction) + Ke w) / Vs  (7)
-    d_load = d - d_friction         at w = 0    (8)
 
-`d_friction` is the duty that a balanced joint needs at the same steady speed, so it holds the
-back-EMF share: d_friction = (R I_friction + Ke w) / Vs. With that, (5) and (7) give the same load.
+The paper's (7) and (8) do the same with duties: d_load = d - d_friction + Ke w / Vs, where `d_friction` is the duty
+that a balanced joint needs at the same steady speed, back-EMF included: d_friction = (R I_friction + Ke w) / Vs.
 
 Every function takes floats or arrays of one shape. `speed_rad_s` is that of the motor shaft.
 """
@@ -75,18 +73,6 @@ def duty(motor: MotorConstants, current_a: Number, speed_rad_s: Number, supply_v
     return (motor.resistance_ohm * current_a + motor.back_emf_v_s_rad * speed_rad_s) / supply_v
 
 
-def load_current_a(current_a: Number, friction_current_a: Number) -> Number:
-    """Eq. (5): the load's share of the motor current [A]."""
-    return current_a - friction_current_a
-
-
 def friction_duty(motor: MotorConstants, friction_current_a: Number, speed_rad_s: Number, supply_v: float) -> Number:
     """The duty of a balanced joint at a steady speed: friction and back-EMF, no load."""
     return duty(motor, friction_current_a, speed_rad_s, supply_v)
-
-
-def load_duty(
-    motor: MotorConstants, duty: Number, friction_duty: Number, speed_rad_s: Number, supply_v: float
-) -> Number:
-    """Eq. (7): the duty of the load alone, back-EMF included; eq. (8) where the speed is 0."""
-    return (supply_v * (duty - friction_duty) + motor.back_emf_v_s_rad * speed_rad_s) / supply_v

@@ -84,7 +84,6 @@ class RestCalibration:
         delay: k0, k1, k2.
         floor_a, scatter, moment_scatter: standard deviation of one breakaway: sqrt(floor^2 + (scatter F)^2 +
             (moment_scatter D)^2). What the teeth lose may scatter with friction or not.
-        asymmetry_told: 95 % interval of r.
     """
 
     gain: float = 1.0
@@ -98,12 +97,6 @@ class RestCalibration:
     floor_a: float = FLOOR_A
     scatter: float = 0.0
     moment_scatter: float = 0.0
-
-    @property
-    def asymmetry_told(self) -> Interval:
-        """r with its 95 % interval."""
-        half = BAND * sqrt(self.covariance[2][2])
-        return Interval(self.asymmetry, self.asymmetry - half, self.asymmetry + half)
 
     def gear_loss(self) -> GearLoss:
         """The same loss as it acts on a joint in motion, never below 0."""

@@ -11,7 +11,6 @@ MODEL_NUMBER = Item(0, 2, "Model Number")
 FIRMWARE = Item(6, 1, "Firmware Version")
 RETURN_DELAY = Item(9, 1, "Return Delay Time")  # [2 us]
 OPERATING_MODE = Item(11, 1, "Operating Mode")
-PWM_LIMIT = Item(36, 2, "PWM Limit")
 CURRENT_LIMIT = Item(38, 2, "Current Limit")
 TORQUE_ENABLE = Item(64, 1, "Torque Enable")
 STATUS_RETURN = Item(68, 1, "Status Return Level")

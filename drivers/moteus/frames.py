@@ -15,7 +15,6 @@ from drivers.actuator.reading import Reading
 
 STOPPED, FAULT, POSITION, TIMEOUT, BRAKE = 0, 1, 10, 11, 15
 POWERED = frozenset({2, 3, 4, POSITION, BRAKE})  # 2 .. 4: about to begin
-LIMITING = 96  # a fault code from here on says what bounds the torque, and is no fault
 LONGEST_TEXT = 48
 _REGISTERS = (0x000, 0x001, 0x002, 0x003, 0x004, 0x00D, 0x00E, 0x00F)  # of `State`, in its order
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Literal
 
-BAUD_RATES = (2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800)
 WATCHDOG_STEP_S = 0.1  # command 14 counts in these
 
 

@@ -26,15 +26,12 @@ def jitted(function: Function) -> Function:
     return compiled
 
 
-def jitted_and_cached(function: Function, nogil: bool = False) -> Function:
+def jitted_and_cached(function: Function) -> Function:
     """Compile a kernel on its first call and keep the machine code on disk for later starts.
 
-    Args:
-        function: the kernel.
-        nogil: let other threads run meanwhile; to let go of the interpreter's lock and take it again costs a fifth of
-            what a control cycle of the plant does, and the wait for whoever took it.
+    It keeps the interpreter's lock: to let go of it and take it again costs a fifth of a control cycle of the plant.
     """
-    compiled: Function = numba.njit(function, cache=True, nogil=nogil, **_LEAN)
+    compiled: Function = numba.njit(function, cache=True, **_LEAN)
     return compiled
 
 

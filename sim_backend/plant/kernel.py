@@ -86,30 +86,6 @@ def _advance_of(mechanisms: int) -> Callable[..., Measured]:
     return jitted_and_cached(advance)
 
 
-def _follow_of(mechanisms: int) -> Callable[..., None]:
-    def follow(
-        plants: Records, history: Floats, measured: Floats, stage: int, demands: Floats, steps: int,
-        step_s: float, window: int, delay: int,
-    ) -> None:  # fmt: skip
-        """Advance the plant demand after demand, and measure after each; without the interpreter's lock.
-
-        Of shape (demands,) are the demands, and (demands, 5) the measurement, filled with what `advance` returns; all
-        else is as of `advance`.
-        """
-        mechanisms  # noqa: B018
-        for row in range(len(demands)):
-            position_rad, velocity_rad_s, current_a, temperature_c, supply_v = _cycle(
-                plants[0], history, stage, demands[row], steps, step_s, window, delay
-            )
-            measured[row, 0] = position_rad
-            measured[row, 1] = velocity_rad_s
-            measured[row, 2] = current_a
-            measured[row, 3] = temperature_c
-            measured[row, 4] = supply_v
-
-    return jitted_and_cached(follow, nogil=True)
-
-
 def _fingerprint() -> int:
     """Return a number that changes with any source file of the simulation."""
     digest = 0
@@ -121,7 +97,7 @@ def _fingerprint() -> int:
 # numba's cache knows when this file changes, not when a mechanism that it calls does;
 # the value of a closure variable is part of the cache's key
 _MECHANISMS = _fingerprint()
-advance, follow = _advance_of(_MECHANISMS), _follow_of(_MECHANISMS)
+advance = _advance_of(_MECHANISMS)
 
 
 def _stored_energy_of(mechanisms: int) -> Callable[[Records], float]:

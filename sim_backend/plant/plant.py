@@ -5,7 +5,6 @@ from math import sin
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim_backend.environment.end_stops import Wall
 from sim_backend.environment.operator import Operator
@@ -15,7 +14,7 @@ from sim_backend.mechanisms.joint.clutch import Clutch
 from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2, Load
 from sim_backend.plant.constants import constants_of
 from sim_backend.plant.jit import pack
-from sim_backend.plant.kernel import Measured, Whole, advance, follow, stored_energy
+from sim_backend.plant.kernel import Measured, Whole, advance, stored_energy
 from sim_backend.plant.parameters import PlantParameters
 from sim_backend.plant.state import at_rest
 from sim_backend.plant.stiffness import quickest, stiffest
@@ -115,25 +114,6 @@ class Plant:
         self._steps += steps
         # an int would have the kernel compiled for itself
         return advance(self._whole, self._history, stage, float(demand), steps, self.step_s, self._window, self._delay)
-
-    def follow(self, stage: int, demands: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
-        """Advance demand after demand, as many calls of `advance` would, without the interpreter's lock.
-
-        Args:
-            stage: OPEN, VOLTAGE, CURRENT or BRAKE of `motor`.
-            demands: duty -1 .. 1, or current [A], after the stage; shape (n,).
-            steps: number of integration steps at each.
-
-        Returns:
-            what the drive measures after each demand, columns as of `advance`; shape (n, 5).
-        """
-        measured = np.zeros((len(demands), 5))
-        follow(
-            self._whole, self._history, measured, stage, np.ascontiguousarray(demands, dtype=np.float64), steps,
-            self.step_s, self._window, self._delay,
-        )  # fmt: skip
-        self._steps += steps * len(demands)
-        return measured
 
     def hang(self, load: Load) -> None:
         """Hang a load on the arm and put the arm at rest at angle 0, in the middle of the free play."""

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from bench.calibration.curves import friction_fits, friction_lookup, inertia_of
+from bench.calibration.curves import friction_fits, inertia_of
 from bench.calibration.points import friction_points, identify_motor
 from bench.config.configuration import default_configuration
 from compensator.errors import CalibrationError, LookupRangeError
+from compensator.motion.friction_lookup import FrictionLookup
 from compensator.motor.dc_motor import MotorConstants
 from tests.experiments.bench_run import Ran
 
@@ -35,7 +36,7 @@ def fits(rows):
 
 @pytest.fixture(scope="module")
 def lookup(fits):
-    return friction_lookup(fits)
+    return FrictionLookup.over_load({load_kg: one.curve for load_kg, one in fits.items()})
 
 
 def test_the_lookup_predicts_currents_at_a_load_it_never_saw(rows, fits, lookup):
@@ -131,5 +132,3 @@ def test_rows_that_cannot_carry_a_curve_are_named_by_their_load(rows):
         friction_fits(friction_points(fast))
     with pytest.raises(CalibrationError, match="0 saturated rows"):
         friction_points([row for row in rows if row["speed_rad_s"] == 0.0])
-    with pytest.raises(CalibrationError, match="1 curves"):
-        friction_lookup(friction_fits(friction_points(row for row in rows if row["load_kg"] == 0.0)))

@@ -16,7 +16,9 @@ def test_run_keeps_shows_lists_and_uses(command):
     assert found["experiment_ids"] == [1, 2, 3]  # the search, and one batch under each load
     again = command("calibrate", "fit", *(word for one in (1, 2, 3) for word in ("--experiment", one)))
     assert "calibration 2 of rig 'paper', from experiments 1, 2, 3" in again.stdout
-    assert "ohmmeter" in command("calibrate", "show", 1).stdout.replace("\n", " ")
+    told = command("calibrate", "show", 1).stdout.replace("\n", " ")
+    assert "ohmmeter" in told
+    assert "on one side alone" not in told
     assert "calibration 2" in command("calibrate", "use", "--latest").stdout
     assert "calibration 1" in command("calibrate", "use", 1).stdout
     listed = json.loads(command("calibrate", "list", "--json").stdout)
@@ -40,7 +42,8 @@ def test_it_says_before_what_it_takes_and_goes_on_where_it_was_broken_off(comman
     said = " ".join(made.output.split())
     assert "2 loads are searched at rest" in said
     assert "minutes of the joint's time" in said
-    assert said.index("minutes of the joint's time") < said.index("load-sweep: 4 trials")
+    assert "hanging and on both sides" in said
+    assert said.index("minutes of the joint's time") < said.index("load-sweep: 6 trials")
     # the records of the search and of the first load are there: only the second load is measured
     again = command("calibrate", "run", *LEVELS, "--after", 1, "--after", 2, "--json")
     assert json.loads(again.stdout)["experiment_ids"] == [1, 2, 4]
@@ -50,3 +53,11 @@ def test_a_calibration_that_is_broken_off_says_how_to_go_on(command):
     refused = command("calibrate", "run", "--loads-kg", "0,0.1", "--minutes", "0.5", "--duties", "0.9")
     assert refused.exit_code == 3  # refused before the first stroke: the duty is above the limit
     assert json.loads(command("calibrate", "list", "--json").stdout) == []
+
+
+def test_loads_on_one_side_alone_are_said_with_the_result(command):
+    angles = ("--loads-kg", "0,0.05,0.1", "--angles-rad", "0,1.2")
+    assert command("run", "load-sweep", *angles).exit_code == 0
+    assert command("run", "speed-sweep", "--loads-kg", "0,0.1", "--duties", "0.2", "--strokes", "4").exit_code == 0
+    made = command("calibrate", "fit", "--experiment", 1, "--experiment", 2)
+    assert "on one side alone" in " ".join(made.output.split())

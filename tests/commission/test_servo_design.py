@@ -7,6 +7,8 @@ import pytest
 
 from compensator.errors import CalibrationError
 from compensator.motion.servo_design import LEAST_GAIN, LEAST_PHASE_DEG, Gains, Loop, design, margins
+from sim_backend.challenge.joint import draw_joint
+from tests.commission import servos
 
 LOOP = Loop((0.022, 0.047), 0.009, 0.002, 0.0075)
 
@@ -43,6 +45,35 @@ def test_every_load_has_its_margins():
     found = design(LOOP)
     assert all(one.phase_deg >= LEAST_PHASE_DEG and one.gain >= LEAST_GAIN for one in found.margins)
     assert found.free_gain > 1.0
+
+
+@pytest.mark.parametrize("growth", [1.2, 2.0, 5.0])
+def test_the_loads_in_between_have_them_too(growth):
+    lightest = LOOP.inertias_a_s2_rad[0]
+    loop = replace(LOOP, inertias_a_s2_rad=(lightest, growth * lightest))
+    gains = design(loop).gains
+    for inertia in np.linspace(lightest, growth * lightest, 21):
+        found = margins(gains, float(inertia), loop)
+        assert found.phase_deg >= LEAST_PHASE_DEG
+        assert found.gain >= LEAST_GAIN
+
+
+@pytest.mark.parametrize("number", [3, 6])  # of 20 drawn rigs, where the load weighs most beside the joint
+def test_one_servo_moves_the_joint_without_half_and_with_the_heaviest_load(number):
+    joint = draw_joint(np.random.default_rng([1, number]))
+    period_s = (0.005, 0.01)[number % 2]
+    proposal = servos.proposed(joint, period_s, number)
+    found = servos.qualities(joint, period_s, number, proposal, proposal.servo)
+    assert [one.is_sound for one in found] == [True] * 3
+    # `python -m tests.commission.servos 20` lays each beside the best for its load
+    assert max(one.settled_s for one in found) <= servos.ALLOWED_RATIO * min(one.settled_s for one in found)
+
+
+def test_a_servo_that_overshoots_or_swings_is_not_sound():
+    joint = draw_joint(np.random.default_rng([1, 0]))
+    proposal = servos.proposed(joint, 0.005, 0)
+    loose = proposal.servo.model_copy(update={"derivative_a_s_rad": 0.0})
+    assert not all(one.is_sound for one in servos.qualities(joint, 0.005, 0, proposal, loose))
 
 
 def test_a_loop_that_swings_has_no_margin():

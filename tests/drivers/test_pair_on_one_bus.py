@@ -19,6 +19,7 @@ from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
 from tests.control.fake_drive import ListSink
 from tests.devices.device_process import device_process
 
+VIRTUAL = pytest.mark.virtual_time
 PERIOD_S = 0.02
 NODES = (5, 6)
 REST = Action(Command(Mode.CURRENT, 0.0))
@@ -35,7 +36,7 @@ def bench_on(channel: str, master_node: int = NODES[1], **bus):
     return parse_configuration(values, "bench.toml")
 
 
-@pytest.fixture
+@pytest.fixture(params=[pytest.param("virtual", marks=VIRTUAL)])
 def bench(request):
     channel = request.node.name
     with ExitStack() as stack:

@@ -10,18 +10,19 @@ from bench.config.reflected_load import load_current_a
 from bench.config.sections import RestSettings
 from bench.evaluation.figures import figures_table, rigs
 from bench.evaluation.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
-from bench.evaluation.figures.coverage import Share, true_load_a
-from bench.evaluation.figures.rigs import drawn_rig
+from bench.evaluation.figures.coverage import Share, median_interval, reached_by_most, true_load_a
+from bench.evaluation.figures.rigs import drawn_rig, with_seed
 from bench.evaluation.figures.table import COLUMNS
-from bench.evaluation.figures.trials import SeedResults, drawn_loads
+from bench.evaluation.figures.trials import SeedResults, calibrated, calibrated_at_rest, drawn_loads
 from sim_backend.plant.presets import paper
 
 CONFIGURATION = default_configuration()
 
 
 def results(
-    error_kg=2e-4, held=True, search_s=2.0, hanging_a=0.001, ratio=0.05, stroke_kg=4e-4, cycle_kg=1e-3, late_g=40.0
-):
+    error_kg=2e-4, held=True, search_s=2.0, hanging_a=0.001, ratio=0.05, stroke_kg=4e-4, cycle_kg=1e-3, late_g=40.0,
+    calm=20.0,
+):  # fmt: skip
     """One seed in which every number is known."""
     truth_a = load_current_a(0.1, pi / 2, CONFIGURATION.rig)
     raised = {
@@ -53,12 +54,14 @@ def results(
             "sinusoid": {"rms_ratio": ratio},
             "wall": {
                 "compensated_late_error_max_g": late_g,
+                "compensated_reflected_error_max_g": 239.0,
+                "compensated_least_error_max_g": 240.0,
                 "compensated_latency_s": 0.02,
                 "raw_late_error_max_g": 90.0,
                 "compensated_drag_n_m": -0.01,
                 "raw_drag_n_m": 0.2,
             },
-            "margin": {"compensated_stability_margin": 20.0, "raw_stability_margin": 2.5},
+            "margin": {"compensated_stability_margin": calm, "raw_stability_margin": 2.5},
             "quick": {"rows": [{**raised, "search_s": search_s}]},
             "paper": {"rows": [{**raised, "search_s": 8.0, "reflected_load_kg": 0.1 + 4e-4}]},
         },
@@ -122,6 +125,37 @@ def test_the_share_of_all_trials_is_told_with_its_interval():
     assert found.sure == "1.3 .. 98.7 (2)"
     assert found.rigs_sure == "2.5 .. 100.0 (1)"
     assert row(table(results()), "sinusoid").sure == "-"
+
+
+def test_the_median_lies_between_two_of_the_ordered_numbers():
+    # of 20 the 6th and the 15th: 95.86 % (David and Nagaraja, "Order Statistics", 2003, section 7.1)
+    numbers = [float(one) for one in np.random.default_rng(1).permutation(20) + 1]
+    assert median_interval(numbers) == (6.0, 15.0)
+    assert all(isnan(end) for end in median_interval(numbers[:5]))
+    draws = np.random.default_rng(2).exponential(size=(2000, 20))
+    held = [low <= np.log(2.0) <= high for low, high in map(median_interval, draws.tolist())]
+    assert 0.945 <= np.mean(held) <= 0.97
+
+
+def test_one_of_ten_may_be_worse_than_what_most_reach():
+    numbers = [float(one) for one in np.random.default_rng(1).permutation(20) + 1]
+    assert (reached_by_most(numbers, False), reached_by_most(numbers, True)) == (18.0, 3.0)
+    assert isnan(reached_by_most([], True))
+
+
+def test_a_stability_margin_is_told_with_its_median_its_interval_what_most_reach_and_the_worst():
+    seeds = [results(calm=2.5 * one) for one in range(1, 11)]
+    found = row(table(*seeds, drawn=seeds[:6]), "force scale up to which")
+    assert (found.measured, found.sure, found.most_seeds, found.worst_seed) == (5.5, "2 .. 9 (10)", 2.0, 1.0)
+    assert (found.rigs_median, found.rigs_sure, found.most_rigs, found.rigs_worst) == (3.5, "1 .. 6 (6)", 1.0, 1.0)
+
+
+def test_the_largest_error_at_a_wall_stands_beside_what_bounds_it():
+    rows = list(table(results()).values())
+    place = next(place for place, one in enumerate(rows) if one.name == "wall, reflected: largest error at any moment")
+    literal, bound = rows[place : place + 2]
+    assert (literal.measured, literal.asked, literal.reached) == (239.0, "at most 60", False)
+    assert (bound.name, bound.measured) == ("bound of it: the truth itself, a cycle late", 240.0)
 
 
 def test_loads_and_angles_are_drawn_anew_with_each_seed_and_never_straight_down():
@@ -250,3 +284,8 @@ def test_second_differences_of_an_unknown_place_spread_as_the_bound_says():
     places = np.random.default_rng(3).uniform(-0.5, 0.5, size=(3, 200_000))
     spread = np.std(4.0 * (places[0] - 2.0 * places[1] + places[2]))
     assert spread == pytest.approx(SLACK, rel=0.01)
+
+
+def test_a_calibration_at_rest_tells_the_same_as_the_whole_one():
+    bench = with_seed(drawn_rig(CONFIGURATION, 5), 3)
+    assert calibrated_at_rest(bench).rest == calibrated(bench).rest is not None

@@ -8,8 +8,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from os import environ
 from pathlib import Path
 from resource import RUSAGE_CHILDREN, getrusage
@@ -17,7 +15,6 @@ from statistics import median
 from time import perf_counter, process_time
 from typing import Any
 
-import numba
 import numpy as np
 
 from bench.evaluation.paper.measurements import run_experiment
@@ -27,7 +24,6 @@ from sim_backend.drive.simulated_drive import SimulatedDrive
 from sim_backend.mechanisms.joint.gravity import Load
 from sim_backend.mechanisms.motor.motor import VOLTAGE
 from sim_backend.plant import presets
-from sim_backend.plant.batch import Course, run_batch
 from sim_backend.plant.parameters import PlantParameters
 from sim_backend.plant.plant import Plant
 from tests.sim_backend.cycle_cost import at_1_khz
@@ -162,32 +158,6 @@ def bench_ratio() -> tuple[float, float]:
     return float(wall), float(cpu)
 
 
-@numba.njit(nogil=True)  # type: ignore[untyped-decorator]
-def bare_arithmetic(number: float) -> float:
-    """Work that asks nothing of the machine but its cores: no memory, no interpreter, no lock."""
-    for _ in range(5_000_000):
-        number = 3.9 * number * (1.0 - number)
-    return number
-
-
-def thread_scaling() -> tuple[float, float]:
-    """Rate with two threads over that with one, of (a batch of plants, bare arithmetic): best rounds, run in turns."""
-    demands = np.where(np.arange(400) // 40 % 2, 0.3, -0.3)
-    courses = [
-        Course(parameters=presets.paper(), seed=seed, stage=VOLTAGE, demands=demands, steps=500) for seed in range(8)
-    ]
-    list(run_batch(courses[:1], 1))  # compiles
-    bare_arithmetic(0.5)
-
-    def bare(threads: int) -> None:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(bare_arithmetic, np.linspace(0.3, 0.4, len(courses))))
-
-    works = [partial(work, threads) for work in (lambda n: list(run_batch(courses, n)), bare) for threads in (1, 2)]
-    one_s, two_s, bare_one_s, bare_two_s = np.min([[best_s(work, 1) for work in works] for _ in range(12)], axis=0)
-    return float(one_s / two_s), float(bare_one_s / bare_two_s)
-
-
 def start_s(cache: Path) -> tuple[float, float]:
     """(wall, CPU) seconds of a process that imports the simulation and exchanges once, with a cache of its own."""
     used, began = getrusage(RUSAGE_CHILDREN).ru_utime, perf_counter()
@@ -216,9 +186,6 @@ def report() -> Iterator[str]:
     yield f"floor at 1 kHz, empty procedure + one compiled call: {1e6 * least_s:.1f} us, {1e-3 / least_s:.0f} x"
     wall, cpu = bench_ratio()
     yield f"whole bench at 1 kHz: {wall:.0f} x real time; {cpu:.0f} x by CPU time (asked for: 40 x)"
-    batch, bare = thread_scaling()
-    yield f"batch of plants, two threads over one: {batch:.2f} x (asked for: 1.8 x on two cores)"
-    yield f"  bare arithmetic, in the same rounds: {bare:.2f} x, what the cores had to give meanwhile"
     with tempfile.TemporaryDirectory() as folder:
         first, later = start_s(Path(folder)), min(start_s(Path(folder)) for _ in range(3))
     yield f"first call after installation: {first[0]:.1f} s; {first[1]:.1f} s of CPU (asked for: 10 s)"

@@ -3,7 +3,9 @@ from typing import Any
 import pytest
 
 from sim_backend.errors import ParameterError
+from sim_backend.mechanisms.motor.motor import VOLTAGE
 from sim_backend.plant import presets
+from sim_backend.plant.kernel import advance
 from sim_backend.plant.parameters import PlantParameters
 from sim_backend.plant.plant import Plant
 from tests.sim_backend.plants import parameters, plant
@@ -143,3 +145,11 @@ def test_presets_are_found_by_name() -> None:
     assert presets.by_name("paper") == presets.paper()
     with pytest.raises(ParameterError, match="preset 'papers' is unknown; known are paper"):
         presets.by_name("papers")
+
+
+def test_whole_number_for_demand_is_no_other_kernel() -> None:
+    plant = Plant(presets.paper())
+    plant.advance(VOLTAGE, 0.0, 1)
+    compiled = len(advance.signatures)  # type: ignore[attr-defined]
+    plant.advance(VOLTAGE, 0, 1)
+    assert len(advance.signatures) == compiled  # type: ignore[attr-defined]

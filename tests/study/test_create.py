@@ -6,10 +6,9 @@ import math
 import pytest
 
 from bench.config.rig import Rig
-from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study.compare import compare
-from bench.study.create import create_study, describe, list_studies
+from bench.study.create import create_study, describe
 from bench.study.diagnose import diagnose
 from bench.study.errors import StudyError
 from bench.study.material import facts_of, load
@@ -153,11 +152,6 @@ def test_a_stopped_trial_is_not_used(store):
     outcomes = [(one, "stopped" if index == 2 else "completed", "") for index, one in enumerate(made)]
     number = store.add_imported("import", {}, {}, RIG.model_dump(mode="json", exclude_none=True), outcomes)
     assert made[2].name not in roles(create_study(store, "a", [number], cutoff_hz=6.0))
-
-
-def test_studies_are_listed_newest_first(store: Store, experiment_id):
-    made = [create_study(store, name, [experiment_id], cutoff_hz=6.0).study_id for name in ("one", "two")]
-    assert [(row.study_id, row.name) for row in list_studies(store)][:2] == [(made[1], "two"), (made[0], "one")]
 
 
 def test_what_the_lab_is_told_of_a_rig():

@@ -146,6 +146,8 @@ def _show(row: "CalibrationRow", as_json: bool) -> None:
     table("Motor, as the sweep tells it", ["", "value"], constants)
     for sentence in dict.fromkeys(row.result["motor"]["unidentified"].values()):
         say(sentence)
+    if doubt := row.result.get("rest_unidentified") or row.result.get("rest_one_sided"):
+        say(doubt)
 
 
 def _curve_cells(curve: "Curve") -> tuple[object, ...]:

@@ -15,8 +15,6 @@ from bench.store import Store
 LOAD_KG = 0.1
 STEPS = Measurement("steps", {"repeats": 3, "load_kg": LOAD_KG})
 LOADS = Measurement("load-sweep", {"loads_kg": (0.0, 0.05, LOAD_KG), "angles_rad": (pi / 2,)})
-MOST_SEEDS = 10  # of every way to share out twice as many, each is looked at
-DEFAULT_SEEDS = 8
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,16 +1,17 @@
-"""Whether the stated interval of I_load holds the truth, and how sure that share is."""
+"""How sure a figure is: of a share of trials, and of the median of what seeds or rigs gave."""
 
-from collections.abc import Iterable, Mapping
-from math import isfinite, nan
+from collections.abc import Iterable, Mapping, Sequence
+from math import ceil, isfinite, nan
 from statistics import fmean
 from typing import Any, NamedTuple
 
-from scipy.stats import beta
+from scipy.stats import beta, binom
 
 from bench.config.reflected_load import arm_angle_rad, load_current_a
 from bench.config.rig import Rig
 
 CONFIDENCE = 0.95
+MOST = 0.9
 
 
 class Share(NamedTuple):
@@ -27,6 +28,24 @@ class Share(NamedTuple):
         low = float(beta.ppf(tail, held, missed + 1)) if held else 0.0
         high = float(beta.ppf(1.0 - tail, held + 1, missed)) if missed else 1.0
         return low, high
+
+
+def median_interval(numbers: Sequence[float]) -> tuple[float, float]:
+    """What the median behind such numbers may be, at least 95 %; NaN of fewer than six.
+
+    By order statistics (David and Nagaraja, "Order Statistics", 2003, section 7.1), whatever they are drawn from.
+    """
+    rank = int(binom.ppf((1.0 - CONFIDENCE) / 2.0, len(numbers), 0.5)) if len(numbers) else 0
+    if rank == 0:
+        return nan, nan
+    ordered = sorted(numbers)
+    return ordered[rank - 1], ordered[-rank]
+
+
+def reached_by_most(numbers: Sequence[float], low_is_bad: bool) -> float:
+    """What nine of ten reach: the others are worse; NaN of none."""
+    ordered = sorted(numbers, reverse=low_is_bad)
+    return ordered[ceil(MOST * len(ordered)) - 1] if ordered else nan
 
 
 def held(rows: Iterable[Mapping[str, Any]], rig: Rig) -> Share:

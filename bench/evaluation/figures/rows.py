@@ -162,6 +162,11 @@ def mean(numbers: Sequence[float]) -> float:
     return float(np.mean(numbers)) if len(numbers) else nan
 
 
+def median(numbers: Sequence[float]) -> float:
+    """Of all; NaN of none."""
+    return float(np.median(numbers)) if len(numbers) else nan
+
+
 def most(numbers: Sequence[float]) -> float:
     """The largest; NaN of none."""
     return float(np.max(numbers)) if len(numbers) else nan

@@ -7,15 +7,15 @@ from math import inf, isnan, nan
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.evaluation.figures.coverage import Share
-from bench.evaluation.figures.rows import ASKED, BESIDE, Asked
+from bench.evaluation.figures.coverage import Share, median_interval, reached_by_most
+from bench.evaluation.figures.rows import ASKED, BESIDE, Asked, median
 from bench.evaluation.figures.trials import SeedResults
 from bench.evaluation.figures.wall import ASKED_AT_A_WALL, BESIDE_A_WALL
 
 ALL = (*ASKED, *ASKED_AT_A_WALL, *BESIDE, *BESIDE_A_WALL)
 COLUMNS = (
-    "quantity", "paper", "asked", "measured#", "of trials, 95 %", "worst seed#", "reached", "rigs: mean#",
-    "of trials, 95 % ", "rigs: median#", "rigs: worst#", "rigs: reached#",
+    "quantity", "paper", "asked", "measured#", "95 %", "9 of 10#", "worst seed#", "reached", "rigs: mean#",
+    "rigs: median#", "rigs: 95 %", "rigs: 9 of 10#", "rigs: worst#", "rigs: reached#",
 )  # fmt: skip
 
 
@@ -29,7 +29,9 @@ class FigureRow:
         reached: None where nothing was asked.
         rigs_mean, rigs_median, rigs_worst, rigs_reached: over the drawn rigs; the share of them that reach it.
         seeds, rigs: how many gave a number.
-        sure, rigs_sure: "low .. high (of so many)", the binomial 95 % interval of a share of all trials; "-" otherwise.
+        sure, rigs_sure: "low .. high (of so many)", the 95 % interval of a share of all trials, or of a median over
+            seeds or rigs; "-" otherwise.
+        most_seeds, most_rigs: what nine of ten of them reach.
     """
 
     name: str
@@ -48,6 +50,8 @@ class FigureRow:
     rigs: int
     sure: str = "-"
     rigs_sure: str = "-"
+    most_seeds: float = nan
+    most_rigs: float = nan
 
     def cells(self) -> tuple[object, ...]:
         """One row, in the order of `COLUMNS`."""
@@ -55,8 +59,8 @@ class FigureRow:
         reached = "-" if self.reached is None else ("yes" if self.reached else "no")
         rigs_reached = "-" if isnan(self.rigs_reached) else f"{self.rigs_reached:.0%}"
         return (
-            name, self.paper, self.asked, self.measured, self.sure, self.worst_seed, reached, self.rigs_mean,
-            self.rigs_sure, self.rigs_median, self.rigs_worst, rigs_reached,
+            name, self.paper, self.asked, self.measured, self.sure, self.most_seeds, self.worst_seed, reached,
+            self.rigs_mean, self.rigs_median, self.rigs_sure, self.most_rigs, self.rigs_worst, rigs_reached,
         )  # fmt: skip
 
     def to_json(self) -> dict[str, object]:
@@ -108,19 +112,22 @@ def _row(
         sum(reached) / len(reached) if reached and judged else nan,
         len(numbers),
         len(drawn),
-        _sure(asked, [(seed, own) for seed in seeds]),
-        _sure(asked, [(found, bench) for bench, found in rigs]),
+        _sure(asked, [(seed, own) for seed in seeds], numbers),
+        _sure(asked, [(found, bench) for bench, found in rigs], drawn),
+        reached_by_most(numbers, asked.low > 0.0),
+        reached_by_most(drawn, asked.low > 0.0),
     )
 
 
-def _sure(asked: Asked, found: Sequence[tuple[SeedResults, BenchConfiguration]]) -> str:
-    """What the share of all trials together may be."""
-    if asked.share is None:
-        return "-"
-    shares = [asked.share(*one) for one in found]
-    whole = Share(sum(one.held for one in shares), sum(one.trials for one in shares))
-    low, high = whole.interval()
-    return f"{100.0 * low:.1f} .. {100.0 * high:.1f} ({whole.trials})" if whole.trials else "-"
+def _sure(asked: Asked, found: Sequence[tuple[SeedResults, BenchConfiguration]], numbers: Sequence[float]) -> str:
+    """What the share of all trials together may be, or the median of the numbers."""
+    if asked.share is not None:
+        shares = [asked.share(*one) for one in found]
+        whole = Share(sum(one.held for one in shares), sum(one.trials for one in shares))
+        low, high = whole.interval()
+        return f"{100.0 * low:.1f} .. {100.0 * high:.1f} ({whole.trials})" if whole.trials else "-"
+    low, high = median_interval(numbers)
+    return f"{low:.3g} .. {high:.3g} ({len(numbers)})" if asked.whole is median and not isnan(low) else "-"
 
 
 def _reaches(asked: Asked, number: float, high: float | None = None) -> bool:

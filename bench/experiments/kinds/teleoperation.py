@@ -4,10 +4,8 @@ from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from math import sqrt
-from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
@@ -27,7 +25,6 @@ LEAD_S = 0.5  # coupled, before the first reach and after the last
 REST_S = 6.0  # to settle, to search, and back, roughly
 PEAK = 1.875  # speed of a reach of least jerk, over its mean
 WATCHED = 0.5  # of a rest, its later part
-Duration = Annotated[float, Field(gt=0, le=60)]
 
 
 class TeleoperationParameters(Parameters):

@@ -16,7 +16,6 @@ NEAR = 0.1  # relative: how near a slope has to be to a unit's factor
 TOLD = 0.5  # squared correlation from which one column tells another's unit
 FEWEST = 20
 BLOCKS = 400  # of which rates are averaged: noise of one sample does no harm
-LARGEST_RAD = 4.0 * np.pi
 WHOLE = 0.999  # share of values that are whole numbers
 SAME = 0.02  # relative: how near a period has to be to a known one
 KNOWN_PERIODS = (360.0, 2.0 * np.pi, 1.0, 180.0, np.pi, *(float(2**bits) for bits in range(8, 25)))

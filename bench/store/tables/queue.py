@@ -1,13 +1,13 @@
 """The queue of a bench in the store: what is to be run, in which order, and what became of it."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
-from bench.json_types import Json, Values
+from bench.json_types import Json
 from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.schema import CAMPAIGN, EXPERIMENT, QUEUE_ITEM, QUEUE_STATE
@@ -73,19 +73,6 @@ class QueueItem:
     lab_claim: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class CampaignRow:
-    """Experiments that belong together, as they were asked for."""
-
-    id: int
-    name: str
-    definition: Values
-    operator: str
-    note: str
-    tags: list[str]
-    created_utc: datetime
-
-
 COLUMNS = tuple(ITEM[name] for name in QueueItem.__dataclass_fields__)
 
 
@@ -102,7 +89,7 @@ class QueueTable:
         self._bench = bench
 
     def add(self, items: Sequence[NewItem], campaign: Mapping[str, object] | None = None) -> list[int]:
-        """Add items at the end, all or none; a campaign by the fields of `CampaignRow`. Returns their ids."""
+        """Add items at the end, all or none; a campaign by the columns of its table. Returns their ids."""
         with self._database.writing() as connection:
             last = connection.execute(select(func.max(ITEM.place)).where(ITEM.bench == self._bench)).scalar()
             campaign_id = None
@@ -226,14 +213,6 @@ class QueueTable:
             mine = QUEUE_STATE.c.bench == self._bench
             if not connection.execute(update(QUEUE_STATE).where(mine).values(**values)).rowcount:
                 connection.execute(insert(QUEUE_STATE).values(bench=self._bench, **values))
-
-    def campaigns(self, campaign_ids: Iterable[int] | None = None) -> list[CampaignRow]:
-        """Newest first; all of them without ids."""
-        query = select(CAMPAIGN).order_by(CAMPAIGN.c.id.desc())
-        if campaign_ids is not None:
-            query = query.where(CAMPAIGN.c.id.in_(list(campaign_ids)))
-        with self._database.reading() as connection:
-            return [CampaignRow(**row._asdict()) for row in connection.execute(query)]
 
     def _end_of(self, experiment_id: int | None) -> tuple[str, str]:
         if experiment_id is None:

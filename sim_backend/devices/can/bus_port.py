@@ -1,6 +1,7 @@
 """The node on a python-can bus: virtual in one process, socketcan where the kernel has it."""
 
 import threading
+from contextlib import suppress
 from typing import Any
 
 import can
@@ -36,7 +37,6 @@ class BusPort(threading.Thread):
         self._bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **(more or {}))
         self._closing = threading.Event()
         self.path = channel
-        self.lost_frames = 0
         self.error: BaseException | None = None
         device.node.send = self._send
 
@@ -81,7 +81,5 @@ class BusPort(threading.Thread):
             is_fd=frame.fd,
             bitrate_switch=frame.fd,
         )
-        try:
+        with suppress(can.CanOperationError):  # its transmit buffer is full: as on any controller, the frame is lost
             self._bus.send(message)
-        except can.CanOperationError:  # its transmit buffer is full: as on any controller, the frame is lost
-            self.lost_frames += 1

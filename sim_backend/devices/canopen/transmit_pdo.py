@@ -4,7 +4,6 @@ from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.mapping import Mapped, PdoParameters
 
-_EVERY_SYNC = range(1, 241)
 _ON_EVENT = (254, 255)
 
 

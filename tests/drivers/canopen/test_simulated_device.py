@@ -1,4 +1,8 @@
-"""The driver and the simulated drive, in processes of their own: two readings of the standard, one conversation."""
+"""The driver and the simulated drive: two readings of the standard, one conversation.
+
+Over the network the drive is a process of its own; behind an slcan adapter it is in virtual time, and on a port of the
+operating system in `tests.drivers.conformance`.
+"""
 
 import os
 import signal
@@ -6,7 +10,6 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
-from threading import Timer
 
 import pytest
 
@@ -14,9 +17,9 @@ from drivers.canopen import CanopenDrive, CanopenSettings
 from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault, DriveStateError
+from tests.devices.device_process import Thread
 from tests.drivers.canopen.conversation import (
     JOINT,
-    TRANSPORTS,
     WATCHDOG_S,
     bus_of,
     driver_of,
@@ -29,6 +32,7 @@ OFF = Command(Mode.OFF)
 PUSH = Command(Mode.CURRENT, 0.25)
 QUICK_STOP_S = 0.5  # the simulated drive brakes on its ramp before the power goes
 BUSY_S = 1.0  # what a busy machine may add
+VIRTUAL = pytest.mark.virtual_time
 
 
 @pytest.fixture(scope="module")
@@ -44,14 +48,14 @@ def socketcand_device():
         yield device
 
 
-@pytest.fixture(params=TRANSPORTS)
+@pytest.fixture(params=[pytest.param("slcan", marks=VIRTUAL), "socketcand"])
 def pair(request):
     device = request.getfixturevalue(f"{request.param}_device")
     with driver_of(device) as drive:
         yield device, drive
 
 
-@pytest.fixture
+@pytest.fixture(params=[pytest.param("slcan", marks=VIRTUAL)])
 def slcan(slcan_device):
     with driver_of(slcan_device) as drive:
         yield slcan_device, drive
@@ -94,6 +98,7 @@ def test_the_host_closes_the_position(pair):
     device.wait_for_power(on=False)
 
 
+@VIRTUAL
 @pytest.mark.parametrize("position_mode", ["cyclic", "profile"])
 def test_the_drive_closes_the_position(slcan_device, position_mode):
     with driver_of(slcan_device, position_mode=position_mode) as drive:
@@ -132,6 +137,7 @@ def test_what_is_measured_agrees_with_itself(slcan):
     assert drive.counts.missed == drive.counts.surplus == 0
 
 
+@VIRTUAL
 def test_an_epos4_is_found_and_its_duty_told():
     with started("slcan", "--family", "epos4") as device, driver_of(device, duty_sign_from_current=True) as drive:
         drive.open(0.005)
@@ -196,8 +202,8 @@ while True:
 """
 
 
-def test_a_host_that_is_killed_is_stopped_for_by_the_drive_itself(slcan):
-    device, successor = slcan
+def test_a_host_that_is_killed_is_stopped_for_by_the_drive_itself(slcan_device):
+    device = slcan_device
     host = subprocess.Popen(
         [sys.executable, "-c", _HOST, device.port, str(WATCHDOG_S)], stdout=subprocess.PIPE, text=True
     )
@@ -213,9 +219,10 @@ def test_a_host_that_is_killed_is_stopped_for_by_the_drive_itself(slcan):
         host.wait()
         host.stdout.close()
     assert 0.0 < off_s - killed_s < WATCHDOG_S + QUICK_STOP_S + BUSY_S
-    successor.open(0.005)
-    successor.clear_fault()
-    assert successor.exchange(OFF).status is Status.DISABLED
+    with driver_of(device) as successor:
+        successor.open(0.005)
+        successor.clear_fault()
+        assert successor.exchange(OFF).status is Status.DISABLED
 
 
 def test_corrupted_frames_end_in_power_off_or_do_no_harm(slcan):
@@ -235,11 +242,16 @@ def test_corrupted_frames_end_in_power_off_or_do_no_harm(slcan):
     _reconnects(drive)
 
 
+def drop_soon(device):
+    time.sleep(0.1)
+    device.side.ask("link", name="drop", packets=8, direction="from-device")
+
+
 def test_lost_frames_are_counted_and_only_cost_their_cycle(slcan):
     device, drive = slcan
     _moving(drive)
     # asked for while cycles run: in a pause the device sends heartbeats alone, and those would be what is lost
-    asking = Timer(0.1, device.side.ask, ("link",), {"name": "drop", "packets": 4, "direction": "from-device"})
+    asking = Thread(target=drop_soon, args=(device,))
     asking.start()
     samples = exchange_for(drive, 1.0, Command(Mode.CURRENT, 0.0))
     asking.join()
@@ -270,6 +282,7 @@ def test_torque_that_is_taken_away_is_noticed(slcan):
     device.wait_for_power(on=False)
 
 
+@VIRTUAL
 def test_the_interlock_bit_tells_safe_torque_off_until_its_circuit_is_closed(slcan_device):
     with driver_of(slcan_device, torque_off=TorqueOffBit(0x60FD, 0, 3)) as drive:
         drive.open(0.005)
@@ -292,6 +305,7 @@ def braked(request, tmp_path_factory):
         yield device, bool(request.param)
 
 
+@VIRTUAL
 def test_a_holding_brake_is_set_without_power_and_holds_when_the_host_is_gone(braked):
     device, is_own = braked
     with driver_of(device, brake=None if is_own else BrakeBit()) as drive:
@@ -308,6 +322,7 @@ def test_a_holding_brake_is_set_without_power_and_holds_when_the_host_is_gone(br
     assert device.truth()["device"]["brake"] == "set"
 
 
+@VIRTUAL
 def test_a_drive_with_a_brake_of_its_own_holds_the_arm_until_the_brake_does(braked):
     device, is_own = braked
     if not is_own:

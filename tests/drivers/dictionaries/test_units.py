@@ -9,6 +9,8 @@ from sim_backend.devices.canopen.objects.entry import Access, Entry, record
 from tests.drivers.dictionaries.attempt import OFF, PERIOD_S, cycles, device, host, push
 from tests.drivers.dictionaries.traits import TENTH_DEGREE, Trait
 
+pytestmark = pytest.mark.virtual_time
+
 FEED = record(0x6092, "Feed constant", Entry(1, "Feed", U32, Access.RW, 3600), Entry(2, "Turns", U32, Access.RW, 1))
 TENTHS = Trait(added=(FEED,), default={(0x60A8, 0): TENTH_DEGREE, (0x60A9, 0): 0})
 GEAR_RATIO = 20.0

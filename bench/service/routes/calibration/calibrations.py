@@ -50,6 +50,9 @@ class Calibration(BaseModel):
     stribeck: bool
     curves: list[Curve]
     motor: Json = Field(description="R and Ke with intervals as far as the sweep tells; why, where not")
+    at_rest: str = Field(
+        description="what its searches at rest did not tell, or told of one side alone; '' where nothing is missing"
+    )
     in_use: bool = Field(description="whether this bench compensates with it")
     created_utc: datetime
     chosen_utc: datetime | None
@@ -75,6 +78,7 @@ def represent(row: CalibrationRow, used_id: int | None) -> Calibration:
         stribeck=row.result["stribeck"],
         curves=row.result["curves"],
         motor=row.result["motor"],
+        at_rest=row.result.get("rest_unidentified") or row.result.get("rest_one_sided") or "",
         in_use=row.id == used_id,
         created_utc=row.created_utc,
         chosen_utc=row.chosen_utc,
