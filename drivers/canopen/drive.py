@@ -256,7 +256,7 @@ class CanopenDrive:
         elif session.found.no_homing:
             raise DriveConfigurationError(
                 self._device,
-                f"does not home by itself: {session.found.no_homing}; have the bench look for the end stop "
+                f"does not home by itself: {session.found.no_homing}; or have the bench look for the end stop "
                 "(drive.homing.method = 'end-stop')",
             )
 

@@ -10,12 +10,9 @@ from functools import lru_cache
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt_zi
 
-from compensator.lab.recordings.recording import FloatArray
-
-IntArray = NDArray[np.int64]
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
 FILTER_ORDER = 4
 TURNED_AT_ONCE = 8  # rows: what a line of the cache holds

@@ -61,7 +61,7 @@ def why_not(table: ObjectTable, scale: DriveScale, has_velocity: bool) -> str:
     if not has_velocity:
         missing.append(f"no {VELOCITY}")
     elif scale.velocity_rad_s != scale.velocity_rad_s:  # NaN
-        missing.append("its unit of velocity is told by neither drive nor velocity_unit")
+        missing.append("its unit of velocity is told by neither drive nor velocity_unit: set drive.velocity_unit")
     table.note("mode 'home'", Need.WISHED, _PURPOSE, not missing, "; ".join(missing) or f"homing ({HOMING_MODE})")
     return "; ".join(missing)
 

@@ -10,10 +10,10 @@ from sim_backend.devices.canopen.objects.generic import GENERIC
 _MODES = GENERIC.modes | {6}
 
 
-def _objects(rating: Rating) -> list[Object]:
+def homing_objects(rating: Rating) -> list[Object]:
+    """Return what homing needs."""
     turn = rating.counts_per_turn
     return [
-        *with_defaults(GENERIC.objects(rating), {0x6502: mode_bits(_MODES)}),
         variable(0x5FF0, "Homing torque against an end stop", U16, default=500),  # permille of rated torque
         variable(0x607C, "Home offset", I32),
         variable(0x6098, "Homing method", I8, default=37),
@@ -25,6 +25,10 @@ def _objects(rating: Rating) -> list[Object]:
         ),
         variable(0x609A, "Homing acceleration", U32, default=round(50.0 * turn)),
     ]
+
+
+def _objects(rating: Rating) -> list[Object]:
+    return [*with_defaults(GENERIC.objects(rating), {0x6502: mode_bits(_MODES)}), *homing_objects(rating)]
 
 
 HOMING = replace(GENERIC, name="homing", modes=_MODES, objects=_objects)
