@@ -37,6 +37,13 @@ def numbers(objects: Iterable[Values], name: str) -> list[float]:
     return [number(one[name]) for one in objects if one.get(name) is not None]
 
 
+def as_option(value: object) -> str:
+    """As an option of a command has it: lists with commas, six digits of a number."""
+    if isinstance(value, list | tuple):
+        return ",".join(map(as_option, value))
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
 def _known(value: object) -> object:
     return nan if value is None else value
 

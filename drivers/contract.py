@@ -25,6 +25,7 @@ class Mode(Enum):
     CURRENT = "current"  # motor current [A]
     TORQUE = "torque"  # torque at the motor side of the joint's gear [N m]
     POSITION = "position"  # joint position [rad], closed by the drive itself
+    HOME = "home"  # 1: the drive looks for its home position by itself, and counts from there; 0: it holds the joint
 
 
 class Status(IntEnum):
@@ -96,6 +97,7 @@ class Sample(NamedTuple):
             samples of one number are one measurement, handed over twice because the next one has not come in time.
         torque_n_m: torque that the drive says it gives, at the motor side of the joint's gear [N m]; NaN where it
             says nothing of it.
+        homed: in HOME, whether the drive has found its home position; its positions count from there then.
     """
 
     time_s: float
@@ -110,6 +112,7 @@ class Sample(NamedTuple):
     ages: Ages = ALL_NEW
     number: int = 0
     torque_n_m: float = nan
+    homed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,8 @@ from bench.errors import BenchError
 if TYPE_CHECKING:  # rich is imported when something is printed: `--help` starts at once
     from rich.console import Console
 
+    from bench.report import Section
+
 
 class FileError(BenchError, OSError):
     """Raised when a file that a command writes cannot be written."""
@@ -136,3 +138,13 @@ def _encode(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return _finite(value.tolist())
     return str(value)
+
+
+def print_section(section: "Section") -> None:
+    """A section of a report: its title, its sentences, its tables."""
+    say("")
+    say(section.title)
+    for sentence in section.sentences:
+        say(sentence)
+    for one in section.tables:
+        table(one.title, one.columns, one.rows)

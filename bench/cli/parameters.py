@@ -10,7 +10,7 @@ import typer
 from bench.cli.output import Json
 from bench.errors import ConfigurationError
 from bench.experiments.kind import ExperimentKind
-from bench.json_types import Value
+from bench.json_types import Value, as_option
 
 Schema = dict[str, Any]
 """A part of a JSON schema, as pydantic makes it."""
@@ -93,7 +93,7 @@ def _option(name: str, schema: Schema, required: bool) -> Any:
     limits = [f"{sign} {_bounded(schema)[key]:g}" for key, sign in _BOUNDS if key in _bounded(schema)]
     if limits:
         hint += f" {', '.join(limits)}."
-    hint += " Required." if required else f" Default: {_shown(schema.get('default'))}."
+    hint += " Required." if required else f" Default: {as_option(schema.get('default'))}."
     metavar = {"array": "A,B,...", "integer": "INTEGER", "number": "NUMBER", "boolean": "true|false"}
     flag = "--" + name.replace("_", "-")
     shown = "FILE" if "file" in schema else metavar.get(schema.get("type", ""), "TEXT")
@@ -104,9 +104,3 @@ def _bounded(schema: Schema) -> Schema:
     """Where the bounds of a value stand: for a list, in its items."""
     items: Schema = schema.get("items", {}) if schema.get("type") == "array" else schema
     return items
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, list | tuple):
-        return ",".join(_shown(one) for one in value)
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

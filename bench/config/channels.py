@@ -7,7 +7,7 @@ the names of their own channels: those recorded before a line was added stay as 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from compensator.lab.recordings.channels import CHANNELS as LAB_CHANNELS
+from compensator.lab.recordings.recording import CHANNELS as LAB_CHANNELS
 
 
 @dataclass(frozen=True, slots=True)

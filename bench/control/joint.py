@@ -141,7 +141,7 @@ class ControlledJoint:
 
     def take(self, sample: Sample) -> None:
         """Make the reading of a sample."""
-        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _, torque_n_m = sample
+        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _, torque_n_m, _ = sample
         servo = self._current_servo
         if velocity_rad_s != velocity_rad_s:  # NaN
             velocity_rad_s = self._derived_velocity(sample)

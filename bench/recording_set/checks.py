@@ -10,11 +10,10 @@ from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.channel_checks import check_channels
-from compensator.lab.recordings.channels import CHANNELS
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.gaps import typical_step_s
-from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.recordings.recording import CHANNELS, FloatArray, Recording
 
 FEWEST_ROWS = 20  # fewer are an example, and show nothing of a motion
 TWO_TURNS_RAD = 4.0 * np.pi

@@ -48,8 +48,7 @@ from bench.config.rig import Section
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.text.toml_file import parse_toml
 from bench.recording_set.units import TURN, UNITS, Unit, unit_named, units_of
-from compensator.lab.recordings.channels import CHANNELS, EVENT_COLUMN
-from compensator.lab.recordings.recording import Condition
+from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN, Condition
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 STAMP = "stamp"

@@ -14,8 +14,7 @@ import numpy as np
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.stream import Piece, RecordingStream
 from bench.recording_set.text.values import encode_events
-from compensator.lab.recordings.channels import EVENT_COLUMN
-from compensator.lab.recordings.recording import Condition
+from compensator.lab.recordings.recording import EVENT_COLUMN, Condition
 
 if TYPE_CHECKING:
     import pyarrow

@@ -18,7 +18,7 @@ from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
 from bench.runs.lab_work import LabWork
 from bench.runs.lease import Lease
-from bench.runs.queue import Conductor
+from bench.runs.queue.conductor import Conductor
 from bench.store import Store
 from bench.store.backend import shown
 from bench.store.errors import StoreError, StoreUnreachableError

@@ -12,7 +12,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from bench.config.configuration import BenchConfiguration
 from bench.errors import BenchError
 from bench.runs.bench_control import PACES
-from bench.runs.queue import Conductor, Order, checked_item
+from bench.runs.queue.conductor import Conductor
+from bench.runs.queue.items import Order, checked_item
 from bench.store import Store
 from bench.store.errors import NotFoundError, StoreError, StoreStateError
 from bench.store.tables.lab_queue import TAKEN, LabItem, LabQueueTable, Taker

@@ -16,7 +16,7 @@ from bench.runs.calibrator import Calibrator
 from bench.runs.lab_link import LabLink, word_of
 from bench.runs.lab_work import LabWork
 from bench.runs.lease import Lease
-from bench.runs.queue import Conductor
+from bench.runs.queue.conductor import Conductor
 from bench.service import compute
 from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
@@ -25,6 +25,7 @@ from bench.service.http import conditional, openapi, page, problems, turns
 from bench.service.http.faults import Faults
 from bench.service.http.guard import Guard
 from bench.service.http.limits import Limits
+from bench.service.http.openapi import PREFIX
 from bench.service.lab import Lab, LabHere
 from bench.service.live.live_events import LiveEvents
 from bench.service.routes import (
@@ -51,7 +52,6 @@ from bench.service.routes import (
 from bench.service.routes.calibration import calibrations, run
 from bench.store import Store
 
-PREFIX = "/api/v1"
 DESCRIPTION = """
 Test bench for one geared servo joint: run experiments, watch and stop them, read trials, and find the physical
 effect that a model is missing.

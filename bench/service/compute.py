@@ -37,14 +37,7 @@ async def in_worker(request: Request, function: Callable[P, T], *args: P.args, *
 
 
 async def at_bench(request: Request, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Run what waits for the bench, as a start waits for its drive; those who only read do not stand behind it.
-
-    Args:
-        request: the request that asked for it; its application holds the limiter.
-        function: what to run; it must not touch the event loop.
-        *args: passed on.
-        **kwargs: passed on.
-    """
+    """Run what waits for the bench, as a start does for its drive; readers do not stand behind it. See `in_worker`."""
     limiter: anyio.CapacityLimiter = request.app.state.bench_limiter
     return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=limiter)
 

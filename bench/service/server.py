@@ -17,7 +17,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
 from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
-from bench.runs.bench_process import RemoteRunner
+from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.service.app import create_app
 from bench.service.auth.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
 from bench.service.auth.tls import Certificate

@@ -8,7 +8,7 @@ from bench.commission.guide import Guide
 from bench.runs.bench_control import BenchControl
 from bench.runs.calibrator import Calibrator
 from bench.runs.lab_link import LabLink
-from bench.runs.queue import Conductor
+from bench.runs.queue.conductor import Conductor
 from bench.store import Store
 
 

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
-from bench.service.app import PREFIX
 from bench.service.auth.access import is_loopback
 from bench.service.auth.token_register import Tokens
 from bench.service.auth.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
+from bench.service.http.openapi import PREFIX
 from bench.store.backend import shown
 
 

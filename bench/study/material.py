@@ -21,7 +21,7 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, Facts
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing, RowChoice
 

@@ -130,7 +130,8 @@ def _of_starts(effect: Effect, quantity: EffortQuantity) -> Example:
 @cache
 def _joint(quantity: EffortQuantity, sensed: bool = False) -> Dataset:
     """The joint without anything special, with the effort that its model predicts: some effects build on that."""
-    return with_own_prediction(_fitted(quantity, sensed))
+    fit = _fitted(quantity, sensed)
+    return with_own_prediction(fit.dataset, fit.terms)
 
 
 @cache

@@ -1,7 +1,7 @@
 """The tables of the recording set's format: channels, and the keys of a mapping file."""
 
 from bench.recording_set.mapping import Mapping
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 from docs.generate.markdown import code, table
 from docs.generate.schema import keys
 

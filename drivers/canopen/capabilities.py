@@ -13,6 +13,7 @@ from drivers.canopen.cia301.objects import (
     DriveObject,
 )
 from drivers.canopen.cia402.drive_units import UnitRow, read_units
+from drivers.canopen.cia402.homing import why_not
 from drivers.canopen.cia402.modes import ModeChoice
 from drivers.canopen.cia402.profiles import ObjectProfile, choose_profile
 from drivers.canopen.cia402.scale import DriveScale
@@ -38,6 +39,7 @@ class Capabilities:
         scale: of drive and joint.
         units: by the drive and by the configuration.
         told_counts: encoder counts of a motor turn, by the drive; NaN where it tells none.
+        no_homing: why it does not home by itself; "" where it does.
     """
 
     identity: Identity
@@ -48,6 +50,7 @@ class Capabilities:
     scale: DriveScale
     units: tuple[UnitRow, ...]
     told_counts: float
+    no_homing: str
 
 
 def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, identity: Identity) -> Capabilities:
@@ -66,7 +69,8 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     current = next((item for item in (profile.current, TORQUE) if item in present and scale.tells(item)), None)
     rows = (*units.rows, UnitRow("motor current of 1000 permille torque in A", _told(table, profile), rated_a))
     modes = ModeChoice(table, settings, scale).choose()
-    return Capabilities(identity, profile, present, current, modes, scale, rows, units.told_counts)
+    no_homing = why_not(table, scale, VELOCITY in present) if settings.homing else "no way of homing was configured"
+    return Capabilities(identity, profile, present, current, modes, scale, rows, units.told_counts, no_homing)
 
 
 def _rated_current_a(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import isnan, nan
 from typing import Final
 
-from drivers.canopen.cia301.bus_load import cycle_s
+from drivers.canopen.cia301.period import cycle_s
 from drivers.canopen.cia402.power_stage import SWITCH_OFF_S
 from drivers.canopen.cia402.state_machine import State
 from drivers.canopen.session import Session
@@ -13,13 +13,14 @@ from drivers.contract import Description, FoundTable, Watchdog
 
 _SOME_S: Final = 1.0  # of whatever else a call takes
 _CALL_QUESTIONS: Final = 4  # that are asked in a call, where the drive is slow to answer
+_HOMING_QUESTIONS: Final = 16  # more, as it is told how to home
 _OPEN_S: Final = 12.0  # opening the bus, braking what was left on, the trial cycles
 _OPEN_QUESTIONS: Final = 60  # of those when a drive is opened, which are answered late
 
 
 def longest_call_s(settings: CanopenSettings, tries_guard: bool) -> float:
     """By then every call has returned [s]: enabling is the longest, above all with a trial of the watchdog."""
-    questions_s = _CALL_QUESTIONS * settings.sdo_answer_s
+    questions_s = (_CALL_QUESTIONS + (_HOMING_QUESTIONS if settings.homing else 0)) * settings.sdo_answer_s
     enabling_s = _SOME_S + questions_s + settings.enable_s + settings.mode_s + SWITCH_OFF_S
     trial_s = 2.0 * settings.watchdog_s + settings.fault_reset_s + settings.enable_s
     return enabling_s + (trial_s if tries_guard else 0.0)

@@ -11,13 +11,14 @@ from drivers.canopen.cia301.period import check_bus_load, check_period
 from drivers.canopen.cia301.sync_cycle import CycleCounts
 from drivers.canopen.cia402.demand import Demand
 from drivers.canopen.cia402.drive_units import UnitRow
+from drivers.canopen.cia402.homing import HomingDemand
 from drivers.canopen.cia402.power_stage import PowerStage
 from drivers.canopen.cia402.state_machine import State, state_of, status_of, towards_standstill
 from drivers.canopen.description import describe
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Description, Inspection, Mode, Sample, Status
-from drivers.errors import DriveConfigurationError, DriveError, DriveFault
+from drivers.errors import DriveConfigurationError, DriveError, DriveFault, DriveStateError
 from drivers.joint import JointScale
 from drivers.refusal import check_mode, not_enabled, not_open, switched_itself_off
 
@@ -42,7 +43,7 @@ class CanopenDrive:
         self._link: CanLink | None = None
         self._session: Session | None = None
         self._power: PowerStage | None = None
-        self._demand: Demand | None = None
+        self._demand: Demand | HomingDemand | None = None
         self._mode = Mode.OFF
         self._stopping = False
 
@@ -103,15 +104,15 @@ class CanopenDrive:
                 link.close()
 
     def enable(self, mode: Mode) -> None:
-        """Power the stage for a mode, with zero demand; in POSITION that is the present position.
+        """Power the stage for a mode, with zero demand; in POSITION that is the present position, in HOME no search.
 
         Raises:
-            DriveConfigurationError: the drive does not have the mode, or refuses it.
+            DriveConfigurationError: the drive does not have the mode, or refuses it; in HOME, what it lacks.
             DriveStateError: it is not open, has a fault, or does not switch on.
             WatchdogError: its watchdog cannot be set.
         """
         session, power = self._opened("enable")
-        check_mode(self._device, mode, frozenset(session.found.modes))
+        self._check_mode(session, mode)
         self._mode, self._stopping = Mode.OFF, False
         try:
             self._demand = power.switch_on(mode)
@@ -224,7 +225,12 @@ class CanopenDrive:
         session.run(demand.pdo.cob_id, payload)
         if power.state is not State.ENABLED:
             raise self._switched_off(session, power)
-        return session.sample(status_of(power.state))
+        sample = session.sample(status_of(power.state))
+        if not isinstance(demand, HomingDemand):
+            return sample
+        if demand.failed(session.statusword):
+            raise self._not_homed(session)
+        return sample._replace(homed=demand.attained(session.statusword))
 
     def _exchange_off(self) -> Sample:
         session, power = self._opened("exchange")
@@ -244,7 +250,24 @@ class CanopenDrive:
             raise not_open(self._device, call)
         return self._session, self._power
 
-    def _check_enabled(self, session: Session, power: PowerStage, mode: Mode) -> Demand:
+    def _check_mode(self, session: Session, mode: Mode) -> None:
+        if mode is not Mode.HOME:
+            check_mode(self._device, mode, frozenset(session.found.modes))
+        elif session.found.no_homing:
+            raise DriveConfigurationError(
+                self._device,
+                f"does not home by itself: {session.found.no_homing}; or have the bench look for the end stop "
+                "(drive.homing.method = 'end-stop')",
+            )
+
+    def _not_homed(self, session: Session) -> DriveStateError:
+        return DriveStateError(
+            self._device,
+            f"its homing ended with an error (bit 13 of the statusword, 0x{session.statusword:04X}): home was not "
+            "found; look at its homing method, its switches and the way that the joint is free to go",
+        )
+
+    def _check_enabled(self, session: Session, power: PowerStage, mode: Mode) -> Demand | HomingDemand:
         """The demand that goes on, where a mode is enabled."""
         if mode is self._mode and self._demand is not None:
             return self._demand

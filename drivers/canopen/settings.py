@@ -7,6 +7,7 @@ import can
 
 from drivers.can_bus.settings import BITRATES, BusSettings
 from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
+from drivers.canopen.cia402.homing import DriveHoming
 from drivers.canopen.cia402.profiles import PROFILES
 from drivers.canopen.cia402.units import VELOCITY_UNITS
 from drivers.errors import DriveConfigurationError
@@ -44,6 +45,7 @@ class CanopenSettings:
         host_node_id: node ID under which the host's heartbeat is sent; None for one that nobody on the bus uses.
         listen_s: how long the bus is listened to for other hosts before anything is sent [s].
         brake: the output that this host sets the holding brake by; None where it sets none.
+        homing: how the drive homes by itself; None where it is not to.
         torque_off: the bit that tells that safe torque off is active; None where the drive has none.
         vendor_id, product_code, serial_number: what 0x1018 has to say; None for anything.
     """
@@ -73,6 +75,7 @@ class CanopenSettings:
     host_node_id: int | None = None
     listen_s: float = 0.25
     brake: BrakeBit | None = None
+    homing: DriveHoming | None = None
     torque_off: TorqueOffBit | None = None
     vendor_id: int | None = None
     product_code: int | None = None

@@ -57,6 +57,9 @@ class Axis:
         parameters: the joint, and what the device measures of it.
         law: of the device.
         seed: of the plant's own randomness.
+
+    Attributes:
+        zero_counts: count that the encoder would show at the 0 of now, had it never begun anew.
     """
 
     def __init__(self, parameters: PlantParameters, law: Law, seed: int = 0) -> None:
@@ -65,6 +68,7 @@ class Axis:
         self.script = FaultScript()
         self.applied = OFF
         self.power = Power(False, 0.0)
+        self.zero_counts = 0.0
         self._law = law
         self._play = FaultPlay(self.script, self.plant)
         self._overload = OverloadMeter(parameters.overload)
@@ -112,7 +116,11 @@ class Axis:
 
     def counts(self) -> int:
         """Return the encoder's count."""
-        return round(self.seen.position_rad / self._count_rad)
+        return round(self.seen.position_rad / self._count_rad - self.zero_counts)
+
+    def count_from(self, counts: float) -> None:
+        """Have what is some counts now be 0."""
+        self.zero_counts += counts
 
     def counts_per_s(self) -> float:
         """Return the encoder's speed, counted over its window [1/s]."""

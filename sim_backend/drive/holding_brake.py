@@ -1,25 +1,6 @@
-"""A holding brake on the motor shaft, its coil, and when the brake follows it."""
+"""The coil of a holding brake, and when the brake follows it."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from sim_backend.plant.component import Component, quantity
-
-if TYPE_CHECKING:  # a plant is made with one
-    from sim_backend.plant.plant import Plant
-
-
-@dataclass(frozen=True, kw_only=True)
-class Brake(Component):
-    """Spring-applied: without current in its coil it holds, as dry friction of so much torque at the motor shaft.
-
-    Without torque there is none. It takes time either way: the coil has to pull the armature off the springs, and the
-    field has to decay before they push it back.
-    """
-
-    torque_n_m: float = quantity("N m", at_least=0, default=0.0)
-    release_s: float = quantity("s", at_least=0, default=0.05)
-    engage_s: float = quantity("s", at_least=0, default=0.03)
+from sim_backend.plant.plant import Plant
 
 
 class HoldingBrake:
@@ -32,7 +13,7 @@ class HoldingBrake:
         is_released: whether the coil has current.
     """
 
-    def __init__(self, plant: "Plant") -> None:
+    def __init__(self, plant: Plant) -> None:
         self._plant = plant
         self.is_released = False
         self._follows_s = 0.0

@@ -178,3 +178,12 @@ class FaultScript:
     def trip(self, time_s: float) -> Trip | None:
         """Return what switches the drive off at a time, or None."""
         return self.holding(Trip, time_s)  # type: ignore[type-abstract]
+
+
+def tripped(cause: Trip | None, hot: int, over_current: int, under_voltage: int, other: int) -> int:
+    """The error of a cause, of those that a kind has; a supply that a hand has cut is a voltage that is too low."""
+    if isinstance(cause, OverTemperature):
+        return hot
+    if isinstance(cause, OverCurrent):
+        return over_current
+    return under_voltage if cause is None or isinstance(cause, SupplyLost) else other

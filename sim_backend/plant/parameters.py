@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
-from sim_backend.drive.holding_brake import Brake
 from sim_backend.drive.overload import Overload
 from sim_backend.environment.end_stops import EndStops, Wall
 from sim_backend.environment.operator import Operator
@@ -22,6 +21,7 @@ from sim_backend.mechanisms.friction.lubricant import Lubricant
 from sim_backend.mechanisms.friction.periodic_friction import PeriodicFriction
 from sim_backend.mechanisms.friction.run_in import RunIn
 from sim_backend.mechanisms.friction.viscous_asymmetry import ViscousAsymmetry
+from sim_backend.mechanisms.joint.brake import Brake
 from sim_backend.mechanisms.joint.clutch import Clutch
 from sim_backend.mechanisms.joint.contact import Gear
 from sim_backend.mechanisms.joint.eccentricity import Eccentricity

@@ -1,6 +1,6 @@
 """A drawn joint: its physics, its drive, its sensors, its trials, what its owner knows, and what it hides."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Literal
 
@@ -121,6 +121,11 @@ class DrawnJoint:
     trials: tuple[Trial, ...]
     bounds: Bounds
     hidden: tuple[Hidden, ...]
+
+    def by_the_book(self) -> "DrawnJoint":
+        """The same joint with friction that the base model can state: viscous, of one Coulomb level, even."""
+        laws = {"viscous_power": 1.0, "film_rad_s": 0.0, "second_level": 0.0, "path_scatter": 0.0}
+        return replace(self, level="textbook", physics=self.physics._replace(**laws))
 
     def physics_of(self, trial: Trial, without: frozenset[str] = frozenset()) -> Physics:
         """The joint under the conditions of a trial; with some of what it hides left out."""

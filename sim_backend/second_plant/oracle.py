@@ -1,50 +1,41 @@
 """How far a mechanism stands out of recordings: what an ideal judge could know, who has both joints to compare.
 
-The joint is recorded without noise, with the mechanism and without. Of both efforts, the base model over the motion
-that the encoder shows takes what it can; the difference D of what is left is the mechanism's evidence.
+The joint is recorded without noise, and led without the mechanism along the same motion (`led`). Of both efforts, the
+base model over the motion that the encoder shows takes what it can; the difference D of what is left is the mechanism's
+evidence.
 
     s = rms that the base model leaves of the joint without the mechanism, with noise, in steady motion, near
         reversals, and where the current is commanded, each for itself
-    r = sqrt(mean((D / s)^2) - mean((D0 / s)^2))
+    r = sqrt(mean((D / s)^2))
     lambda = n / v ln(1 + r^2),   v = (1 + rho_1) / (1 - rho_1) of that remainder (rows per independent row)
     d' = sqrt(lambda (1 - rho^2)), rho the largest correlation of D / s with another mechanism's columns
-
-D0 is the difference of two recordings without the mechanism, of which one has NUDGE more dry friction. Any model takes
-that, but a joint that sticks and breaks away does so some milliseconds later: so much differs whatever is changed.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim_backend.second_plant.columns import Rows, base_columns, rival_columns
 from sim_backend.second_plant.joint import DrawnJoint
-from sim_backend.second_plant.recording import record
+from sim_backend.second_plant.recording import record, record_beside
 
 FloatArray = NDArray[np.float64]
 MOST_CORRELATED = 0.97
-NUDGE = 1e-3  # of dry friction
 STRATA = 3
 
 
 @dataclass(frozen=True)
 class Floor:
-    """What the base model leaves of a joint without the mechanism.
+    """What the base model leaves of a joint without a mechanism.
 
     Attributes:
         left: noisy, root mean square of each stratum, in the effort's unit, shape (3,).
         dependent: rows per independent row.
-        rows: without noise.
-        remainder: of these over `left`, shape (n,); 0 where the joint rests.
-        divergence: power per row of D0 over `left`.
     """
 
     left: FloatArray
     dependent: float
-    rows: Rows
-    remainder: FloatArray
-    divergence: float
 
 
 @dataclass(frozen=True)
@@ -65,31 +56,26 @@ class Evidence:
 
 
 def floor_of(joint: DrawnJoint, name: str) -> Floor:
-    """Record a joint without one of its mechanisms, as it is and quiet.
+    """Record a joint without one of its mechanisms, as it is.
 
     Args:
         joint: drawn.
         name: of the mechanism.
     """
-    without = frozenset({name})
-    noisy = Rows.of(record(joint, without=without), joint.scales)
-    quiet = Rows.of(record(joint, quiet=True, without=without), joint.scales)
+    rows = Rows.of(record(joint, without=frozenset({name})), joint.scales)
     left = np.ones(STRATA)
     for _ in range(2):  # least squares, then weighted by what each stratum leaves
-        remainder = _remainder(noisy, joint, left) * left[noisy.stratum]
+        remainder = _remainder(rows, joint, left) * left[rows.stratum]
         for stratum in range(STRATA):
-            own = remainder[noisy.moving & (noisy.stratum == stratum)]
+            own = remainder[rows.moving & (rows.stratum == stratum)]
             left[stratum] = float(np.sqrt(np.mean(own**2))) if len(own) else 1.0
-    white = (remainder / left[noisy.stratum])[noisy.moving]
+    white = (remainder / left[rows.stratum])[rows.moving]
     one = float(np.clip(white[:-1] @ white[1:] / (white @ white), 0.0, MOST_CORRELATED))
-    remainder = _remainder(quiet, joint, left)
-    nudged = Rows.of(record(joint, quiet=True, without=without, friction_factor=1.0 + NUDGE), joint.scales)
-    shown, _ = _shown(nudged, joint, left, (quiet, remainder))
-    return Floor(left, (1.0 + one) / (1.0 - one), quiet, remainder, float(np.mean(shown**2)))
+    return Floor(left, (1.0 + one) / (1.0 - one))
 
 
 def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Evidence:
-    """How far one of a joint's mechanisms stands out of a base model with nothing else missing.
+    """How far the one mechanism that a joint hides stands out of a base model with nothing else missing.
 
     Args:
         joint: drawn.
@@ -97,11 +83,9 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
         floor: of the same joint without it, where it is known.
     """
     floor = floor or floor_of(joint, name)
-    rows = Rows.of(record(joint, quiet=True), joint.scales)
+    rows, shown, basis = _shown(joint, replace(joint, hidden=()), floor)
     moving, weight = rows.moving, 1.0 / floor.left[rows.stratum]
-    shown, basis = _shown(rows, joint, floor.left, (floor.rows, floor.remainder))
-    power = max(float(np.mean(shown**2)) - floor.divergence, 0.0)
-    ratio, independent = float(np.sqrt(power)), len(shown) / floor.dependent
+    ratio, independent = float(np.sqrt(np.mean(shown**2))), len(shown) / floor.dependent
     correlation, rival = 0.0, ""
     for other, columns in rival_columns(rows, joint.scales).items():
         alike = 0.0 if other == name else _correlation(shown, basis, (columns * weight[:, None])[moving])
@@ -111,15 +95,27 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
     return Evidence(ratio, float(np.sqrt(strength * (1.0 - correlation**2))), rival, independent)
 
 
-def _shown(
-    rows: Rows, joint: DrawnJoint, left: FloatArray, other: tuple[Rows, FloatArray]
-) -> tuple[FloatArray, FloatArray]:
-    """How much more the base model leaves than of other rows, where both move; and the basis of that model."""
-    remainder, (other_rows, other_remainder) = _remainder(rows, joint, left), other
-    difference = np.where(rows.moving & other_rows.moving, remainder - other_remainder, 0.0)[rows.moving]
-    weight = 1.0 / left[rows.stratum]
+def laws_ratio(joint: DrawnJoint, floor: Floor) -> float:
+    """The r of a joint's friction laws, as far as the base model does not have them, whatever else it hides.
+
+    Args:
+        joint: drawn.
+        floor: of the joint without what it hides.
+    """
+    if joint.level == "textbook":
+        return 0.0
+    plain = replace(joint, hidden=())
+    _, shown, _ = _shown(plain, plain.by_the_book(), floor)
+    return float(np.sqrt(np.mean(shown**2)))
+
+
+def _shown(joint: DrawnJoint, plain: DrawnJoint, floor: Floor) -> tuple[Rows, FloatArray, FloatArray]:
+    """Rows of a joint; what the base model leaves more of it than of a plain one, in motion; that model's basis."""
+    rows, led = (Rows.of(recorded, joint.scales) for recorded in record_beside(joint, plain))
+    weight = 1.0 / floor.left[rows.stratum]
     basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[rows.moving])
-    return difference - basis @ (basis.T @ difference), basis
+    shown = (_remainder(rows, joint, floor.left) - _remainder(led, joint, floor.left))[rows.moving]
+    return rows, shown - basis @ (basis.T @ shown), basis
 
 
 def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from sim_backend.second_plant.joint import DrawnJoint, Trial
+from sim_backend.second_plant.led import led
 from sim_backend.second_plant.physics import Physics
 from sim_backend.second_plant.protocol import KINDS, plan_of
 from sim_backend.second_plant.simulate import TICK_S, Traces, run
@@ -38,19 +39,33 @@ class SecondRecording:
     truth: Traces
 
 
-def record(
-    joint: DrawnJoint, quiet: bool = False, without: frozenset[str] = frozenset(), friction_factor: float = 1.0
-) -> list[SecondRecording]:
+def record(joint: DrawnJoint, quiet: bool = False, without: frozenset[str] = frozenset()) -> list[SecondRecording]:
     """Every trial of a joint.
 
     Args:
         joint: drawn.
         quiet: without measurement noise and without scatter from trial to trial.
         without: names of hidden mechanisms that are left out.
-        friction_factor: on dry friction, in every quiet trial.
     """
-    trials = [replace(trial, friction_factor=friction_factor) for trial in joint.trials] if quiet else joint.trials
-    return [_recorded(joint, trial, quiet, without) for trial in trials]
+    return [
+        _recorded(joint, trial, simulated(joint, trial, without)[1], quiet)
+        for trial in (_even(joint) if quiet else joint.trials)
+    ]
+
+
+def record_beside(joint: DrawnJoint, plain: DrawnJoint) -> tuple[list[SecondRecording], list[SecondRecording]]:
+    """Every trial of a joint, quiet, and what another one would need for the same motion.
+
+    Args:
+        joint: drawn.
+        plain: the same joint, hiding nothing.
+    """
+    found = []
+    for trial in _even(joint):
+        _, traces = simulated(joint, trial)
+        needed = led(plain.physics_of(trial), traces.reading_rad)
+        found.append((_recorded(joint, trial, traces, True), _recorded(plain, trial, needed, True)))
+    return [one for one, _ in found], [other for _, other in found]
 
 
 def simulated(joint: DrawnJoint, trial: Trial, without: frozenset[str] = frozenset()) -> tuple[Physics, Traces]:
@@ -64,8 +79,12 @@ def simulated(joint: DrawnJoint, trial: Trial, without: frozenset[str] = frozens
     return physics, run(physics, joint.control._replace(tether_rad=tether_rad), plan)
 
 
-def _recorded(joint: DrawnJoint, trial: Trial, quiet: bool, without: frozenset[str]) -> SecondRecording:
-    _, traces = simulated(joint, trial, without)
+def _even(joint: DrawnJoint) -> list[Trial]:
+    """Its trials without scatter of friction between them."""
+    return [replace(trial, friction_factor=1.0) for trial in joint.trials]
+
+
+def _recorded(joint: DrawnJoint, trial: Trial, traces: Traces, quiet: bool) -> SecondRecording:
     random = np.random.default_rng((trial.seed, 3))
     sensors, times = joint.sensors, np.arange(len(traces.reading_rad), dtype=np.float64) * TICK_S
     stamps = _stamps(joint, float(times[-1]), random)

@@ -13,10 +13,7 @@ from bench.evaluation.blind.calibration import (
 )
 from bench.evaluation.blind.confusion import confusions, rival_figures
 from bench.evaluation.blind.figures import Figure, figures
-from bench.evaluation.blind.judge import Result
-from bench.evaluation.blind.lab_answer import LabAnswer
-from bench.evaluation.blind.oracle import Standing
-from bench.evaluation.blind.settling import Settled
+from bench.evaluation.blind.result import LabAnswer, Result, Settled, Standing
 from bench.evaluation.blind.smallest import smallest_found
 
 

@@ -1,10 +1,8 @@
 from pathlib import Path
 
 from bench.evaluation.blind.calibration import interval
-from bench.evaluation.blind.judge import Result
-from bench.evaluation.blind.lab_answer import LabAnswer
-from bench.evaluation.blind.oracle import Standing
 from bench.evaluation.blind.pictures import sections_of, write_page
+from bench.evaluation.blind.result import LabAnswer, Result, Standing
 
 
 def _complete(key: str, p_value: float) -> Result:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from bench.evaluation.blind import recorded
+from bench.evaluation.blind.figures import ratio_of
 from bench.evaluation.blind.items import FAMILIES, MODERATE, draw_item, items_of, wanted_ratio
-from bench.evaluation.blind.recorded import NEAR, Recorded, Scale, ratio_of
+from bench.evaluation.blind.recorded import NEAR, Recorded, Scale
 from bench.evaluation.challenge.hidden_plant import DrawnPlant
 
 HOSE = next(item for item in items_of(3, 2) if item.family == "outside-moderate" and item.turn == 1)

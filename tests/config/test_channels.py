@@ -10,7 +10,7 @@ from bench.config.quantities import unit_of
 from bench.control.cycle import VALUES, Action, Reading, row_of, row_reader
 from bench.recording_set.stream import stream_of_trial
 from bench.store import Store
-from compensator.lab.recordings.channels import CHANNELS as LAB_CHANNELS
+from compensator.lab.recordings.recording import CHANNELS as LAB_CHANNELS
 from drivers.contract import Command, Mode, Sample, Status
 
 SAMPLE = Sample(7.0, 0.01, 0.5, 0.6, 0.7, 0.8, 24.0, 30.0, Status.ENABLED)

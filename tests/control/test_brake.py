@@ -8,7 +8,7 @@ import pytest
 from bench.config.channels import RECORDED
 from bench.config.configuration import parse_configuration
 from bench.control.clock import VirtualClock
-from bench.control.cycle import OFF
+from bench.control.cycle import OFF, Action, Reading
 from bench.control.drive_factory import make_equipment
 from bench.control.ending import StopRequest
 from bench.control.joint import ControlledJoint
@@ -20,7 +20,7 @@ from bench.control.servo import CurrentServo
 from bench.errors import ConfigurationError
 from bench.experiments.parts.joint import Joint
 from bench.experiments.registry import find_kind, parse_parameters
-from drivers.contract import Status
+from drivers.contract import Command, Mode, Sample, Status
 from tests.control.fake_drive import FakeDrive, ListSink
 from tests.control.test_sim_faults import RIG
 from tests.experiments.bench_run import Ran
@@ -132,6 +132,14 @@ def test_the_order_and_what_is_waited_for():
     assert ran.outcome.results["held_rad"] == pytest.approx(RAISED_RAD, abs=0.01)
     assert ran.fallen_rad < 0.01
     assert ran.plant.truth().arm_rad == pytest.approx(RAISED_RAD, abs=0.03)
+
+
+def test_a_drive_that_is_to_home_holds_the_joint_meanwhile_and_does_not_search():
+    bench = configured(OUTPUT)
+    brake = brake_of(bench, make_equipment(bench).drive)
+    reading = Reading(0.0, Sample(*[0.0] * 8, Status.DISABLED), 0.0, 0.0)
+    brake.watch(reading, Action(Command(Mode.HOME, 1.0)), "")
+    assert brake.hold(reading).command == Command(Mode.HOME, 0.0)
 
 
 def test_a_bench_that_does_not_know_of_the_brake_moves_nothing():

@@ -32,7 +32,8 @@ def test_links_lead_to_files(file: Path) -> None:
         path = link.partition("#")[0]
         if path and ":" not in link:
             target = (file.parent / path).resolve()
-            assert target.exists() or GENERATED in target.parents, link
+            is_written_later = GENERATED in target.parents and "`make docs`" in text_of(file)
+            assert target.exists() or is_written_later, link
 
 
 @pytest.mark.parametrize("folder", ["bench", "compensator", "drivers", "sim_backend", "tests", "docs"])

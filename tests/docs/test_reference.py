@@ -9,7 +9,7 @@ from bench.cli.commands import COMMANDS
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import KINDS
 from compensator.lab.effects.catalogue import catalogue
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 from docs.generate import command_line, docstrings, effects, experiments, pages, recording_set, rest_interface, site
 from docs.generate.schema import keys
 from docs.generate.settings import bench_toml

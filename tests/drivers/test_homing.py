@@ -1,14 +1,15 @@
 """`friction-bench doctor --home` on a simulated device whose count begins anew with each power cycle."""
 
 import json
-from math import radians
+from math import pi, radians
 
 import pytest
 import tomli_w
 
-from bench.config.configuration import default_configuration, read_configuration
+from bench.config.configuration import default_configuration, parse_configuration, read_configuration
 from bench.errors import ConfigurationError
 from bench.experiments.kinds import homing
+from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
 from sim_backend.devices.roboclaw.serve import RoboClawSettings, serve_roboclaw
 from tests.cli.conftest import command  # noqa: F401  a fixture
 
@@ -141,3 +142,100 @@ def test_an_absolute_encoder_moves_nothing(bench, device, tmp_path):
     assert "nothing was moved" in found.output.replace("\n", " ")
     assert device.device.axis.plant.truth().arm_rad == 0.0
     assert zero(tmp_path) == 0.0
+
+
+ON_CAN = {"family": "homing", "interface": "slcan"}
+
+
+@pytest.fixture
+def can_device():
+    stops = {"present": True, "upper_rad": STOP_RAD, "lower_rad": -STOP_RAD}
+    with serve_canopen(CanOpenSettings(plant={"end_stops": stops}, **ON_CAN)) as running:
+        yield running
+
+
+@pytest.fixture
+def can_bench(command, can_device, tmp_path):  # noqa: F811
+    """Runs `friction-bench --config bench.toml ...` on a CiA 402 drive that homes by itself."""
+
+    def made(homing, **drive):
+        values = default_configuration().model_dump(mode="json", exclude_none=True)
+        values["control"]["period_s"] = 0.02
+        values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+        values["drive"] = drive | {
+            "kind": "canopen", "interface": "slcan", "channel": can_device.path, "node_id": can_device.node_id,
+            "side_channel": can_device.side_channel, "watchdog_s": 1.0, "answer_s": 0.6, "homing": homing,
+        }  # fmt: skip
+        (tmp_path / "bench.toml").write_text(tomli_w.dumps(values))
+        return lambda *words: command("--config", "bench.toml", *words)
+
+    return made
+
+
+BY_DRIVE = {"method": "drive", "drive_method": -2, "angle_rad": STOP_RAD, "speed_rad_s": 0.5, "current_a": 0.8}
+
+
+def test_the_drive_homes_at_the_stop_by_itself(can_bench, can_device, tmp_path):
+    run = can_bench(BY_DRIVE)
+    assert run("doctor", "--move").exit_code == 0
+    spoil(tmp_path)
+    found = run("doctor", "--home")
+    assert found.exit_code == 0, found.output
+    assert "homing: completed" in found.output
+    # by the drive's count the stop is 0 now, and the joint stands at the angle that was said
+    assert zero(tmp_path) == pytest.approx(-STOP_RAD, abs=1e-6)
+    axis = can_device.device.axis
+    assert axis.zero_counts == pytest.approx(STOP_RAD * 4096 * 20 / (2.0 * pi), rel=0.02)
+    assert not is_powered(can_device)
+
+
+def test_the_index_pulse_gives_the_same_zero_wherever_the_arm_hung(can_bench, can_device, tmp_path):
+    run = can_bench(BY_DRIVE | {"drive_method": 34, "angle_rad": 0.1})
+    assert run("doctor", "--move").exit_code == 0
+    homes = []
+    for _ in range(2):
+        found = run("doctor", "--home")
+        assert found.exit_code == 0, found.output
+        assert zero(tmp_path) == pytest.approx(-0.1, abs=1e-6)
+        homes.append(can_device.device.axis.zero_counts)
+    assert all(home % 4096 == 0 for home in homes)
+
+
+def test_a_homing_of_the_drive_that_goes_too_far_is_ended_and_writes_nothing(can_bench, can_device, tmp_path):
+    run = can_bench(BY_DRIVE | {"travel_rad": 0.4})
+    assert run("doctor", "--move").exit_code == 0
+    spoil(tmp_path)
+    found = run("doctor", "--home")
+    assert found.exit_code != 0
+    assert "0.4 rad are allowed" in found.output.replace("\n", " ")
+    assert zero(tmp_path) == WRONG_RAD
+    assert not is_powered(can_device)
+
+
+def test_a_homing_error_of_the_drive_is_said_and_writes_nothing(can_bench, can_device, tmp_path):
+    # the arm is held with no index pulse before it, and the drive gives no more than its limit
+    run = can_bench(BY_DRIVE | {"drive_method": 34}, current_limit_a=0.7)
+    assert run("doctor", "--move").exit_code == 0
+    spoil(tmp_path)
+    can_device.device.axis.hold_arm(0.1)
+    found = run("doctor", "--home")
+    assert found.exit_code != 0, found.output
+    assert "its homing ended with an error" in found.output.replace("\n", " ")
+    assert zero(tmp_path) == WRONG_RAD
+
+
+def test_a_method_that_the_drive_does_not_have_is_named(can_bench, tmp_path):
+    run = can_bench(BY_DRIVE | {"drive_method": 17})
+    assert run("doctor", "--move").exit_code == 0
+    found = run("doctor", "--home")
+    assert found.exit_code != 0
+    assert "homing method (0x6098:00)" in found.output.replace("\n", " ")
+    assert zero(tmp_path) == 0.0
+
+
+def test_a_number_is_asked_for():
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    values["drive"] = {"kind": "canopen", "interface": "virtual", "channel": "c", "node_id": 5}
+    values["drive"]["homing"] = {"method": "drive"}
+    with pytest.raises(ConfigurationError, match="drive_method"):
+        parse_configuration(values, "bench.toml")

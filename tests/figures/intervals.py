@@ -22,7 +22,7 @@ from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.evaluation.figures.coverage import Share, held
 from bench.evaluation.figures.measure import APART, CALIBRATION_SEED, RIG_SEED
 from bench.evaluation.figures.rigs import drawn_rig, with_seed
-from bench.evaluation.figures.trials import CALIBRATION, RIGHT_ANGLE_RAD, calibrated, drawn_loads
+from bench.evaluation.figures.trials import AT_REST, RIGHT_ANGLE_RAD, calibrated_at_rest, drawn_loads
 from bench.evaluation.paper.measurements import Measurement, measure, quietly
 from bench.store import Store
 
@@ -65,18 +65,16 @@ def law() -> Iterator[str]:
         yield f"{trials:6} {100.0 * one:12.1f} % {100.0 * float(binom.sf(17, 20, one)):13.1f} %"
 
 
-def measurements(sides: int) -> tuple[Measurement, ...]:
+def at_rest(sides: int) -> Measurement:
     """What a rig is calibrated from, with loads on both sides or on one, as many trials either way."""
     other_rad = -RIGHT_ANGLE_RAD if sides == 2 else RIGHT_ANGLE_RAD
-    *curves, rest = CALIBRATION
-    angles_rad = (0.0, RIGHT_ANGLE_RAD, other_rad)
-    return (*curves, Measurement(rest.kind, {**rest.parameters, "angles_rad": angles_rad}))
+    return Measurement(AT_REST.kind, {**AT_REST.parameters, "angles_rad": (0.0, RIGHT_ANGLE_RAD, other_rad)})
 
 
 def shares_of(task: tuple[BenchConfiguration, int, int, int]) -> tuple[Share, Share]:
     """Trials at random loads and angles after one calibration of a rig: at angles above 0, and below."""
     bench, calibration_seed, seed, sides = task
-    known = with_seed(calibrated(with_seed(bench, calibration_seed), measurements(sides)), seed)
+    known = with_seed(calibrated_at_rest(with_seed(bench, calibration_seed), at_rest(sides)), seed)
     with TemporaryDirectory() as folder, Store.open(f"sqlite:///{Path(folder) / 'trials.sqlite'}") as store:
         rows = measure(known, store, drawn_loads(seed), quietly).results["rows"]
     above, below = ([row for row in rows if (row["angle_rad"] > 0.0) is up] for up in (True, False))

@@ -11,9 +11,9 @@ from bench.config.sections import RestSettings
 from bench.evaluation.figures import figures_table, rigs
 from bench.evaluation.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
 from bench.evaluation.figures.coverage import Share, median_interval, reached_by_most, true_load_a
-from bench.evaluation.figures.rigs import drawn_rig
+from bench.evaluation.figures.rigs import drawn_rig, with_seed
 from bench.evaluation.figures.table import COLUMNS
-from bench.evaluation.figures.trials import SeedResults, drawn_loads
+from bench.evaluation.figures.trials import SeedResults, calibrated, calibrated_at_rest, drawn_loads
 from sim_backend.plant.presets import paper
 
 CONFIGURATION = default_configuration()
@@ -284,3 +284,8 @@ def test_second_differences_of_an_unknown_place_spread_as_the_bound_says():
     places = np.random.default_rng(3).uniform(-0.5, 0.5, size=(3, 200_000))
     spread = np.std(4.0 * (places[0] - 2.0 * places[1] + places[2]))
     assert spread == pytest.approx(SLACK, rel=0.01)
+
+
+def test_a_calibration_at_rest_tells_the_same_as_the_whole_one():
+    bench = with_seed(drawn_rig(CONFIGURATION, 5), 3)
+    assert calibrated_at_rest(bench).rest == calibrated(bench).rest is not None

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from bench.config.configuration import default_configuration
-from bench.runs.queue import Conductor
+from bench.runs.queue.conductor import Conductor
 from bench.runs.runner import Runner
 from bench.store import Store
 from tests.queue.waiting import wait_for

@@ -12,7 +12,10 @@ import tempfile
 from contextlib import closing
 from typing import Any
 
-from bench.runs.queue import Campaign, Conductor, Order, plan_campaign, queue_state
+from bench.runs.queue.campaign import Campaign, plan_campaign
+from bench.runs.queue.conductor import Conductor
+from bench.runs.queue.items import Order
+from bench.runs.queue.overview import queue_state
 from bench.runs.runner import Runner
 from bench.store import Store
 from bench.store.tables.queue import QueueItem

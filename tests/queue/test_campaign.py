@@ -7,8 +7,7 @@ from pydantic import ValidationError
 
 from bench.config.configuration import default_configuration
 from bench.errors import ConfigurationError, LimitError, ParameterError, UnknownKindError
-from bench.runs.queue import Campaign, plan_campaign
-from bench.runs.queue.campaign import read_campaign
+from bench.runs.queue.campaign import Campaign, plan_campaign, read_campaign
 from bench.runs.queue.items import fewest_changes, load_changes
 from bench.store.tables.queue import NewItem
 

@@ -10,8 +10,9 @@ from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
 from bench.errors import BusyError, LimitError
 from bench.runs.lease import LeaseHeldError
-from bench.runs.queue import Conductor, Order, queue_state
-from bench.runs.queue.conductor import RESTARTED
+from bench.runs.queue.conductor import RESTARTED, Conductor
+from bench.runs.queue.items import Order
+from bench.runs.queue.overview import queue_state
 from bench.runs.runner import Runner
 from bench.store.errors import NotFoundError, StoreStateError
 from tests.control.fake_drive import FakeDrive
@@ -198,7 +199,7 @@ def test_what_ran_when_the_process_died_is_as_its_record_says(runner, store):
 
 
 def _item():
-    from bench.runs.queue import checked_item
+    from bench.runs.queue.items import checked_item
 
     return checked_item(steps(), default_configuration())
 

@@ -12,7 +12,8 @@ import pytest
 from bench.config.configuration import default_configuration
 from bench.runs.lab_work import TAKEN_OUT, LabWork
 from bench.runs.lease import Lease
-from bench.runs.queue import Conductor, Order
+from bench.runs.queue.conductor import Conductor
+from bench.runs.queue.items import Order
 from bench.runs.runner import Runner
 from bench.store import Store
 from bench.store.errors import StoreUnreachableError

@@ -18,7 +18,7 @@ from bench.recording_set import (
     stream_of_trial,
 )
 from bench.store import Store, Trial
-from compensator.lab.recordings.channels import CHANNELS as CHANNELS_OF_THE_LAB
+from compensator.lab.recordings.recording import CHANNELS as CHANNELS_OF_THE_LAB
 
 duckdb = pytest.importorskip("duckdb", reason="needs duckdb: pip install 'friction-bench[test]'")
 pandas = pytest.importorskip("pandas", reason="needs pandas: pip install 'friction-bench[test]'")

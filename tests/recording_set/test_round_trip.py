@@ -19,8 +19,7 @@ from bench.recording_set import (
     write_recording_set,
 )
 from bench.store import Store
-from compensator.lab.recordings.channels import CHANNELS
-from compensator.lab.recordings.recording import Event, Recording
+from compensator.lab.recordings.recording import CHANNELS, Event, Recording
 from tests.recording_set.test_values import CONDITIONS
 
 RIG = Rig(

@@ -5,7 +5,7 @@ import pytest
 from bench.recording_set import Mapping
 from bench.recording_set.text.suggestions import _UNITS, suggestion
 from bench.recording_set.text.toml_file import parse_toml
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 
 
 @pytest.mark.parametrize(

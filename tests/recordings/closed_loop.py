@@ -59,7 +59,7 @@ def simulated(fit: Fit, logs: Logs) -> FloatArray:
 def _effort_law(fit: Fit) -> Callable[..., FloatArray]:
     """Effort at a position, velocity, acceleration and direction, given the acceleration that the load has."""
     pattern = fit.dataset.trials[0].motion
-    beyond = (effort_per_torque(fit) or 0.0) * pattern.load_inertia_kg_m2
+    beyond = (effort_per_torque(fit.dataset, fit.terms) or 0.0) * pattern.load_inertia_kg_m2
 
     def effort_of(
         position: FloatArray, velocity: FloatArray, acceleration: float, way: float, of_load: FloatArray

@@ -16,10 +16,11 @@ import pytest
 from bench.config.channels import RECORDED
 from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.errors import BusyError, LimitError, ParameterError, PromptError, UnknownKindError
-from bench.runs.bench_process import RemoteRunner, process
+from bench.runs.bench_process import process
 from bench.runs.bench_process.child import Child
 from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
 from bench.runs.bench_process.messages import error_of, failure_of
+from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.runs.bench_process.stop_line import LineStop, StopLine
 from bench.runs.runner import Runner
 from bench.store import Store
@@ -206,7 +207,7 @@ def test_sigterm_to_the_bench_process_stops_the_joint_first(runner, store):
 SERVICE = """
 import sys, time
 from pathlib import Path
-from bench.runs.bench_process import RemoteRunner
+from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.store import Store
 from tests.runs.test_bench_process import configured
 

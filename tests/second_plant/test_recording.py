@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim_backend.second_plant.columns import Rows, base_columns
 from sim_backend.second_plant.draw import draw_joint
 from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint
-from sim_backend.second_plant.oracle import evidence
+from sim_backend.second_plant.oracle import evidence, floor_of, laws_ratio
 from sim_backend.second_plant.recording import record, simulated
+
+NOTHING = 0.04  # r of a joint that lacks nothing: within a tick it is led at an even speed
 
 
 def short(joint: DrawnJoint, trials: int = 8) -> DrawnJoint:
@@ -79,7 +82,7 @@ def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
 
     assert large > 3.0 * small
     assert evidence(winding, "hot_winding").detectability > 10.0
-    assert evidence(by_current, "hot_winding").ratio < 0.02
+    assert evidence(by_current, "hot_winding").ratio < NOTHING
 
 
 def test_an_unknown_mechanism_is_refused_by_name():
@@ -87,9 +90,41 @@ def test_an_unknown_mechanism_is_refused_by_name():
         draw_joint(1, ("nonsense",), (1.0,))
 
 
+@pytest.mark.parametrize("seed", range(200, 204))
+def test_a_joint_led_along_its_own_motion_needs_the_effort_that_it_had(seed):
+    joint = draw_joint(seed, level="foreign" if seed % 2 else "textbook")
+
+    assert evidence(joint, "").ratio < NOTHING
+
+
 def test_a_mechanism_too_small_to_show_has_no_evidence_though_each_run_sticks_at_other_moments():
     joint = short(draw_joint(9, ("backlash",), (1e-6,)))
     found, without = record(joint, quiet=True), record(joint, quiet=True, without=frozenset({"backlash"}))
 
     assert any(np.abs(one.effort - two.effort).max() > 0.0 for one, two in zip(found, without, strict=True))
-    assert evidence(joint, "backlash").ratio < 0.1
+    assert evidence(joint, "backlash").ratio < 0.1  # flanks give way a little, however small the gap
+
+
+def test_a_spring_stands_out_by_what_the_weight_does_not_take_of_its_torque():
+    joint = draw_joint(77, ("spring",), (2.0,))
+    floor, spring = floor_of(joint, "spring"), joint.physics_of(joint.trials[0]).spring_n_m_rad
+    rows = Rows.of(record(joint, quiet=True), joint.scales)
+    weight = (1.0 / floor.left[rows.stratum])[rows.moving]
+    base = base_columns(rows, joint.scales)[rows.moving] * weight[:, None]
+    # what the effort channel makes of a torque: of a current, or of a voltage, by the motor's constant
+    torque_per_effort = {
+        "torque": 1.0 / joint.told.tolerance,
+        "duty": joint.physics.torque_per_a / joint.physics.resistance_ohm,
+    }
+    per_n_m = 1.0 / torque_per_effort.get(joint.sensors.effort, joint.physics.torque_per_a)
+    share = spring * per_n_m * rows.angle[rows.moving] * weight
+    left = share - base @ np.linalg.lstsq(base, share, rcond=None)[0]
+
+    assert evidence(joint, "spring").ratio == pytest.approx(float(np.sqrt(np.mean(left**2))), rel=0.1, abs=NOTHING)
+
+
+def test_the_laws_of_a_joint_stand_out_where_no_textbook_has_them():
+    foreign, textbook = draw_joint(205, level="foreign"), draw_joint(205)
+
+    assert laws_ratio(foreign, floor_of(foreign, "")) > 2.0 * NOTHING
+    assert laws_ratio(textbook, floor_of(textbook, "")) == 0.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.errors import ParameterError
-from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.result import Result
 from bench.evaluation.blind.second_judge import SECOND_FAMILIES, draw_second, judge_second, second_items_of
 from bench.evaluation.blind.second_plant import ABSORBED, KNOWN, NAMES, OUTSIDE, recordings_of, rig_of, second_joint
 from compensator.lab.effects.catalogue import catalogue, default_effects

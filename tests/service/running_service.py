@@ -13,7 +13,7 @@ import httpx
 
 from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.runs.bench_control import BenchControl
-from bench.runs.bench_process import RemoteRunner
+from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.runs.runner import Runner
 from bench.service.app import create_app
 from bench.service.auth.access import LOOPBACK_NAMES, Access

@@ -103,7 +103,7 @@ def test_examples_name_effects_that_exist(document):
 
 
 PAPER = {**Plan().measurements(), **figures.TRIALS, "drawn": figures.drawn_loads(1), "short": figures.SHORT}
-PAPER |= {f"calibration {place}": one for place, one in enumerate(figures.CALIBRATION)}
+PAPER |= {f"calibration {place}": one for place, one in enumerate((figures.CURVES, figures.AT_REST))}
 
 
 @pytest.mark.parametrize("name", PAPER)

@@ -73,7 +73,7 @@ def main() -> None:
 def serve() -> None:
     """The command, with such a bench process."""
     from bench.cli import main as command
-    from bench.runs.bench_process import RemoteRunner
+    from bench.runs.bench_process.remote_runner import RemoteRunner
     from bench.service import server
 
     server.RemoteRunner = partial(RemoteRunner, module="tests.service.timed_process")  # type: ignore[misc, assignment]

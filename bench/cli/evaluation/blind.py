@@ -13,7 +13,7 @@ from bench.cli.output import Json, complain, print_json, say, table
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.evaluation.blind.calibration import Came
     from bench.evaluation.blind.figures import Figure
-    from bench.evaluation.blind.judge import Result
+    from bench.evaluation.blind.result import Result
 
 
 class Plant(StrEnum):

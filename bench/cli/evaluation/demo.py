@@ -1,14 +1,11 @@
 """`friction-bench demo`: the main job, end to end, on the simulated bench."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from bench.cli.output import say, table
-
-if TYPE_CHECKING:
-    from bench.report import Section
+from bench.cli.output import print_section, say
 
 
 def demo(
@@ -20,15 +17,6 @@ def demo(
     """Run the main job end to end: steps, load sweep, a hidden effect found. Prints tables, writes one HTML report."""
     from bench.evaluation.demo import run_demo  # the lab and the plant are loaded when they are first needed
 
-    database = run_demo(report, _print, seed)
+    database = run_demo(report, print_section, seed)
     say(f"Report: {report}")
     say(f"Look at the trials and the study on the page: friction-bench --store sqlite:///{database} serve")
-
-
-def _print(section: "Section") -> None:
-    say("")
-    say(section.title)
-    for sentence in section.sentences:
-        say(sentence)
-    for one in section.tables:
-        table(one.title, one.columns, one.rows)

@@ -8,7 +8,7 @@ import typer
 from bench.cli.bench_session import session_of
 from bench.cli.operation.signals import stopping_on_signals
 from bench.cli.operation.watch import watch
-from bench.cli.output import Json, print_json, say, table
+from bench.cli.output import Json, print_json, print_section, say
 
 if TYPE_CHECKING:
     from bench.config.configuration import BenchConfiguration
@@ -41,9 +41,7 @@ def paper(
             raise typer.Exit(received.exit_code)
 
     with session.open_store() as store:
-        rows = reproduce(
-            configuration, store, from_store, conduct=conduct, show=(lambda _: None) if as_json else _print
-        )
+        rows = reproduce(configuration, store, from_store, conduct=conduct, show=(lambda _: None) if as_json else _show)
     write_html(report, TITLE, [summary(rows), *(row.with_source() for row in rows)])
     if as_json:
         print_json({"report": str(report), "rows": [row.to_json() for row in rows]})
@@ -64,11 +62,5 @@ def with_seed(configuration: "BenchConfiguration", seed: int | None) -> "BenchCo
     return configuration.model_copy(update={"drive": drive})
 
 
-def _print(row: "Row") -> None:
-    section = row.with_source()
-    say("")
-    say(section.title)
-    for sentence in section.sentences:
-        say(sentence)
-    for one in section.tables:
-        table(one.title, one.columns, one.rows)
+def _show(row: "Row") -> None:
+    print_section(row.with_source())

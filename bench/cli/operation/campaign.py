@@ -10,7 +10,7 @@ from bench.cli.operation.service import DEFAULT_URL, Url, ask
 from bench.cli.output import Json, print_json, say, table
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.runs.queue import CampaignPlan
+    from bench.runs.queue.campaign import CampaignPlan
 
 app = typer.Typer(no_args_is_help=True)
 File = Annotated[Path, typer.Argument(help="TOML: name, kind, [parameters], [grid], repeats, order, seed, tags.")]
@@ -24,8 +24,7 @@ def _campaign() -> None:
 @app.command()
 def plan(context: typer.Context, file: File, as_json: Json = False) -> None:
     """Show what it comes to on this bench: order, duration, load changes. Nothing moves; no service is needed."""
-    from bench.runs.queue import plan_campaign
-    from bench.runs.queue.campaign import read_campaign
+    from bench.runs.queue.campaign import plan_campaign, read_campaign
 
     campaign = read_campaign(file)
     found = plan_campaign(campaign, session_of(context).configuration())

@@ -79,8 +79,7 @@ def campaign(
     as_json: AsJson = False,
 ) -> None:
     """Add the experiments of a campaign, each for whichever bench fits and is free."""
-    from bench.runs.queue import plan_campaign
-    from bench.runs.queue.campaign import read_campaign
+    from bench.runs.queue.campaign import plan_campaign, read_campaign
     from bench.store.tables.lab_queue import NewLabItem
 
     found = plan_campaign(read_campaign(file), session_of(context).configuration()).items
@@ -104,7 +103,7 @@ def _laboratory(session: BenchSession) -> "Store":
 
 
 def _add(context: typer.Context, items: "list[NewLabItem]", as_json: bool) -> None:
-    from bench.runs.queue import known_item
+    from bench.runs.queue.items import known_item
 
     checked = [known_item(item) for item in items]
     with _laboratory(session_of(context)) as lab:

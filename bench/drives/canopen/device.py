@@ -10,7 +10,9 @@ from bench.drives.device import DeviceOptions, started
 
 
 def simulate(
-    family: Annotated[str, typer.Option(help="Objects of the drive: generic or epos4.")] = "generic",
+    family: Annotated[
+        str, typer.Option(help="Objects of the drive: generic, homing (that one with homing) or epos4.")
+    ] = "generic",
     eds: Annotated[
         Path | None,
         typer.Option(help="Data sheet (EDS) or configuration file (DCF) of the drive to be, instead of a family."),

@@ -53,11 +53,17 @@ def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: flo
 def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettings":
     from drivers.canopen import BusSettings, CanopenSettings
     from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
+    from drivers.canopen.cia402.homing import DriveHoming
 
     values = driver_values(settings)
     del values["tpdo_mapping"]
     if settings.brake.by == "output":
         values["brake"] = BrakeBit(settings.brake.output_bit, settings.brake.set_level)
+    homing = settings.homing
+    if homing is not None and homing.method == "drive" and homing.drive_method is not None:
+        values["homing"] = DriveHoming(
+            homing.drive_method, homing.speed_rad_s, homing.slow_speed_rad_s, homing.acceleration_rad_s2
+        )
     if values["torque_off"] is not None:
         values["torque_off"] = TorqueOffBit(**values["torque_off"])
     bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from scipy.stats import beta
 
-from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.result import Result
 
 Value = TypeVar("Value")
 STATED_P = (0.01, 0.05, 0.1, 0.2, 0.5)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bench.evaluation.blind.baseline_methods import RIVALS
 from bench.evaluation.blind.figures import MUST_NAME
-from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.result import Result
 
 NOTHING, UNKNOWN, REFUSED = "nothing", "none of these", "refused"
 

@@ -7,10 +7,7 @@ from math import nan
 import numpy as np
 
 from bench.evaluation.blind.calibration import interval
-from bench.evaluation.blind.judge import Result
-from bench.evaluation.blind.lab_answer import LabAnswer
-from bench.evaluation.blind.oracle import Standing
-from bench.evaluation.blind.recorded import ratio_of
+from bench.evaluation.blind.result import LabAnswer, Result, Standing
 from bench.evaluation.blind.smallest import smallest_found
 
 MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
@@ -250,3 +247,8 @@ def _is_exact(one: Result) -> bool:
 
 def _extra(one: Result) -> bool:
     return any(names[0] not in one.names for names in _answer(one).named)
+
+
+def ratio_of(left: float) -> float:
+    """The r of what no effect stands for, from what the base model leaves with it over that without."""
+    return float(np.sqrt(max(left**2 - 1.0, 0.0)))

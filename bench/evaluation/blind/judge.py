@@ -1,17 +1,17 @@
 """One item from draw to result: record, ask the lab, ask the rivals, ask the oracle."""
 
 import time
-from dataclasses import asdict, dataclass, field
-from typing import Any
 
 from bench.evaluation.blind.baseline_methods import RIVALS
 from bench.evaluation.blind.items import FAMILIES, Item
-from bench.evaluation.blind.lab_answer import LabAnswer, ask_lab, base_fit
-from bench.evaluation.blind.oracle import Standing, standing, standing_at_breakaway
-from bench.evaluation.blind.recorded import bench_for, recorded, unexplained
-from bench.evaluation.blind.settling import Settled, settle
+from bench.evaluation.blind.oracle import standing, standing_at_breakaway
+from bench.evaluation.blind.recorded import base_fit, bench_for, recorded, unexplained
+from bench.evaluation.blind.result import LabAnswer, Result, Standing
+from bench.evaluation.blind.settling import settle
 from bench.evaluation.challenge.names import accepted
 from bench.evaluation.challenge.owner import rig_of
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.search import search
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import LabError, NotApplicableError
@@ -20,60 +20,34 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates, gather
 
+SHOWN = 3  # effects of a ranking that a reader looks at
 
-@dataclass(frozen=True, slots=True)
-class Result:
-    """What came of an item.
 
-    Attributes:
-        key, family: of the item.
-        truths: mechanisms hidden; names: what the catalogue calls each, "" where it does not.
-        sizes: of the mechanisms.
-        answer: of the lab; None where it refused the data, and `refusal` says why.
-        standings: of the truths, by the oracle; None where it cannot say.
-        unexplained: rms that the base model leaves with the mechanisms over that without them, where that was measured.
-        oracle_error: held-out, of the model with the truth in it.
-        rivals: rival -> what it names.
-        seconds: that the lab took.
-        withheld: answer of the lab to the same data where the catalogue has no name for the truth; None: not asked.
-        withheld_left: standing of the truth beside what was named in its place; None where the oracle cannot say.
-        settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
+def ask_lab(fit: Fit, several: bool) -> LabAnswer:
+    """Diagnose; where several effects may be missing, search: forward, swap, backward, as `study search` does.
+
+    Args:
+        fit: of the base model.
+        several: whether to go on after the first name.
     """
-
-    key: str
-    family: str
-    truths: tuple[str, ...]
-    names: tuple[str, ...]
-    sizes: tuple[float, ...]
-    answer: LabAnswer | None
-    standings: tuple[Standing | None, ...]
-    unexplained: float | None
-    oracle_error: float
-    rivals: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    seconds: float = 0.0
-    refusal: str = ""
-    settled: Settled | None = None
-    withheld: LabAnswer | None = None
-    withheld_left: Standing | None = None
-
-    def to_json(self) -> dict[str, object]:
-        """Nested dicts."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, values: dict[str, Any]) -> "Result":
-        """From nested dicts."""
-        made: dict[str, Any] = {
-            key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
-        }
-        for which in ("answer", "withheld"):
-            made[which] = None if values.get(which) is None else LabAnswer.from_json(values[which])
-        made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
-        left = values.get("withheld_left")
-        made["withheld_left"] = None if left is None else Standing(**left)
-        made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
-        made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
-        return cls(**made)
+    first = last = diagnose(fit)
+    classes = first.classes[:1] if first.verdict == "missing" else []
+    named = list(classes)
+    if several:
+        found = search(fit, first=first)
+        fit, last, named = found.fit, found.last, [(name,) for name in found.added]
+    elif classes:
+        fit = fit_effects(fit.dataset, [*fit.names, classes[0][0]], fit.training)
+    return LabAnswer(
+        verdict=first.verdict,
+        first=classes[0] if classes else (),
+        named=tuple(named),
+        unknown=last.remains,
+        p_value=first.p_value,
+        detectability=first.candidates[0].detectability if first.candidates else 0.0,
+        error=held_out(fit).relative,
+        ranked=tuple(one.effect.name for one in first.candidates[:SHOWN]),
+    )
 
 
 def judge(item: Item) -> Result:

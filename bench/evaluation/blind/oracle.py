@@ -6,10 +6,11 @@ d' = sqrt(lambda (1 - rho^2)), rho the largest projected correlation with any ot
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from bench.evaluation.blind.result import Standing
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import fit_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
@@ -22,23 +23,6 @@ from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Base, Block
 
 NEEDED = 25.6  # noncentrality that 64 candidates at 1 % need for 90 % power
-
-
-@dataclass(frozen=True, slots=True)
-class Standing:
-    """How far one true effect stands out.
-
-    Attributes:
-        ratio: r.
-        detectability: d'.
-        rival: the effect that is most like it.
-        smallest: the r that theory needs to find any one of so many effects nine times in ten.
-    """
-
-    ratio: float
-    detectability: float
-    rival: str
-    smallest: float
 
 
 def standing(gathered: Candidates, name: str) -> Standing | None:

@@ -14,7 +14,7 @@ from bench.evaluation.blind.calibration import (
 )
 from bench.evaluation.blind.confusion import rival_figures
 from bench.evaluation.blind.figures import figures
-from bench.evaluation.blind.judge import Result
+from bench.evaluation.blind.result import Result
 from bench.report.html import write_html
 from bench.report.section import Figure, Line, Points, Section, Table
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from bench.errors import BenchError
 from bench.evaluation.blind.items import Item
-from bench.evaluation.blind.judge import Result, judge
+from bench.evaluation.blind.judge import judge
+from bench.evaluation.blind.result import Result
 from bench.parallel.over_cores import as_they_end
 
 Shown = Callable[[int, int], None]

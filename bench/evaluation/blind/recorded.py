@@ -1,22 +1,33 @@
-"""The joint of an item, recorded; where its family asks for an r, with so much of what it hides as makes that r."""
+"""The joint of an item, recorded; where its family asks for an r, with so much of what it hides as makes that r.
 
+And the model that a study of it starts from.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
+from bench.config.rig import Rig
 from bench.errors import ExperimentError, LimitError
 from bench.evaluation.blind.imperfections import DELAY_S, worn
 from bench.evaluation.blind.items import FAMILIES, PERIOD_S, Item, draw_item, protocol_of, wanted_ratio
-from bench.evaluation.blind.lab_answer import base_fit
 from bench.evaluation.challenge.hidden_plant import MECHANISMS, DrawnPlant
 from bench.evaluation.challenge.owner import bench_of, rig_of
 from bench.evaluation.challenge.session import record
 from bench.json_types import Values
+from bench.study.material import facts_of
+from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import LabError
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import Recording
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Dataset, Processing
 
+CHAIN = "measurement_delay"  # a sample is taken at the end of the cycle whose effort it holds: half a cycle, at least
 ATTEMPTS = 10
 SCALINGS = 7  # sizes that are tried for the r that is wanted
 NEAR = 1.25  # factor: an r so near to the wanted one will do
@@ -69,9 +80,16 @@ def unexplained(item: Item, found: Recorded) -> float | None:
         return None
 
 
-def ratio_of(left: float) -> float:
-    """The r of what no effect stands for, from what the base model leaves with it over that without."""
-    return float(np.sqrt(max(left**2 - 1.0, 0.0)))
+def base_fit(recordings: Sequence[Recording], rig: Rig) -> Fit:
+    """The model that a study starts from, and the delay that every control loop has, fitted."""
+    facts = facts_of(rig)
+    dataset: Dataset = make_dataset(recordings, facts, Processing())
+    return fit_model(dataset, [*default_effects(facts), CHAIN])
+
+
+def refitted(fit: Fit, recordings: Sequence[Recording]) -> Fit:
+    """The same model, fitted to other recordings of the same joint."""
+    return fit_model(make_dataset(recordings, fit.dataset.facts, Processing()), fit.names)
 
 
 @dataclass(frozen=True)

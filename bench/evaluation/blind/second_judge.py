@@ -9,9 +9,10 @@ import numpy as np
 from bench.errors import ParameterError
 from bench.evaluation.blind.baseline_methods import RIVALS
 from bench.evaluation.blind.items import Item
-from bench.evaluation.blind.judge import Result, can_be_seen, left_beside
-from bench.evaluation.blind.lab_answer import LabAnswer, ask_lab, base_fit
-from bench.evaluation.blind.oracle import NEEDED, Standing
+from bench.evaluation.blind.judge import ask_lab, can_be_seen, left_beside
+from bench.evaluation.blind.oracle import NEEDED
+from bench.evaluation.blind.recorded import base_fit
+from bench.evaluation.blind.result import LabAnswer, Result, Standing
 from bench.evaluation.blind.second_plant import (
     KNOWN,
     NAMES,

@@ -62,7 +62,7 @@ LARGEST_STEP = 2.5  # of the logarithm of a size at once
 
 @dataclass(frozen=True)
 class SecondJoint:
-    """A joint and how far each of its mechanisms stands out, in their order."""
+    """A joint and how far each of its mechanisms stands out alone, in their order."""
 
     drawn: DrawnJoint
     evidences: tuple[Evidence, ...]
@@ -87,24 +87,26 @@ def second_joint(seed: int, names: tuple[str, ...], ratios: tuple[float, ...], l
         ratios: the r that each should have alone.
         level: of the friction laws.
     """
-    sizes = tuple(_size_for(seed, name, ratio, level) for name, ratio in zip(names, ratios, strict=True))
-    drawn = draw_joint(seed, names, sizes, level)
-    return SecondJoint(drawn, tuple(evidence(drawn, name) for name in names))
+    alone = [_of_ratio(seed, name, ratio, level) for name, ratio in zip(names, ratios, strict=True)]
+    drawn = draw_joint(seed, names, [size for size, _ in alone], level)
+    return SecondJoint(drawn, tuple(found for _, found in alone))
 
 
-def _size_for(seed: int, name: str, wanted: float, level: Level) -> float:
-    """The size by which a mechanism stands out by an r, or the nearest that it can have."""
+def _of_ratio(seed: int, name: str, wanted: float, level: Level) -> tuple[float, Evidence]:
+    """The size by which a mechanism alone stands out by an r, or the nearest that it can have; and its evidence."""
     most, size, floor = MECHANISMS[name].most, FIRST_SIZE, None
     tried: list[tuple[float, float]] = []
+    found: list[tuple[float, Evidence]] = []
     for _ in range(SCALINGS):
         drawn = draw_joint(seed, (name,), (size,), level)
         floor = floor or floor_of(drawn, name)
-        off = log(max(evidence(drawn, name, floor).ratio, LEAST_RATIO) / wanted)
+        found.append((size, evidence(drawn, name, floor)))
+        off = log(max(found[-1][1].ratio, LEAST_RATIO) / wanted)
         tried.append((log(size), off))
         if abs(off) < log(NEAR) or (size == most and off < 0.0):
             break
         size = min(float(np.exp(_next(tried))), most)
-    return float(np.exp(min(tried, key=lambda one: abs(one[1]))[0]))
+    return found[min(range(len(tried)), key=lambda at: abs(tried[at][1]))]
 
 
 def _next(tried: list[tuple[float, float]]) -> float:

@@ -1,13 +1,12 @@
 """What comes of the trials that the lab asks for: recorded on the same joint, and diagnosed with all the others."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 from bench.config.configuration import BenchConfiguration
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ExperimentError, LimitError
-from bench.evaluation.blind.lab_answer import refitted
+from bench.evaluation.blind.recorded import refitted
+from bench.evaluation.blind.result import Settled
 from bench.evaluation.challenge.session import record
 from bench.study.suggestion.options import Choice, choices
 from bench.study.suggestion.predict import choose
@@ -20,40 +19,6 @@ from compensator.lab.next_trial.suggestion import Suggestion
 from compensator.lab.recordings.recording import Recording
 
 TRIALS = 6
-
-
-@dataclass(frozen=True, slots=True)
-class Settled:
-    """What the lab said before and after the trials that it asked for.
-
-    Attributes:
-        rivals: that were to be separated at first.
-        before, predicted: smallest d' of the truth, predicted on the trials measured and with the six first suggested;
-            0 where it is none of the rivals, so that nothing is predicted of it.
-        by_chance: the same with as many trials drawn at random from the same options.
-        trials: that were recorded; failed: that did not complete.
-        named: the class that is named at the end.
-        stated: of each round, the truth's smallest d' as it was predicted, and as it came; 0 where it is no rival, or
-            no candidate.
-        promised: as `predicted`, of the d' that nine in ten of the sizes reach that the trials measured allow.
-    """
-
-    rivals: tuple[str, ...]
-    before: float
-    predicted: float
-    trials: int
-    named: tuple[str, ...]
-    by_chance: float = 0.0  # not known of older results, as all below
-    failed: int = 0
-    stated: tuple[tuple[float, float], ...] = ()
-    promised: float = 0.0
-
-    @classmethod
-    def from_json(cls, values: dict[str, Any]) -> "Settled":
-        """From nested lists."""
-        lists = {name: tuple(values[name]) for name in ("rivals", "named")}
-        stated = tuple((predicted, came) for predicted, came in values.get("stated", ()))
-        return cls(**{**values, **lists, "stated": stated})
 
 
 def settle(configuration: BenchConfiguration, recordings: Sequence[Recording], fit: Fit, name: str) -> Settled | None:

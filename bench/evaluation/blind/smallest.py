@@ -6,8 +6,7 @@ from math import nan
 import numpy as np
 from scipy.special import expit
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 FEWEST = 20  # items that a threshold is fitted to
 RESAMPLES = 400

@@ -1,6 +1,7 @@
 """What is run for the figures, through the ordinary loop: a calibration of the rig, then trials with other seeds."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -10,24 +11,23 @@ from typing import Any
 import numpy as np
 
 from bench.calibration import calibrate, friction_of
+from bench.calibration.rest import rest_of
 from bench.calibration.selection import rest_settings_of
 from bench.config.configuration import BenchConfiguration
 from bench.evaluation.figures.rigs import seed_of, with_seed
 from bench.evaluation.paper.measurements import Measurement, Plan, measure, quietly
 from bench.store import Store
+from compensator.errors import CalibrationError
 
 RIGHT_ANGLE_RAD = pi / 2
 CALIBRATED_KG = (0.0, 0.03, 0.06, 0.1)
 HELD_RAD_S = (0.05, 0.1, 0.2, 0.35, 0.6, 1.0)
 # under a held current the teeth stay in touch; a servo that holds a high speed lets the arm rattle in the free play
 HELD_A = (0.2, 0.3, 0.4, 0.5)
-CALIBRATION = (
-    Measurement("speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": HELD_A, "speeds_rad_s": HELD_RAD_S}),
-    # what is told of one side alone errs on the other, see `bench.calibration.sides`
-    Measurement(
-        "load-sweep",
-        {"loads_kg": CALIBRATED_KG, "angles_rad": (0.0, RIGHT_ANGLE_RAD, -RIGHT_ANGLE_RAD), "searches": 5},
-    ),
+CURVES = Measurement("speed-sweep", {"loads_kg": CALIBRATED_KG, "currents_a": HELD_A, "speeds_rad_s": HELD_RAD_S})
+# what is told of one side alone errs on the other, see `bench.calibration.sides`
+AT_REST = Measurement(
+    "load-sweep", {"loads_kg": CALIBRATED_KG, "angles_rad": (0.0, RIGHT_ANGLE_RAD, -RIGHT_ANGLE_RAD), "searches": 5}
 )
 TRIALS = {
     "loads": Measurement("load-sweep", {}),
@@ -64,18 +64,32 @@ class SeedResults:
     failures: dict[str, str]
 
 
-def calibrated(
-    configuration: BenchConfiguration, measurements: Sequence[Measurement] = CALIBRATION
-) -> BenchConfiguration:
+def calibrated(configuration: BenchConfiguration) -> BenchConfiguration:
     """The rig's configuration with what its calibration told."""
-    with TemporaryDirectory() as folder:
-        store = Store.open(f"sqlite:///{Path(folder) / 'calibration.sqlite'}")
-        try:
-            ids = [measure(configuration, store, one, quietly).id for one in measurements]
-            row = store.calibrations.get(calibrate(store, ids))
-        finally:
-            store.close()
+    with _own_store() as store:
+        ids = [measure(configuration, store, one, quietly).id for one in (CURVES, AT_REST)]
+        row = store.calibrations.get(calibrate(store, ids))
     return configuration.model_copy(update={"friction": friction_of(row), "rest": rest_settings_of(row)})
+
+
+def calibrated_at_rest(configuration: BenchConfiguration, at_rest: Measurement = AT_REST) -> BenchConfiguration:
+    """The same for trials at rest, which need no friction curve.
+
+    Raises:
+        CalibrationError: its searches do not tell.
+    """
+    with _own_store() as store:
+        told = rest_of(store.trials(measure(configuration, store, at_rest, quietly).id), configuration.rig)
+    if told.settings is None:
+        raise CalibrationError(told.why_not)
+    return configuration.model_copy(update={"rest": told.settings})
+
+
+@contextmanager
+def _own_store() -> Iterator[Store]:
+    """A store that is gone afterwards."""
+    with TemporaryDirectory() as folder, Store.open(f"sqlite:///{Path(folder) / 'trials.sqlite'}") as store:
+        yield store
 
 
 def run_seed(configuration: BenchConfiguration) -> SeedResults:
@@ -116,16 +130,12 @@ def _run(wanted: Sequence[tuple[str, BenchConfiguration, Measurement]]) -> SeedR
     """Each experiment, with why one is missing."""
     results: dict[str, dict[str, Any]] = {}
     failures: dict[str, str] = {}
-    with TemporaryDirectory() as folder:
-        store = Store.open(f"sqlite:///{Path(folder) / 'trials.sqlite'}")
-        try:
-            for name, bench, one in wanted:
-                try:
-                    results[name] = measure(bench, store, one, quietly).results
-                except Exception as error:
-                    failures[name] = str(error)
-        finally:
-            store.close()
+    with _own_store() as store:
+        for name, bench, one in wanted:
+            try:
+                results[name] = measure(bench, store, one, quietly).results
+            except Exception as error:
+                failures[name] = str(error)
     return SeedResults(results, failures)
 
 
@@ -145,7 +155,7 @@ def run_rig(configuration: BenchConfiguration, calibration_seed: int, seed: int)
 def _add_drawn(found: SeedResults, configuration: BenchConfiguration, calibration_seed: int, seed: int) -> None:
     """More trials at random loads and angles, after another calibration of the rig."""
     try:
-        known = calibrated(with_seed(configuration, calibration_seed))
+        known = calibrated_at_rest(with_seed(configuration, calibration_seed))
     except Exception as error:
         found.failures[f"calibration {calibration_seed}"] = str(error)
         return

@@ -1,4 +1,4 @@
-"""Homing against an end stop: slowly, with little current, twice; then to where the arm hangs straight down.
+"""Homing: against an end stop, slowly, with little current, twice; or by the drive itself, watched from here.
 
 It is no experiment that one chooses: `friction-bench doctor --home` runs it, on a bench whose limits are those of the
 search (`search_bench`), and writes the zero that comes of it.
@@ -13,7 +13,7 @@ from bench.config.drives.real import HomingSettings, RealDriveSettings
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Action, Procedure, Reading
 from bench.errors import ConfigurationError, ExperimentError, LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
 from bench.json_types import Value
@@ -26,6 +26,7 @@ STILL_COUNTS = 1.5
 SEARCH_SHARE = 0.75  # of the current that the search takes; all of it tells a stop from a weight that is too heavy
 PRESSING_SHARE = 0.9  # of that: the servo presses against something
 PATIENCE_S = 5.0  # beyond twice the time of the travel
+ANYWHERE_RAD = 1e3  # the drive's count begins anew when it is at home: the way is watched instead
 Search = Generator[Action, Reading, float]
 
 
@@ -62,7 +63,7 @@ def search_bench(configuration: BenchConfiguration, here_rad: float) -> BenchCon
     ):
         if value > limit:
             raise LimitError(quantity_message(f"drive.homing.{name}", value, f"at most {limit:g}", unit))
-    reach_rad = homing.travel_rad + MARGIN_RAD
+    reach_rad = ANYWHERE_RAD if homing.method == "drive" else homing.travel_rad + MARGIN_RAD
     return configuration.model_copy(update={
         "limits": limits.model_copy(update={
             "position_min_rad": here_rad - reach_rad, "position_max_rad": here_rad + reach_rad,
@@ -107,6 +108,43 @@ def home_at_end_stop(configuration: BenchConfiguration) -> Procedure:
     off_rad = 0.5 * (first_rad + second_rad) - homing.angle_rad
     yield from joint.move(off_rad, homing.speed_rad_s)
     return {"stops_rad": [*stops_rad], OFF_RAD: off_rad}
+
+
+def home_by_drive(configuration: BenchConfiguration) -> Procedure:
+    """The procedure: the drive searches; how far it goes, and for how long, is watched. It ends there, without power.
+
+    Results:
+        way_rad: that the joint went from where it began.
+        off_rad: what `drive.zero_rad` has to grow by.
+
+    Raises:
+        ExperimentError: home is not found within the travel, or in time.
+    """
+    homing, joint = settings_of(configuration), Joint(configuration)
+    start_rad = (yield from joint.wake()).sample.position_rad
+    slowest_rad_s = min(homing.speed_rad_s, homing.slow_speed_rad_s)
+    way_rad, longest_s = 0.0, 2.0 * homing.travel_rad / slowest_rad_s + PATIENCE_S
+    for _ in range(ceil(longest_s / configuration.control.period_s)):
+        reading = yield from joint.push(Command(Mode.HOME, 1.0))
+        if reading.sample.homed:
+            # home is 0 by the drive's count
+            return {"way_rad": way_rad, OFF_RAD: -_zero_rad(configuration) - homing.angle_rad}
+        way_rad = reading.sample.position_rad - start_rad
+        if abs(way_rad) > homing.travel_rad:
+            raise ExperimentError(
+                f"the drive went {way_rad:.3g} rad and was not at home; {homing.travel_rad:g} rad are allowed "
+                "(drive.homing.travel_rad). Nothing was written. Is drive.homing.drive_method the right one, and "
+                "does it go the right way?"
+            )
+    raise ExperimentError(
+        f"the drive was not at home within {longest_s:.0f} s; the joint went {way_rad:.3g} rad. Nothing was written. "
+        "Look at its homing method and speeds, and at what keeps the joint from moving"
+    )
+
+
+def _zero_rad(configuration: BenchConfiguration) -> float:
+    drive = configuration.drive
+    return drive.zero_rad if isinstance(drive, RealDriveSettings) else 0.0
 
 
 def _to_the_stop(joint: Joint, homing: HomingSettings, configuration: BenchConfiguration) -> Search:
@@ -157,7 +195,8 @@ def _press(joint: Joint, homing: HomingSettings, configuration: BenchConfigurati
 
 
 def _plan(_parameters: HomingParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
-    procedure = partial(home_at_end_stop, configuration)
+    by_drive = settings_of(configuration).method == "drive"
+    procedure = partial(home_by_drive if by_drive else home_at_end_stop, configuration)
     held = conditions(configuration, load_kg=0.0, balanced=False)
     return [TrialPlan(name="search", conditions=held, procedure=procedure, load_kg=0.0)]
 
@@ -173,10 +212,11 @@ def _refuse(_parameters: HomingParameters, configuration: BenchConfiguration) ->
         raise ConfigurationError(
             "a search for the end stop has limits of its own (drive.homing): run 'friction-bench doctor --home'"
         )
-    if configuration.servo.closed_by == "drive":
+    if configuration.servo.closed_by == "drive" and homing.method != "drive":
         raise ConfigurationError(
             "servo.closed_by is 'drive': this bench cannot keep the current against an end stop within "
-            "drive.homing.current_a then. Set the zero by hand: 'friction-bench doctor --set-zero'"
+            "drive.homing.current_a then. Have the drive do it (drive.homing.method = 'drive'), or set the zero by "
+            "hand: 'friction-bench doctor --set-zero'"
         )
 
 
@@ -192,11 +232,10 @@ def _summarise(_parameters: HomingParameters, trials: list[FinishedTrial]) -> di
 KIND = ExperimentKind(
     name=NAME,
     title="Homing",
-    summary="Finds the zero of the joint again, at an end stop.",
+    summary="Finds the zero of the joint again, at an end stop or by the drive's own homing.",
     parameters=HomingParameters,
     plan=_plan,
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
-    modes=a_current,
 )

@@ -9,7 +9,6 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
 from bench.control.cycle import Reading
-from bench.experiments.analysis.rest_estimate import finding
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower
 from bench.experiments.parts.profile import SetPoint
@@ -38,18 +37,8 @@ class FollowedJoint:
         self._follower = LoadFollower(configuration)
 
     def begin(self) -> Part[str]:
-        """To rest at angle 0, and a zero-speed search there: what hangs on the arm selects the friction curve.
-
-        Returns:
-            Why the search has no estimate; "" where it has.
-        """
-        yield from self._joint.wake()
-        yield from self._joint.move(0.0)
-        yield from self._joint.settle(0.0)
-        found = yield from self._joint.search(0.0)
-        if not found.failure:
-            self._follower.take(self._joint.reading, 0.0, finding([found], self._configuration))
-        return found.failure
+        """See `LoadFollower`."""
+        return (yield from self._follower.begin(self._joint))
 
     def follow(self, set_points: Iterable[SetPoint]) -> Part[list[Followed]]:
         """Track one set point per cycle, estimate the load, and record it."""

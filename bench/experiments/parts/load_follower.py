@@ -9,7 +9,8 @@ from bench.config.rig import Rig, resolution_rad
 from bench.config.sections import RestSettings
 from bench.control.cycle import Reading
 from bench.errors import ConfigurationError
-from bench.experiments.analysis.rest_estimate import RestFinding
+from bench.experiments.analysis.rest_estimate import RestFinding, finding
+from bench.experiments.parts.joint import Joint, Part
 from compensator.errors import CompensatorError
 from compensator.motion import load_estimator
 from compensator.motion.load_estimator import EstimatorSettings, JointModel, LoadEstimate, Observation, RestResult
@@ -36,6 +37,7 @@ class LoadFollower:
     """
 
     def __init__(self, configuration: BenchConfiguration) -> None:
+        self._configuration = configuration
         self._model = joint_model(configuration)
         self._settings = estimator_settings(configuration)
         self._state = load_estimator.begin(self._model.friction.selectors[0])
@@ -44,6 +46,20 @@ class LoadFollower:
     def estimate(self) -> LoadEstimate:
         """The last one."""
         return self._state.estimate
+
+    def begin(self, joint: Joint) -> Part[str]:
+        """The joint to rest at angle 0, and a zero-speed search there: what hangs there selects the friction curve.
+
+        Returns:
+            Why the search has no estimate; "" where it has.
+        """
+        yield from joint.wake()
+        yield from joint.move(0.0)
+        yield from joint.settle(0.0)
+        found = yield from joint.search(0.0)
+        if not found.failure:
+            self.take(joint.reading, 0.0, finding([found], self._configuration))
+        return found.failure
 
     def observe(self, reading: Reading, target_rad: float = nan, searching: bool = False) -> LoadEstimate:
         """One control cycle."""

@@ -9,7 +9,6 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import torque_n_m_a
 from bench.control.cycle import OFF, Action
 from bench.control.pair import PairAction, PairReading, Reach
-from bench.experiments.analysis.rest_estimate import finding
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower
 from compensator.reflection.reflection import Following, Reflection
@@ -74,18 +73,8 @@ class PairJoints:
         self._set_point_rad = nan
 
     def begin(self) -> PairPart[str]:
-        """The slave to rest at angle 0, and a zero-speed search there; the hand holds the master, which is off.
-
-        Returns:
-            Why the search has no estimate; "" where it has.
-        """
-        yield from self._alone(self._joint.wake())
-        yield from self._alone(self._joint.move(0.0))
-        yield from self._alone(self._joint.settle(0.0))
-        found = yield from self._alone(self._joint.search(0.0))
-        if not found.failure:
-            self._follower.take(self._joint.reading, 0.0, finding([found], self._configuration))
-        return found.failure
+        """As `LoadFollower` does, with the slave; the hand holds the master, which is off."""
+        return (yield from self._alone(self._follower.begin(self._joint)))
 
     def couple(self) -> None:
         """From here on the slave follows the master's way, and its load is reflected."""

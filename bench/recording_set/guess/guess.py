@@ -5,13 +5,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+import tomli_w
+
+from bench.config.rig import Rig
 from bench.recording_set.formats.column_table import Columns
 from bench.recording_set.guess.assign import Assigned, assign
 from bench.recording_set.guess.magnitude import magnitude_questions
 from bench.recording_set.guess.said import Said
 from bench.recording_set.guess.units_told import Units
 from bench.recording_set.mapping import Column, Mapping
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 
 EFFORTS = ("torque", "force", "current", "voltage", "duty")
 
@@ -150,3 +153,17 @@ def _taken(name: str, columns: MappingOf[str, Column], units: Units, assigned: A
             unit = column.unit or CHANNELS[channel].unit
             return Taken(name, channel, unit, low, high, units.why.get(name, "its name"), outline)
     return Taken(name, "", "", low, high, assigned.unused.get(name) or "it is asked about", outline)
+
+
+def mapping_text(mapping: Mapping, notes: tuple[str, ...] = ()) -> str:
+    """The text of a mapping.toml: what differs from the defaults, with remarks at its head."""
+    values = mapping.model_dump(mode="json", by_alias=True, exclude_defaults=True, exclude_none=True)
+    plain = {name: value for name, value in values.items() if not isinstance(value, dict | list)}
+    tables = {name: value for name, value in values.items() if name not in plain}
+    head = "".join(f"# {note}\n" for note in notes)
+    return head + tomli_w.dumps(plain | tables)
+
+
+def rig_text(rig: Rig) -> str:
+    """The text of a rig.toml, as far as the rig is known."""
+    return tomli_w.dumps(rig.model_dump(mode="json", exclude_defaults=True, exclude_none=True))

@@ -16,7 +16,7 @@ from bench.recording_set.guess.vocabulary import (
     WORDS,
 )
 from bench.recording_set.units import Unit, unit_named
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 
 _BRACKET = re.compile(r"^(?P<base>.*?)\s*[\[({<](?P<unit>[^\])}>]*)[\])}>]\s*$")
 _WORD = re.compile(r"[A-ZÄÖÜ]?[a-zäöüßàâéèêíóúñùµθωτφ]+|[A-ZÄÖÜ]+(?![a-z])|\d+")

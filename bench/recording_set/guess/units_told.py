@@ -12,8 +12,7 @@ from bench.recording_set.guess.evidence import NEAR, are_whole, period_of, slope
 from bench.recording_set.guess.names import UNITS_OF
 from bench.recording_set.mapping import Column
 from bench.recording_set.units import UNITS, Unit, unit_named
-from compensator.lab.recordings.channels import CHANNELS
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import CHANNELS, FloatArray
 
 MOTION = ("position", "velocity", "target")
 _CHANNEL = {

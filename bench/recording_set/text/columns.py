@@ -8,7 +8,7 @@ from typing import Protocol
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import SPEED_UNITS, Column, Mapping
 from bench.recording_set.text.suggestions import suggestion
-from compensator.lab.recordings.channels import CHANNELS, EVENT_COLUMN
+from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN
 
 TIME = "time_s"
 

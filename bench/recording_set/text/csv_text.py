@@ -12,8 +12,7 @@ import orjson
 from bench.recording_set.stream import Piece, RecordingStream
 from bench.recording_set.text.table import quoted
 from bench.recording_set.text.values import encode_events
-from compensator.lab.recordings.channels import EVENT_COLUMN
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import EVENT_COLUMN, FloatArray
 
 NEWLINE = b"\n"
 

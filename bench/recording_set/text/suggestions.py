@@ -2,7 +2,7 @@
 
 import difflib
 
-from compensator.lab.recordings.channels import CHANNELS
+from compensator.lab.recordings.recording import CHANNELS
 
 MASTER = "master_"
 # suffix of a name -> (suffix of the SI unit, factor)

@@ -22,6 +22,12 @@ def attachment(name: str) -> dict[str, Any]:
     return {"Content-Disposition": said}
 
 
+PARQUET = "application/vnd.apache.parquet"
+PARQUET_ANSWER = {
+    "description": "SI, the unit in the column's name; numbers are exact.",
+    "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
+    "headers": attachment("trial-1.parquet"),
+}
 AT_ONCE = 10_000  # numbers
 
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Depends, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.json_types import Json
-from bench.runs.queue import known_item
+from bench.runs.queue.items import known_item
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
 from bench.service.http.problems import problems

@@ -11,7 +11,7 @@ from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.service.auth.access import require_viewer
 from bench.service.http.problems import FieldProblem, InvalidFieldsError, problems
-from bench.service.routes.experiments import NewExperiment, refuse_mistyped
+from bench.service.routes.queue_models import NewExperiment
 from bench.service.services import RunnerOf
 
 router = APIRouter(tags=["experiments"], dependencies=[Depends(require_viewer)])
@@ -35,7 +35,7 @@ class PlannedStart(BaseModel):
 @router.post("/experiments/plan", summary="What a start would move", responses=problems(401, 404, 422))
 def plan(runner: RunnerOf, body: NewExperiment) -> PlannedStart:
     """The checks of a start that need no drive: 422 names each field with its value, limit and unit."""
-    refuse_mistyped(body)
+    body.refuse_mistyped()
     kind = find_kind(body.kind)
     parameters = parse_parameters(kind, body.parameters)
     try:

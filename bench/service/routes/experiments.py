@@ -3,14 +3,14 @@
 import tempfile
 from contextlib import suppress
 from pathlib import Path as FilePath
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 from starlette.background import BackgroundTask
 
-from bench.experiments.registry import KINDS, find_kind
+from bench.experiments.registry import KINDS
 from bench.json_types import Json
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
@@ -19,14 +19,13 @@ from bench.service.auth.audit_trail import note
 from bench.service.auth.tokens import Caller
 from bench.service.compute import at_bench
 from bench.service.http import conditional
-from bench.service.http.downloads import attachment
+from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
-from bench.service.http.problems import InvalidFieldsError, field_problems, problems
+from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.records import Experiment, experiment_record
 from bench.service.routes.leases import LeaseOf
-from bench.service.routes.queue_models import Note, Tags
-from bench.service.routes.trials import PARQUET, PARQUET_ANSWER
+from bench.service.routes.queue_models import NewExperiment, Note, Tags
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import StoreError
@@ -49,25 +48,6 @@ class Kinds(Page):
     """One page of kinds, by name."""
 
     items: list[Kind]
-
-
-class NewExperiment(BaseModel):
-    """What to start."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "examples": [{"kind": "steps", "parameters": {"repeats": 3, "load_kg": 0.1}, "operator": "R. Saini"}]
-        },
-    )
-    kind: str = Field(max_length=100, description="name from GET /experiment-kinds")
-    parameters: Json = Field(default={}, description="what differs from the defaults, SI")
-    operator: str = Field(default="", max_length=200)
-    note: str = Field(default="", max_length=2000)
-    tags: Tags = []
-    pace: Literal["real-time", "fast"] | None = Field(
-        default=None, description="fast: as fast as the computer can, simulated drive only, and the default there"
-    )
 
 
 class Annotation(BaseModel):
@@ -139,7 +119,7 @@ def _begun(
 ) -> Started:
     """The experiment that has begun, now or with the same key before."""
 
-    refuse_mistyped(body)  # a typing error is no failed start: nothing is recorded
+    body.refuse_mistyped()  # a typing error is no failed start: nothing is recorded
 
     def begin() -> Started:
         with lease.starting(caller.name):
@@ -152,22 +132,6 @@ def _begun(
         with suppress(StoreError):  # it runs all the same; PATCH can tell them again
             store.annotate(started.experiment_id, tags=body.tags)
     return started
-
-
-def refuse_mistyped(body: NewExperiment) -> None:
-    """Refuse parameters that the kind's model does not take, before anything is recorded.
-
-    Raises:
-        UnknownKindError: no such kind.
-        InvalidFieldsError: with each field, its value and what is allowed.
-    """
-    kind = find_kind(body.kind)
-    try:
-        kind.parameters.model_validate(body.parameters)
-    except ValidationError as error:
-        fields = field_problems(error, prefix="parameters")
-        words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
-        raise InvalidFieldsError(f"{body.kind}: {words}", "ParameterError", fields) from error
 
 
 @router.get("/experiments", summary="What has been run", responses=problems(422))

@@ -4,7 +4,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 
-from bench.runs.queue import Campaign, CampaignPlan, Order, plan_campaign, queue_state
+from bench.runs.queue.campaign import Campaign, CampaignPlan, plan_campaign
+from bench.runs.queue.items import Order
+from bench.runs.queue.overview import queue_state
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
 from bench.service.http.problems import problems

@@ -1,13 +1,15 @@
-"""What the routes of the queue take and answer."""
+"""What the routes of the queue take and answer; what starts an experiment at once is nearly the same."""
 
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
+from bench.experiments.registry import find_kind
 from bench.json_types import Json
-from bench.runs.queue import QueueState
 from bench.runs.queue.campaign import MOST_ITEMS
+from bench.runs.queue.overview import QueueState
+from bench.service.http.problems import InvalidFieldsError, field_problems
 from bench.store.tables.queue import NewItem, QueueItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
 
@@ -32,6 +34,34 @@ class NewQueueItem(BaseModel):
     note: Note = ""
     tags: Tags = []
     pace: Literal["real-time", "fast"] | None = Field(default=None, description="as for POST /experiments")
+
+
+class NewExperiment(NewQueueItem):
+    """What to start."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [{"kind": "steps", "parameters": {"repeats": 3, "load_kg": 0.1}, "operator": "R. Saini"}]
+        },
+    )
+    pace: Literal["real-time", "fast"] | None = Field(
+        default=None, description="fast: as fast as the computer can, simulated drive only, and the default there"
+    )
+
+    def refuse_mistyped(self) -> None:
+        """Refuse parameters that the kind's model does not take, before anything is recorded.
+
+        Raises:
+            UnknownKindError: no such kind.
+            InvalidFieldsError: with each field, its value and what is allowed.
+        """
+        kind = find_kind(self.kind)
+        try:
+            kind.parameters.model_validate(self.parameters)
+        except ValidationError as error:
+            fields = field_problems(error, prefix="parameters")
+            words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
+            raise InvalidFieldsError(f"{self.kind}: {words}", "ParameterError", fields) from error
 
 
 class NewQueueItems(BaseModel):

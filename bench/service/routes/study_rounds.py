@@ -6,7 +6,8 @@ from fastapi import APIRouter, Depends, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import BusyError
-from bench.runs.queue import Conductor, Order
+from bench.runs.queue.conductor import Conductor
+from bench.runs.queue.items import Order
 from bench.service import later
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note

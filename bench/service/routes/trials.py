@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field, FiniteFloat
 
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
-from bench.service.http.downloads import attachment, samples_json
+from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment, samples_json
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.records import Trial, trial_record
@@ -22,12 +22,6 @@ from bench.store.tables.trial_search import TrialQuery
 
 router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
-PARQUET = "application/vnd.apache.parquet"
-PARQUET_ANSWER = {
-    "description": "SI, the unit in the column's name; numbers are exact.",
-    "content": {PARQUET: {"schema": {"type": "string", "format": "binary"}}},
-    "headers": attachment("trial-1.parquet"),
-}
 Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
 

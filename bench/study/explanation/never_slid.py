@@ -7,8 +7,8 @@ from bench.report import Figure, Line, Section, html_page
 from bench.store import Store
 from bench.study.errors import StudyError
 from bench.study.material import facts_of
-from compensator.lab.recordings.effort import Effort, choose_effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.recording import Recording
 
 MOST_TRIALS, MOST_POINTS = 6, 500  # of the picture

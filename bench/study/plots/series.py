@@ -10,8 +10,8 @@ from bench.study.material import Material, load
 from bench.study.models.comparison import Series
 from bench.study.models.plots import DriversOverTime, DriverValues
 from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS, available
 
 SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows

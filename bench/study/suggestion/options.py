@@ -12,7 +12,7 @@ from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan
 from bench.experiments.kinds.excitation import OVERSHOOT_RAD
 from bench.experiments.parts.waveforms import WAVEFORMS
 from bench.experiments.registry import KINDS, parse_parameters
-from bench.json_types import Json
+from bench.json_types import Json, as_option
 
 LOAD_SHARES = (0.0, 0.5, 1.0)  # of the heaviest load
 SPEED_SHARES = (0.15, 0.6)  # of the speed limit
@@ -40,7 +40,7 @@ class Choice:
     @property
     def name(self) -> str:
         """Kind and parameters in one line."""
-        return " ".join([self.kind, *(f"{name}={_text(value)}" for name, value in self.parameters.items())])
+        return " ".join([self.kind, *(f"{name}={as_option(value)}" for name, value in self.parameters.items())])
 
 
 def choices(configuration: BenchConfiguration, hung_by_hand: bool, from_rest: bool = False) -> list[Choice]:
@@ -148,9 +148,3 @@ def _loads(configuration: BenchConfiguration) -> list[float]:
 
 def _speeds(configuration: BenchConfiguration) -> list[float]:
     return [float(f"{share * configuration.limits.speed_rad_s:.2g}") for share in SPEED_SHARES]
-
-
-def _text(value: object) -> str:
-    if isinstance(value, list | tuple):
-        return ",".join(_text(one) for one in value)
-    return f"{value:g}" if isinstance(value, float) else str(value)

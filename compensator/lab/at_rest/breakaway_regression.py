@@ -16,8 +16,7 @@ from compensator.lab.effects.effect import Effect, Parameter, Shape
 from compensator.lab.model.linear import Bounds, solve
 from compensator.lab.model.prediction import whole_inertia
 from compensator.lab.model.validation import FEWEST_TRIALS, HeldOut, HeldOutKind, relative_error, rms
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 LAG = "onset_lag"  # what stands for seeing the motion late
 NORMAL = 1.4826  # standard deviation over median absolute deviation
@@ -123,7 +122,7 @@ def _fit(rows: BreakawayRows, effects: Sequence[Effect], shapes: Mapping[str, Sh
 def lag_column(rows: BreakawayRows) -> FloatArray:
     """What the effort gains along the motion until the speed is the slow one, shape (E, 1)."""
     dataset = rows.fit.dataset
-    inertia = np.array([whole_inertia(rows.fit, trial.motion) for trial in dataset.trials])[rows.trial_index]
+    inertia = np.array([whole_inertia(rows.fit.terms, trial.motion) for trial in dataset.trials])[rows.trial_index]
     gained = np.sqrt(2.0 * np.maximum(inertia, 0.0) * dataset.scales.slow * rows.rate)
     # without an inertia in the model, it is the same in all trials, and the coefficient has its unit
     return (rows.direction * (gained if np.all(inertia > 0.0) else np.sqrt(rows.rate)))[:, None]

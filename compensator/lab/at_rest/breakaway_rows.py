@@ -7,11 +7,9 @@ import numpy as np
 
 from compensator.lab.at_rest.breakaways import Start, resolution_of, starts_of
 from compensator.lab.effects.effect import BreakawayShare, Effect, Motion, Onset, Shape
-from compensator.lab.model.fit import trained_trials
-from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray, Trial
+from compensator.lab.model.fitted import Fit, trained_trials
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset, Trial
 
 RISE_S = 0.1  # that static friction takes to come up, at least: a quicker start shows the servo, not the contact
 SCATTER = 0.25  # of static friction: an effort that scatters more is not known at the start

@@ -13,8 +13,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from compensator.lab.recordings.processing import Signals
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 REST_S = 0.2  # slower than `slow` for this long is a rest; less is a turning point
 COUNTS = 3.0  # that `slow` makes between two positions compared: fewer may be the encoder's

@@ -20,8 +20,8 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import BreakawayShare, Motion, Onset
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import without_each
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 
 WINDOW_S = 0.1  # over which the effort at rest is averaged
 TRIM_S = 0.1  # at both ends of a rest: the joint still brakes, or lets go already

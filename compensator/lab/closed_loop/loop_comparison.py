@@ -7,8 +7,7 @@ import numpy as np
 
 from compensator.lab.closed_loop.control_law import ControlLaw, LawSource
 from compensator.lab.closed_loop.simulation import Simulated, simulate
-from compensator.lab.model.fit import trained_trials
-from compensator.lab.model.fitted import Fit, with_terms
+from compensator.lab.model.fitted import Fit, trained_trials, with_terms
 from compensator.lab.model.intervals import without_each
 from compensator.lab.model.validation import FEWEST_TRIALS, rms
 from compensator.lab.recordings.differentiation import rate_of_change

@@ -12,8 +12,8 @@ import numpy as np
 from compensator.lab.closed_loop.loop_comparison import Laws, LoopComparison, compare_coefficients, compare_in_loop
 from compensator.lab.closed_loop.simulation import moved_recording
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import fit_model, trained_trials
-from compensator.lab.model.fitted import Fit
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit, trained_trials
 from compensator.lab.rows.assembly import more_trials
 
 MOST_PASSES = 8

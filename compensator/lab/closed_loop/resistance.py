@@ -7,7 +7,8 @@ import numpy as np
 
 from compensator.lab.closed_loop.stepping import Resistance
 from compensator.lab.effects.effect import Motion
-from compensator.lab.model.fitted import Fit, Term
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.linear import Term
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
@@ -23,7 +24,7 @@ def resistances(fit: Fit, motions: Dataset) -> list[Resistance]:
         motions: trials whose motion is that around which the model is taken.
     """
     terms = tuple(term for term in fit.terms if not term.effect.pipeline)
-    predicted = with_own_prediction(replace(fit, terms=terms, dataset=motions))
+    predicted = with_own_prediction(motions, terms)
     return [_around(terms, trial.motion) for trial in predicted.trials]
 
 

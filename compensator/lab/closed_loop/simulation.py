@@ -16,8 +16,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR
-from compensator.lab.recordings.recording import FloatArray, Recording
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, Recording
 from compensator.lab.rows.assembly import more_trials
 from compensator.lab.rows.dataset import Dataset, Trial
 

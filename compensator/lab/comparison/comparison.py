@@ -12,9 +12,9 @@ from compensator.lab.at_rest.rest_comparison import RestComparison, compare_at_r
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import HeldOut, held_out, relative_error, rms
-from compensator.lab.recordings.recording import Condition
-from compensator.lab.recordings.regimes import BoolArray, Regime
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, Condition, IntArray
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import available
 from compensator.lab.rows.picture import BinnedMean, binned_mean
 

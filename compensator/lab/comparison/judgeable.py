@@ -65,7 +65,7 @@ def judgeable(fit: Fit) -> list[Judgeable]:
     shown: list[_Shown] = []
     found: dict[str, Judgeable] = {}
     base = _orthonormal(fit.columns[fit.training])
-    dataset = with_own_prediction(fit)
+    dataset = with_own_prediction(fit.dataset, fit.terms)
     for effect in candidates(fit.names, fit.dataset.facts):
         try:
             one = _beside(fit, dataset, effect, base)

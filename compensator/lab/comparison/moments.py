@@ -8,9 +8,8 @@ import numpy as np
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import rms
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import available
 
 PAUSE_S = 0.25  # rows further apart are two moments

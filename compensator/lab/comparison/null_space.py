@@ -13,8 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from compensator.lab.effects.effect import Effect
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import ParameterEstimate, estimates
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 TAKES_PART = 0.1  # of a column, that another one makes
 CORRELATED = 0.95  # of two coefficients: from here on it is their combination that is known

@@ -10,8 +10,7 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.model.validation import rms
 from compensator.lab.recordings.processing import SATURATED_DUTY
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.stuck_sensor import stuck_positions
 from compensator.lab.rows.dataset import Dataset
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.weights import bounded_influence
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 
 FEWEST_ROWS = 8  # of a stretch, each as far as the model determines its effort

@@ -13,8 +13,7 @@ import numpy as np
 
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.variance_components import Part
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
 LASTS_S = 3.0  # what it has become
 NOISE_LASTS_S = (0.1, 0.5)  # beside what is white

@@ -11,7 +11,8 @@ import numpy as np
 from compensator.lab.left_over.left_over import LeftOver, left_over
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.regimes import BoolArray, within_spread
+from compensator.lab.recordings.recording import BoolArray
+from compensator.lab.recordings.regimes import within_spread
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.candidates import Candidates, gather_curves
 from compensator.lab.screening.clearing import with_noise

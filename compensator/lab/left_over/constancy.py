@@ -15,8 +15,7 @@ from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.drift import Moments, chance_of_drift, moments_of
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.model.validation import rms
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.evidence import Base, inflation_of
 
 FEWEST_ROWS = 8  # of a stretch

@@ -2,12 +2,9 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.model.fit import widened
-from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray, Regime
+from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
 from compensator.lab.screening.evidence import Base
 
 DRY_FRICTION, OFFSET = "dry friction", "a constant force or the zero of the angle"
@@ -33,13 +30,6 @@ class Constants:
     friction: float
     static: FloatArray
 
-    @classmethod
-    def tested(cls, gathered: Candidates) -> "Constants":
-        """Of the tested rows."""
-        fit, rows = gathered.fit, gathered.rows
-        base = gathered.as_measured(WITH_CHAIN)
-        return cls(fit.dataset, rows, base, gathered.weights, fit.dry_friction, fit.static_friction[rows])
-
     @property
     def sliding(self) -> BoolArray:
         """Near reversals nothing is constant; shape (n,)."""
@@ -59,8 +49,3 @@ class Constants:
     def of(self, signals: list[FloatArray]) -> FloatArray:
         """A signal of each trial, at the chosen rows, shape (n,)."""
         return self.dataset.rows_of(signals)[self.rows]
-
-
-def gather_in_motion(fit: Fit) -> Candidates:
-    """What a model leaves of all rows in motion, those near reversals too, where it is fitted to them."""
-    return gather_curves(widened(fit, "moving"), "moving")

@@ -14,9 +14,8 @@ larger than one trial's moments.
 import numpy as np
 from scipy.stats import gamma
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.evidence import Base
 
 MEMORY_S = 2.0  # as long as a stretch

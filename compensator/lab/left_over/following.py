@@ -14,13 +14,8 @@ import numpy as np
 
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.white_rows import FORETOLD, LOOK_AGAIN, WhiteRows
-from compensator.lab.model.linear import orthonormal
-from compensator.lab.model.validation import rms
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-
-LEAST_OF_FRICTION = 0.005  # root mean square: less may be the joint's own
-NEW = 0.05  # of a column's norm beside the model: of less, little can be told from the model itself
+from compensator.lab.screening.candidates import Candidates
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +54,12 @@ def following_of(
     followed = {name: _followed(name, white, columns, len(splines)) for name, columns in weighted.items()}
     sure = [one for one in followed.values() if one.chance <= most and one.foretold >= FORETOLD]
     likely = [one for one in followed.values() if most < one.chance <= most_if_large and one.foretold >= FORETOLD]
-    there = [*sure, *(one for one in likely if is_large(gathered, white, weighted[one.driver]))]
+    there = [*sure, *(one for one in likely if white.is_large(gathered, weighted[one.driver]))]
     if there or not followed:
         return max(there, key=lambda one: one.foretold, default=None)
     best = min(followed.values(), key=lambda one: one.chance)
     columns = weighted[best.driver]
-    if not most_if_large < best.chance <= look_again or not is_large(gathered, white, columns):
+    if not most_if_large < best.chance <= look_again or not white.is_large(gathered, columns):
         return None
     again = _followed(best.driver, white.cleared(gathered, columns), columns, len(splines))
     return again if again.chance <= most_if_large and again.foretold >= FORETOLD else None
@@ -72,23 +67,8 @@ def following_of(
 
 def _followed(name: str, white: WhiteRows, weighted: FloatArray, tries: int) -> Following:
     """How surely a curve of weighted columns (n, k), one of so many, is followed."""
-    columns = new_columns(white, weighted)
+    columns = white.new(weighted)
     if columns.shape[1] == 0:
         return Following(name, 1.0, 0.0)
     chance = tries * white.noise.chance(float(np.sum((white.residual @ columns) ** 2)), columns.shape[1])
     return Following(name, min(1.0, chance), white.foretold(columns)[1])
-
-
-def is_large(gathered: Candidates, white: WhiteRows, columns: FloatArray) -> bool:
-    """Whether what a curve of weighted columns (n, k) adds to the model is more than the joint's own."""
-    coefficients, _ = white.foretold(white.beside(columns))
-    own, basis = columns @ coefficients, gathered.as_measured(WITH_CHAIN).basis
-    size = rms((own - basis @ (basis.T @ own)) / gathered.weights)
-    return 0.0 < LEAST_OF_FRICTION * gathered.fit.dry_friction < size
-
-
-def new_columns(white: WhiteRows, columns: FloatArray) -> FloatArray:
-    """Orthonormal basis of what columns (n, k) add to the model, whitened."""
-    before = np.linalg.norm(white.whitening.whitened(columns), axis=0)
-    left = white.beside(columns)
-    return orthonormal(left[:, np.linalg.norm(left, axis=0) > NEW * before])

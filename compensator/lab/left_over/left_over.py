@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constancy import Change, change_of
-from compensator.lab.left_over.constants import Constants, gather_in_motion
+from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.orders import Line, growing_line_of, line_of
@@ -14,10 +14,11 @@ from compensator.lab.left_over.swinging import Swing, swing_of
 from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.left_over.wandering import Wandering, wandering_of
 from compensator.lab.left_over.white_rows import WhiteRows
+from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.regimes import Regime
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +66,13 @@ def left_over(gathered: Candidates) -> LeftOver:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
     if not steady:
         return LeftOver(remainder, None, swing)
-    constants = Constants.tested(gathered)
+    constants = gather_constants(gathered)
     change = change_of(constants)
     if not _is_plain(gathered.fit):
         # where the formula was found
         return LeftOver(remainder, change, swing, wandering_of(constants, NAMED.wandering) if change is None else None)
     in_motion = gather_in_motion(gathered.fit)
-    wandering = wandering_of(Constants.tested(in_motion), PLAIN.wandering) if change is None else None
+    wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering) if change is None else None
     white = WhiteRows.of(gathered)
     if white is None:
         return LeftOver(remainder, change, swing, wandering)
@@ -79,6 +80,18 @@ def left_over(gathered: Candidates) -> LeftOver:
     line = line_of(gathered, white) or growing_line_of(gathered, white, PLAIN.growing)
     varying = varying_of(gathered, white, PLAIN.varying)
     return LeftOver(remainder, change, swing, wandering, line, following_of(gathered, white), varying)
+
+
+def gather_constants(gathered: Candidates) -> Constants:
+    """What a model takes for constant on the tested rows."""
+    fit, rows = gathered.fit, gathered.rows
+    base = gathered.as_measured(WITH_CHAIN)
+    return Constants(fit.dataset, rows, base, gathered.weights, fit.dry_friction, fit.static_friction[rows])
+
+
+def gather_in_motion(fit: Fit) -> Candidates:
+    """What a model leaves of all rows in motion, those near reversals too, where it is fitted to them."""
+    return gather_curves(widened(fit, "moving"), "moving")
 
 
 def _is_plain(fit: Fit) -> bool:

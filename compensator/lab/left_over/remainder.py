@@ -12,8 +12,7 @@ from scipy.signal import sosfreqz
 
 from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.low_pass import filter_sections
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset, Trial
 
 BANDS = (0.0, 0.25, 0.5, 0.9)  # of the cut-off: the motion's, a gap, and the noise's

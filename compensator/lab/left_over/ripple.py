@@ -32,8 +32,7 @@ from compensator.lab.left_over.swinging import (
     voltage_of,
 )
 from compensator.lab.left_over.waves import Waves
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import Base
 

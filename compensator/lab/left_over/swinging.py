@@ -19,9 +19,8 @@ import numpy as np
 from scipy.stats import binom
 
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray, Trial
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset, Trial
 
 CHANCE = PLAIN.swing  # of such a line in noise alone, with any carrier
 LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
-from compensator.lab.left_over.following import is_large, new_columns
 from compensator.lab.left_over.white_rows import FORETOLD, WhiteRows
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
@@ -71,12 +70,12 @@ def varying_of(gathered: Candidates, white: WhiteRows, most: float) -> Varying |
     if not found:
         return None
     best, columns = min(found, key=lambda one: one[0].chance)
-    return best if best.is_there(most) and is_large(gathered, white, columns) else None
+    return best if best.is_there(most) and white.is_large(gathered, columns) else None
 
 
 def _varying(of: tuple[str, str], white: WhiteRows, columns: FloatArray, tries: int) -> Varying:
     """How surely a coefficient varies, by its weighted column (n, 1), one of so many."""
-    fresh = new_columns(white, columns)
+    fresh = white.new(columns)
     if fresh.shape[1] == 0:
         return Varying(*of, 1.0, 0.0)
     chance = tries * white.noise.chance(float(np.sum((white.residual @ fresh) ** 2)), fresh.shape[1])

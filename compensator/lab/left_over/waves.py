@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 APART = 1e-3  # of their powers: of less, cosine and sine can hardly be told from each other beside the model
 

@@ -9,14 +9,14 @@ import numpy as np
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fitted import Fit, Term, bounds_of, with_terms
-from compensator.lab.model.linear import Solution, solve
+from compensator.lab.model.fitted import Fit, bounds_of, trained_trials, with_terms
+from compensator.lab.model.linear import Solution, Term, solve
 from compensator.lab.model.prediction import PlainColumns, with_own_prediction
 from compensator.lab.model.shape_search import find_shapes, first_shapes
 from compensator.lab.model.weights import regime_weights
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray, Regime
-from compensator.lab.rows.dataset import Dataset, IntArray, RowChoice
+from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.rows.dataset import Dataset, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
 MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
@@ -65,22 +65,6 @@ def fit_sliding(
     return _fit(dataset, steady, rows, shapes or {}, np.ones(len(rows)))
 
 
-def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
-    """Which trials a model may be fitted to: those of its training rows, and those that nobody held out.
-
-    A trial of reversals or starts alone has no sliding row, and so no training row of a model of sliding; it is not
-    held out by that. Where other trials are held out on purpose, it stays out of either.
-
-    Args:
-        dataset: of the rows.
-        training: rows of the study's choice that the model is fitted to, shape (N,).
-    """
-    trained = np.unique(dataset.trial_index[training])
-    counted = np.unique(dataset.trial_index[dataset.counted])
-    every = np.arange(len(dataset.trials), dtype=np.int64)
-    return every if np.isin(counted, trained).all() else trained
-
-
 def widened(fit: Fit, rows: RowChoice) -> Fit:
     """The same model on another choice of rows of the same trials, its shapes kept."""
     trials = fit.dataset.trial_index
@@ -115,7 +99,7 @@ def _fit(
         return fit
     fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept}, weight)
     for _ in range(MOST_SEARCHES):
-        before, own = fit.shapes, with_own_prediction(fit)
+        before, own = fit.shapes, with_own_prediction(fit.dataset, fit.terms)
         shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before)
         if shapes == before and not misread:
             break
@@ -134,7 +118,7 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], we
     last, given, before, earlier = np.inf, fit, fit.predicted, None
     kept: PlainColumns | None = None if misread else {}  # else the motions themselves change
     for _ in range(MOST_PASSES):
-        fit = fit_linear(with_own_prediction(given, kept), effects, fit.training, shapes, weight)
+        fit = fit_linear(with_own_prediction(given.dataset, given.terms, kept), effects, fit.training, shapes, weight)
         step = fit.predicted - before
         change = float(np.linalg.norm(step))
         if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or (change >= last and earlier is None):
@@ -188,7 +172,7 @@ def _terms(effects: Sequence[Effect], shapes: Mapping[str, Shape], solution: Sol
 def with_coefficients(fit: Fit, coefficients: FloatArray) -> Fit:
     """The fit with other coefficients (K,), and what the model then predicts."""
     changed = with_terms(fit, coefficients)
-    dataset = with_own_prediction(changed)
+    dataset = with_own_prediction(changed.dataset, changed.terms)
     columns = dataset.columns_of_model(fit.effects, fit.shapes)
     return replace(changed, dataset=dataset, columns=columns, target=dataset.target)
 

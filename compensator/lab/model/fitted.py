@@ -7,33 +7,13 @@ from functools import cached_property
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Shape
-from compensator.lab.model.linear import Bounds
+from compensator.lab.model.linear import Bounds, Term
 from compensator.lab.model.weights import RowWeights
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
 
 STATIC = "stribeck"
 DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
-
-
-@dataclass(frozen=True)
-class Term:
-    """One fitted effect.
-
-    Attributes:
-        effect: which.
-        shape: its nonlinear shape values.
-        coefficients: one per parameter of the effect, shape (k,).
-        kept: which of them the data determine.
-        at_bound: which of them a physical bound holds.
-    """
-
-    effect: Effect
-    shape: Shape
-    coefficients: FloatArray
-    kept: BoolArray
-    at_bound: BoolArray
 
 
 @dataclass(frozen=True)
@@ -138,3 +118,19 @@ def bounds_of(effects: Sequence[Effect], dataset: Dataset) -> Bounds:
     ranges = [range_ for effect in effects for range_ in effect.ranges_in(quantity)]
     low, high = np.array(ranges).reshape(-1, 2).T
     return Bounds(low, high)
+
+
+def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
+    """Which trials a model may be fitted to: those of its training rows, and those that nobody held out.
+
+    A trial of reversals or starts alone has no sliding row, and so no training row of a model of sliding; it is not
+    held out by that. Where other trials are held out on purpose, it stays out of either.
+
+    Args:
+        dataset: of the rows.
+        training: rows of the study's choice that the model is fitted to, shape (N,).
+    """
+    trained = np.unique(dataset.trial_index[training])
+    counted = np.unique(dataset.trial_index[dataset.counted])
+    every = np.arange(len(dataset.trials), dtype=np.int64)
+    return every if np.isin(counted, trained).all() else trained

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 DEPENDENT = 1e-4  # share of a column's norm left after projection below which it is no new direction
 
@@ -33,6 +33,25 @@ class Solution:
         at_bound: coefficients that a bound holds, shape (k,).
     """
 
+    coefficients: FloatArray
+    kept: BoolArray
+    at_bound: BoolArray
+
+
+@dataclass(frozen=True)
+class Term:
+    """One fitted effect.
+
+    Attributes:
+        effect: which.
+        shape: its nonlinear shape values.
+        coefficients: one per parameter of the effect, shape (k,).
+        kept: which of them the data determine.
+        at_bound: which of them a physical bound holds.
+    """
+
+    effect: Effect
+    shape: Shape
     coefficients: FloatArray
     kept: BoolArray
     at_bound: BoolArray

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.effects.effect import Motion, Shape
-from compensator.lab.model.fitted import Fit, Term
+from compensator.lab.model.linear import Term
 from compensator.lab.model.reading import at_true_position
 from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
@@ -21,35 +21,36 @@ PlainColumns = dict[tuple[int, str, Shape], FloatArray]
 """Columns (k, n) at the full rate of effects that build on no prediction, by trial, effect and shape."""
 
 
-def with_own_prediction(fit: Fit, kept: PlainColumns | None = None) -> Dataset:
-    """The fit's rows, with its own predicted load and effort in every motion.
+def with_own_prediction(dataset: Dataset, terms: Sequence[Term], kept: PlainColumns | None = None) -> Dataset:
+    """The rows, with the model's own predicted load and effort in every motion.
 
     Args:
-        fit: of a model.
+        dataset: of the rows.
+        terms: of the fitted model.
         kept: filled, and used where the same motions are predicted once more, as in each pass of a fit; None: none are.
     """
-    fit = replace(fit, dataset=at_true_position(fit.dataset, fit.terms))
-    per_torque = effort_per_torque(fit)
+    dataset = at_true_position(dataset, terms)
+    per_torque = effort_per_torque(dataset, terms)
     loads, totals, beyond, wholes = [], [], [], []
-    for index, trial in enumerate(fit.dataset.trials):
+    for index, trial in enumerate(dataset.trials):
         load = np.zeros(len(trial.motion.time_s))
         total = np.zeros(len(trial.motion.time_s))
-        for term in fit.terms:
+        for term in terms:
             if term.effect.builds_on == "effort":
                 continue  # its column is made of the rest
             part = term.coefficients @ _at_full_rate(term, index, trial.motion, kept)
             total += part
             if term.effect.carried:
                 load += part
-        known = _inertia_beyond(fit, trial.motion, per_torque)
-        whole = whole_inertia(fit, trial.motion)
+        known = _inertia_beyond(terms, trial.motion, per_torque)
+        whole = whole_inertia(terms, trial.motion)
         inertia = known if trial.motion.facts.arm_inertia_kg_m2 else whole
         beyond.append((inertia, (load + inertia * trial.motion.acceleration) / (inertia or np.inf)))
         loads.append(load + known * trial.motion.acceleration)
         totals.append(total)
         wholes.append(whole)
-    dataset = fit.dataset.with_prediction(loads, totals, beyond, wholes)
-    steep = [term for term in fit.terms if term.effect.slope is not None and np.any(term.coefficients)]
+    dataset = dataset.with_prediction(loads, totals, beyond, wholes)
+    steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset
     motions = [trial.motion for trial in dataset.trials]
@@ -66,15 +67,15 @@ def _at_full_rate(term: Term, index: int, motion: Motion, kept: PlainColumns | N
     return kept[key]
 
 
-def beyond_tangent(fit: Fit, index: int, coefficients: FloatArray) -> FloatArray:
+def beyond_tangent(dataset: Dataset, terms: Sequence[Term], index: int, coefficients: FloatArray) -> FloatArray:
     """What a model that bends predicts with other coefficients (K,), less what its columns make of them.
 
     Returns:
         Of the rows of one trial, shape (n,).
     """
-    trial = fit.dataset.trials[index]
-    ends = np.cumsum([len(term.coefficients) for term in fit.terms])[:-1]
-    parts = list(zip(fit.terms, np.split(coefficients, ends), strict=True))
+    trial = dataset.trials[index]
+    ends = np.cumsum([len(term.coefficients) for term in terms])[:-1]
+    parts = list(zip(terms, np.split(coefficients, ends), strict=True))
     shares = [part @ t.effect.columns(trial.motion, t.shape) for t, part in parts if t.effect.builds_on != "effort"]
     total = np.sum(shares, axis=0)
     moved = replace(trial.motion, predicted=total)
@@ -84,7 +85,7 @@ def beyond_tangent(fit: Fit, index: int, coefficients: FloatArray) -> FloatArray
             found = found + part @ (
                 term.effect.columns(moved, term.shape) - term.effect.columns(trial.motion, term.shape)
             )
-    return replace(fit.dataset, trials=(trial,), cache={}).stack([found[None]])[:, 0]
+    return replace(dataset, trials=(trial,), cache={}).stack([found[None]])[:, 0]
 
 
 def _bend(steep: Sequence[Term], motion: Motion) -> FloatArray:
@@ -116,29 +117,29 @@ def _doubt(steep: Sequence[Term], motion: Motion) -> FloatArray:
     return doubt
 
 
-def effort_per_torque(fit: Fit) -> float | None:
+def effort_per_torque(dataset: Dataset, terms: Sequence[Term]) -> float | None:
     """Effort per N m of load: 1 where the effort is a torque, else by the load's known weight, if any."""
-    if fit.dataset.effort_definition.unit in ("N m", "N"):
+    if dataset.effort_definition.unit in ("N m", "N"):
         return 1.0
-    gravity = next((term for term in fit.terms if term.effect.name == "gravity"), None)
+    gravity = next((term for term in terms if term.effect.name == "gravity"), None)
     if gravity is None:
         return None
     arm, scale = gravity.coefficients
     if scale > 0.0:
         return float(scale)
-    moments = [trial.motion.load_moment_n_m for trial in fit.dataset.trials]
+    moments = [trial.motion.load_moment_n_m for trial in dataset.trials]
     return float(arm / max(moments)) if max(moments) > 0.0 and arm > 0.0 else None
 
 
-def _inertia_beyond(fit: Fit, motion: Motion, per_torque: float | None) -> float:
+def _inertia_beyond(terms: Sequence[Term], motion: Motion, per_torque: float | None) -> float:
     """Effort per acceleration of what hangs beyond the gear, as far as that is known; of a linear joint, all of it."""
     beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
     if beyond_kg_m2 > 0.0 and per_torque is not None:
         return per_torque * beyond_kg_m2
-    return 0.0 if motion.facts.joint == "rotary" else whole_inertia(fit, motion)
+    return 0.0 if motion.facts.joint == "rotary" else whole_inertia(terms, motion)
 
 
-def whole_inertia(fit: Fit, motion: Motion) -> float:
+def whole_inertia(terms: Sequence[Term], motion: Motion) -> float:
     """Effort per acceleration of everything, rotor and all: the best guess where no drawing tells."""
-    inertia = next((term for term in fit.terms if term.effect.name == "inertia"), None)
+    inertia = next((term for term in terms if term.effect.name == "inertia"), None)
     return 0.0 if inertia is None else float(inertia.coefficients @ (1.0, motion.load_inertia_kg_m2))

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
-from compensator.lab.model.fitted import Term
+from compensator.lab.model.linear import Term
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset, Trial

@@ -11,8 +11,7 @@ from scipy.optimize import minimize
 
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.model.linear import orthonormal
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 
 SWEEPS = 2  # the first shape is found while the others' are guesses

@@ -18,8 +18,7 @@ from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.processing import EDGE_PERIODS
-from compensator.lab.recordings.recording import Condition, FloatArray, Recording
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, Condition, FloatArray, Recording
 from compensator.lab.rows.assembly import more_trials
 
 PIECE_ROWS = 200_000
@@ -162,7 +161,7 @@ def later_by(conditions: Mapping[str, Condition], seconds: float) -> dict[str, C
 def _sums(fit: Fit, recording: Recording, kept: BoolArray) -> Sums:
     """Normal equations of one piece, on the rows that the model is fitted to."""
     part = more_trials(fit.dataset, [recording])
-    dataset = with_own_prediction(replace(fit, dataset=part))
+    dataset = with_own_prediction(part, fit.terms)
     made = dataset.columns_of_effects([(term.effect, [term.shape]) for term in fit.terms])
     columns = np.concatenate([block for (block,) in made], axis=1)[:, kept]
     rows = dataset.in_regimes(dataset.choice_for(fit.effects))

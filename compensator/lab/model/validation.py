@@ -9,13 +9,11 @@ from typing import Literal
 
 import numpy as np
 
-from compensator.lab.model.fit import trained_trials
-from compensator.lab.model.fitted import Fit
+from compensator.lab.model.fitted import Fit, trained_trials
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import beyond_tangent
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import IntArray, RowChoice
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import RowChoice
 
 UNDETERMINED = 1e-9  # share of what all trials tell of a coefficient below which the others know nothing of it
 FEWEST_TRIALS = 4  # fewer cannot be resampled or left out one by one
@@ -163,7 +161,9 @@ def _beyond_tangent(fit: Fit, kept: BoolArray, coefficients: FloatArray, rows: B
     trials = fit.dataset.trial_index
     whole = np.zeros(len(kept))
     whole[kept] = coefficients
-    return np.concatenate([beyond_tangent(fit, i, whole)[rows[trials == i]] for i in np.unique(trials[rows])])
+    return np.concatenate(
+        [beyond_tangent(fit.dataset, fit.terms, i, whole)[rows[trials == i]] for i in np.unique(trials[rows])]
+    )
 
 
 def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:

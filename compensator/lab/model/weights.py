@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray, Regime
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.rows.dataset import Dataset
 
 BINS = 4
 NORMAL = 1.4826  # standard deviation over median absolute deviation

@@ -18,8 +18,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.evidence import Base
 
@@ -64,7 +63,7 @@ class BreakawaySeparation(Rivalry):
         """Normal equations that the starts of trials to come would add; none where they have no start."""
         every = np.ones(len(dataset.trial_index), dtype=bool)
         planned = replace(self._fit, dataset=dataset, training=every)
-        rows = breakaway_rows(replace(planned, dataset=with_own_prediction(planned)))
+        rows = breakaway_rows(replace(planned, dataset=with_own_prediction(dataset, planned.terms)))
         if rows is None:
             return Equations(0, np.zeros_like(self.measured.gram))
         weight = self._typical_sd / np.maximum(self._deviation(rows), np.finfo(float).tiny)

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
 NEGLIGIBLE = 1e-9  # share of the largest eigenvalue below which normal equations say nothing
 

@@ -21,8 +21,8 @@ from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.next_trial.projected import Projected
 from compensator.lab.next_trial.sizes import chance_of, possible_sizes, promised
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 
 
 @dataclass(frozen=True)

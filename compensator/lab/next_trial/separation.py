@@ -11,9 +11,8 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry, rows_per_independent_row
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.discrepancy import model_columns
 from compensator.lab.screening.evidence import Block, inflation_of
@@ -56,7 +55,7 @@ class Separation(Rivalry):
     def of_trials(self, dataset: Dataset) -> Equations:
         """Normal equations that trials to come would add, by the model's own prediction."""
         planned = replace(self._fit, dataset=dataset)
-        dataset = with_own_prediction(planned)
+        dataset = with_own_prediction(planned.dataset, planned.terms)
         columns = [dataset.unchecked_columns(term.effect, [term.shape])[0] for term in self._fit.terms]
         counted = dataset.in_regimes(self._show_in)
         fit = replace(planned, dataset=dataset, columns=np.concatenate(columns, axis=1))

@@ -13,8 +13,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt, welch
 
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.place_locked import place_locked_hz
 from compensator.lab.recordings.processing import Signals, lowest_cutoff_hz, make_signals, sample_rate_hz

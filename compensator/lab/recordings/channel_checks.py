@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.gaps import LONGEST_GAP_PERIODS, typical_step_s
 from compensator.lab.recordings.recording import FloatArray, Recording
 

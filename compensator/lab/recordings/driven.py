@@ -7,8 +7,7 @@ say nothing of what the motor has to overcome.
 
 import numpy as np
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 SHORTEST_S = 5.0  # of a stretch: in less, a well-oiled flywheel loses next to nothing
 BLOCK_S = 0.5  # over which speed is averaged: noise does not hide that it falls

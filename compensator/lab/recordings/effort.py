@@ -1,74 +1,22 @@
-"""The effort: the measured quantity that the models predict (torque, force, current or terminal voltage)."""
+"""Which effort a study predicts: torque, force, current or terminal voltage, as its recordings measure it."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.recordings.facts import EffortQuantity, Facts
-from compensator.lab.recordings.recording import FloatArray, Recording
-
-
-@dataclass(frozen=True, slots=True)
-class Effort:
-    """The predicted quantity: its name, its unit, and how it is had from a recording.
-
-    Attributes:
-        quantity: which one.
-        title: in words, for axes.
-        unit: of the values.
-        channels: that a recording must have.
-        factor: applied to the product of the channels.
-    """
-
-    quantity: EffortQuantity
-    title: str
-    unit: str
-    channels: tuple[str, ...]
-    factor: float = 1.0
-
-    def of(self, recording: Recording) -> FloatArray:
-        """The effort over the recording's own time stamps, shape (n,), in `unit`."""
-        values = np.full(len(recording), self.factor)
-        for name in self.channels:
-            values = values * recording.channels[name]
-        return values
-
-
-def _torque(_: Facts) -> Effort:
-    return Effort("torque", "joint torque", "N m", ("torque_n_m",))
-
-
-def _force(_: Facts) -> Effort:
-    return Effort("force", "force", "N", ("force_n",))
-
-
-def _current(channel: str, quantity: EffortQuantity, title: str) -> Callable[[Facts], Effort]:
-    def make(facts: Facts) -> Effort:
-        if facts.torque_per_current_n_m_a is None:
-            return Effort(quantity, title, "A", (channel,))
-        return Effort(quantity, f"joint torque from {title}", "N m", (channel,), facts.torque_per_current_n_m_a)
-
-    return make
-
-
-def _terminal_voltage(_: Facts) -> Effort:
-    return Effort("terminal_voltage", "terminal voltage", "V", ("voltage_v",))
-
-
-def _duty_times_supply(_: Facts) -> Effort:
-    return Effort("terminal_voltage", "terminal voltage (duty x supply)", "V", ("duty", "supply_v"))
-
+from compensator.lab.recordings.facts import Effort, Facts
+from compensator.lab.recordings.recording import Recording
 
 # in order of preference: what is measured closest to the load comes first
-_MAKERS: tuple[tuple[EffortQuantity, Callable[[Facts], Effort]], ...] = (
-    ("torque", _torque),
-    ("force", _force),
-    ("current", _current("current_a", "current", "measured current")),
-    ("current_estimate", _current("current_estimate_a", "current_estimate", "current from duty and speed")),
-    ("terminal_voltage", _duty_times_supply),
-    ("terminal_voltage", _terminal_voltage),
+_EFFORTS = (
+    Effort("torque", "joint torque", "N m", ("torque_n_m",)),
+    Effort("force", "force", "N", ("force_n",)),
+    Effort("current", "measured current", "A", ("current_a",)),
+    Effort("current_estimate", "current from duty and speed", "A", ("current_estimate_a",)),
+    Effort("terminal_voltage", "terminal voltage (duty x supply)", "V", ("duty", "supply_v")),
+    Effort("terminal_voltage", "terminal voltage", "V", ("voltage_v",)),
 )
 
 
@@ -78,7 +26,7 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
     Raises:
         UnusableDataError: no such quantity in some recording; the message names it and the channels needed.
     """
-    wanted = [make(facts) for quantity, make in _MAKERS if facts.effort in (None, quantity)]
+    wanted = [_known(effort, facts) for effort in _EFFORTS if facts.effort in (None, effort.quantity)]
     for effort in wanted:
         if all(_measured(recording, effort.channels) for recording in recordings):
             return effort
@@ -93,6 +41,14 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
         f"the {len(recordings)} recordings share no effort channel, though each has one; wanted in all of them "
         f"{needed}; choose trials that measure the same"
     )
+
+
+def _known(effort: Effort, facts: Facts) -> Effort:
+    """A current as the torque that it makes, where that is known."""
+    per_current = facts.torque_per_current_n_m_a
+    if effort.unit != "A" or per_current is None:
+        return effort
+    return replace(effort, title=f"joint torque from {effort.title}", unit="N m", factor=per_current)
 
 
 def _measured(recording: Recording, channels: tuple[str, ...]) -> bool:

@@ -1,7 +1,14 @@
-"""What the lab is told about the joint. Everything is optional; what is missing limits what can be named."""
+"""What the lab is told about the joint, and of the effort that its models predict.
+
+Everything is optional; what is missing limits what can be named.
+"""
 
 from dataclasses import dataclass
 from typing import Literal
+
+import numpy as np
+
+from compensator.lab.recordings.recording import FloatArray, Recording
 
 EffortQuantity = Literal["torque", "force", "current", "current_estimate", "terminal_voltage"]
 
@@ -44,3 +51,29 @@ class Facts:
     def position_unit(self) -> Literal["rad", "m"]:
         """Unit of position: rad or m."""
         return "rad" if self.joint == "rotary" else "m"
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """The predicted quantity: its name, its unit, and how it is had from a recording.
+
+    Attributes:
+        quantity: which one.
+        title: in words, for axes.
+        unit: of the values.
+        channels: that a recording must have.
+        factor: applied to the product of the channels.
+    """
+
+    quantity: EffortQuantity
+    title: str
+    unit: str
+    channels: tuple[str, ...]
+    factor: float = 1.0
+
+    def of(self, recording: Recording) -> FloatArray:
+        """The effort over the recording's own time stamps, shape (n,), in `unit`."""
+        values = np.full(len(recording), self.factor)
+        for name in self.channels:
+            values = values * recording.channels[name]
+        return values

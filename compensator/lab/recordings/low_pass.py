@@ -10,12 +10,9 @@ from functools import lru_cache
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt_zi
 
-from compensator.lab.recordings.recording import FloatArray
-
-IntArray = NDArray[np.int64]
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
 FILTER_ORDER = 4
 PADDING = 3  # times the filter's length, continued at both ends

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import f as f_distribution
 
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 PLACES = 256  # of a pass

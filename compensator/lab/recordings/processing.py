@@ -12,12 +12,10 @@ import numpy as np
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.driven import driven_from_outside
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.gaps import is_before_gap, typical_step_s
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
-from compensator.lab.recordings.recording import FloatArray, Recording
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, Recording
 
 DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
 REGULAR_SHARE = 0.05  # of the period: jitter that counts as regular sampling

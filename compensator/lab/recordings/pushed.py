@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.recording import FloatArray, Recording
 from compensator.lab.recordings.reversals import slider, strokes_of
 

@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from compensator.lab.recordings.recording import FloatArray
-
-BoolArray = NDArray[np.bool_]
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 SLIDE_MARGIN_S = 0.04
 # of the cut-off: beyond, the filter leaves a fortieth of a blow, and rows at reversals are off by so many times noise

@@ -10,8 +10,8 @@ from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.errors import NeverSlidesError, UnusableDataError
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.channel_checks import check_channels
-from compensator.lab.recordings.effort import Effort, choose_effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, SATURATED_DUTY, Signals, make_signals
 from compensator.lab.recordings.pushed import pushed
 from compensator.lab.recordings.recording import FloatArray, Recording

@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import rate_of_change
-from compensator.lab.recordings.effort import Effort
-from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.low_pass import low_pass_each
 from compensator.lab.recordings.processing import Signals
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray, Regime
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.recordings.regimes import Regime
 
 RowChoice = Literal["sliding", "moving", "all"]
-IntArray = NDArray[np.int64]
 ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds the one before
 
 MOST_VALUES = 2**20  # of one trial, at the full rate, that are filtered at once

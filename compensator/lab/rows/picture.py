@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
 BINS = 24
 FEWEST_PER_BIN = 5

@@ -9,17 +9,17 @@ import numpy as np
 from compensator.lab.effects import catalogue
 from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.errors import NotApplicableError
-from compensator.lab.model.fitted import Fit
+from compensator.lab.model.fitted import STATIC, Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import bounded_influence, row_weights
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.discrepancy import model_columns
 from compensator.lab.screening.evidence import Base, Block
 from compensator.lab.screening.generic import HYSTERESIS_DRIVER, DriverBlock, driver_blocks, hysteresis_columns
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns
+from compensator.lab.screening.stops import StopToStop
 
 WITH_CHAIN = 0  # base with all columns that the measuring chain can produce; others lack what an effect stands in for
 
@@ -139,7 +139,7 @@ def gather_curves(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
 
 
 def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
-    dataset = with_own_prediction(fit)
+    dataset = with_own_prediction(fit.dataset, fit.terms)
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
     weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
@@ -205,3 +205,23 @@ def _hidden(effect: Effect, hiding: list[str]) -> str:
         f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
         f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
     )
+
+
+def noise_of(gathered: Candidates, left: Candidates) -> Noise:
+    """The noise of the candidates' rows, from what is left of them once more is in the model."""
+    before = float(gathered.bases[0].residual @ gathered.bases[0].residual)
+    base = left.bases[0]
+    return Noise.learnt(gathered.fit.dataset, gathered.rows, (base.basis, base.residual), before, _strokes_of(gathered))
+
+
+def _strokes_of(gathered: Candidates) -> StopToStop | None:
+    """Static friction from stop to stop in the tested rows; None where the model has none."""
+    fit, rows = gathered.fit, gathered.rows
+    ends = np.cumsum([len(term.coefficients) for term in fit.terms])
+    place = next((int(end) - 1 for end, term in zip(ends, fit.terms, strict=True) if term.effect.name == STATIC), None)
+    if place is None or fit.coefficients[place] <= 0.0:
+        return None
+    stroke = np.concatenate([trial.motion.strokes.index[trial.picked] for trial in fit.dataset.trials])
+    _, index = np.unique(np.stack([fit.dataset.trial_index, stroke])[:, rows], axis=1, return_inverse=True)
+    share = gathered.weights * fit.columns[rows, place] * fit.coefficients[place]
+    return StopToStop(share, np.asarray(index, dtype=np.int64).ravel())

@@ -19,7 +19,8 @@ from itertools import chain, combinations
 import numpy as np
 
 from compensator.lab.effects.effect import Motion, Shape
-from compensator.lab.model.fitted import Fit, Term
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.linear import Term
 from compensator.lab.model.reading import at_position
 from compensator.lab.recordings.recording import FloatArray
 

@@ -14,8 +14,7 @@ from scipy.stats import chi2
 
 from compensator.lab.chance import SIGN_FLIPS
 from compensator.lab.model.linear import orthonormal
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.noise import Noise, strength
 
 SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain

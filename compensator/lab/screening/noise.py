@@ -16,9 +16,8 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.stats import f as fisher
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import Dataset, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.stops import StopToStop
 
 MEMORY_S = 2.0  # beyond which residuals are taken to be independent, as stretches are

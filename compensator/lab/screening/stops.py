@@ -12,12 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
-from compensator.lab.rows.dataset import IntArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
-TERM = "stribeck"  # what static friction is more than Coulomb's, at the row's speed
 VARIANCES = np.concatenate([[0.0], np.geomspace(1e-3, 1.0, 61) ** 2])  # of the factor: none to all of it
 MOST = 60  # strokes that the variance is learnt from, those with most static friction
 NEGLIGIBLE = 1e-6  # share of the strokes' power: the base explains it
@@ -34,28 +30,6 @@ class StopToStop:
 
     share: FloatArray
     index: IntArray
-
-    @classmethod
-    def of(cls, fit: Fit, rows: BoolArray, weights: FloatArray) -> "StopToStop | None":
-        """Of the chosen rows (N,), weighted (n,); None where the model has no static friction.
-
-        Args:
-            fit: of the model.
-            rows: chosen, shape (N,).
-            weights: of the chosen rows, shape (n,).
-        """
-        ends = np.cumsum([len(term.coefficients) for term in fit.terms])
-        place = next(
-            (int(end) - 1 for end, term in zip(ends, fit.terms, strict=True) if term.effect.name == TERM), None
-        )
-        if place is None or fit.coefficients[place] <= 0.0:
-            return None
-        stroke = [trial.motion.strokes.index[trial.picked] for trial in fit.dataset.trials]
-        _, index = np.unique(
-            np.stack([fit.dataset.trial_index, np.concatenate(stroke)])[:, rows], axis=1, return_inverse=True
-        )
-        share = weights * fit.columns[rows, place] * fit.coefficients[place]
-        return cls(share, np.asarray(index, dtype=np.int64).ravel())
 
     @property
     def power(self) -> FloatArray:

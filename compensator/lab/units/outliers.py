@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtr, stdtrit
 
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray
 from compensator.lab.units.random_effects import UPPER, UnitValues, scatter_squared, weighted_mean
 
 FEWEST_LEFT = 3  # without an outlier: each of them still has two others, whose scatter can be known

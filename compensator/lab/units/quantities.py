@@ -8,8 +8,7 @@ import numpy as np
 from compensator.lab.effects.effect import Shape
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import standard_errors
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.units.random_effects import UnitValues
 
 FEWEST_UNITS = 3

@@ -11,8 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import chdtri, fdtrc, stdtrit
 
-from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.recordings.regimes import BoolArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 CONFIDENCE = 0.95
 UPPER = 0.5 + 0.5 * CONFIDENCE

@@ -1,12 +1,13 @@
-"""Which control periods a drive on a bus can have."""
+"""Which control periods a drive on a bus can have: its watchdog and the load of the bus say."""
 
 from collections.abc import Iterable
 from typing import Final
 
-from drivers.canopen.cia301.bus_load import cycle_s
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
 
+_OVERHEAD_BITS = 47  # of a frame with an 11-bit identifier, with the gap to the next (ISO 11898-1)
+_STUFFING = 1.2  # stuff bits: one in five of what they apply to, at worst
 _WATCHDOG_PERIODS: Final = 2  # cycles that the watchdog has to outlast
 
 
@@ -43,3 +44,13 @@ def check_bus_load(settings: CanopenSettings, loads: Iterable[tuple[int, ...]], 
             f"control period {period_s:g} s: the frames of a cycle take {fastest_s:.3g} s on this bus; "
             "at least that is wanted; change the period or the bit rate",
         )
+
+
+def cycle_s(payload_bytes: tuple[int, ...], bitrate: int) -> float:
+    """Longest time that frames need [s].
+
+    Args:
+        payload_bytes: of each frame.
+        bitrate: of the bus [bit/s].
+    """
+    return sum((_OVERHEAD_BITS + 8 * size) * _STUFFING for size in payload_bytes) / bitrate

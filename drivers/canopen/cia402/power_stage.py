@@ -9,6 +9,7 @@ from typing import Final
 from drivers.canopen.cia301.heartbeat import NmtState
 from drivers.canopen.cia301.objects import CONTROLWORD
 from drivers.canopen.cia402.demand import Demand
+from drivers.canopen.cia402.homing import HomingDemand, set_up
 from drivers.canopen.cia402.mode_switch import ModeSwitch
 from drivers.canopen.cia402.state_machine import (
     DISABLE_VOLTAGE,
@@ -47,7 +48,7 @@ class PowerStage:
         """As last received."""
         return state_of(self._session.statusword)
 
-    def switch_on(self, mode: Mode) -> Demand:
+    def switch_on(self, mode: Mode) -> Demand | HomingDemand:
         """Switch the mode, arm the watchdog, and power the stage with nothing demanded.
 
         A watchdog whose reaction the drive does not tell is tried now, before anything can move.
@@ -133,7 +134,7 @@ class PowerStage:
         if status_of(self.state) is Status.FAULT and self._session.lost_its_host():
             self.clear_fault()
 
-    def _power(self, mode: Mode) -> Demand:
+    def _power(self, mode: Mode) -> Demand | HomingDemand:
         session = self._session
         self._refresh()
         if status_of(self.state) is Status.FAULT:
@@ -147,7 +148,7 @@ class PowerStage:
         if self.state in (State.ENABLED, State.QUICK_STOP):
             self.switch_off()
         session.emergency = None
-        demand = Demand(session.settings, session.found, session.data, mode, session.position_counts)
+        demand = self._demand(mode)
         switch = ModeSwitch(session, demand.code)
         shown = switch.select()
         if not shown:
@@ -161,7 +162,15 @@ class PowerStage:
             switch.await_shown(lambda: self._step(demand))
         return demand
 
-    def _enable(self, demand: Demand) -> None:
+    def _demand(self, mode: Mode) -> Demand | HomingDemand:
+        session = self._session
+        if mode is not Mode.HOME:
+            return Demand(session.settings, session.found, session.data, mode, session.position_counts)
+        assert session.settings.homing is not None, "checked when it was enabled"
+        set_up(session.table, session.found.scale, session.settings.homing)
+        return HomingDemand(session.data)
+
+    def _enable(self, demand: Demand | HomingDemand) -> None:
         limit_s = self._session.settings.enable_s
         if not _repeat(lambda: self._step(demand) and self.state is State.ENABLED, limit_s):
             raise DriveStateError(
@@ -170,7 +179,7 @@ class PowerStage:
                 "Check supply, enable input (safe torque off) and brake; a drive that needs longer gets enable_s",
             )
 
-    def _step(self, demand: Demand) -> bool:
+    def _step(self, demand: Demand | HomingDemand) -> bool:
         """One cycle towards operation enabled, nothing demanded; tell whether it was answered."""
         session = self._session
         # a drive counts from the first sign of life that it hears: it has heard some before the power comes

@@ -12,6 +12,7 @@ from sim_backend.devices.canopen.emergency import ErrorCode
 from sim_backend.devices.canopen.measured import Measured
 from sim_backend.devices.canopen.modes.braking import Braking
 from sim_backend.devices.canopen.modes.cyclic_position import CyclicPosition
+from sim_backend.devices.canopen.modes.homing import METHODS, Homing
 from sim_backend.devices.canopen.modes.mode import Mode, Seen, Units
 from sim_backend.devices.canopen.modes.modes import make_modes
 from sim_backend.devices.canopen.modes.position_loop import Gains, PositionLoop
@@ -68,7 +69,7 @@ class ServoDrive:
         self._loop = PositionLoop(Gains.tuned(parameters, rating.torque_n_m))
         self._braking = Braking(self._loop)
         units = Units(self._measured.counts, self._measured.counts_per_s)
-        self._modes = make_modes(family.modes, self.dictionary, self._loop, units)
+        self._modes = make_modes(family.modes, self.dictionary, self._loop, units, self.axis, rating.counts_per_turn)
         self._machine = StateMachine(self._option)
         self._wire()
         self._begin()
@@ -98,6 +99,7 @@ class ServoDrive:
         book.live = {place: source for place, source in live.items() if place in book}
         book.checks[0x6060, 0] = self._check_mode
         book.checks[0x605A, 0] = _check_quick_stop
+        book.checks[0x6098, 0] = _check_homing
         book.reactions[0x6040, 0] = lambda: self._controlwords.append(book.number(0x6040))
         book.reactions[0x607A, 0] = self._aim
         book.reactions[0x60FE, 1] = book.reactions[0x60FE, 2] = self._follow_output
@@ -223,7 +225,7 @@ class ServoDrive:
             if self._machine.obey(word, fault_is_over=self.axis.trip() is None):
                 self.dictionary.put(0x603F, 0, 0)
                 self.node.clear_errors()
-            if was_enabled and isinstance(self._mode, ProfilePosition):
+            if was_enabled and isinstance(self._mode, ProfilePosition | Homing):
                 self._mode.command(word)
         if self._machine.state is not State.OPERATION_ENABLED:
             self._mode_number = self.dictionary.number(0x6060)
@@ -328,4 +330,9 @@ class ServoDrive:
 
 def _check_quick_stop(value: int) -> None:
     if not is_quick_stop_code(value):
+        raise Abort(AbortCode.INVALID_VALUE)
+
+
+def _check_homing(value: int) -> None:
+    if value not in METHODS:
         raise Abort(AbortCode.INVALID_VALUE)

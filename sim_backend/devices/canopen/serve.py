@@ -12,12 +12,13 @@ from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.family import Family, Rating
 from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.objects.generic import GENERIC
+from sim_backend.devices.canopen.objects.homing import HOMING
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.process import RunningDevice
 from sim_backend.errors import ParameterError
 
 DEFAULT_NODE = 5
-FAMILIES = {family.name: family for family in (GENERIC, EPOS4)}
+FAMILIES = {family.name: family for family in (GENERIC, HOMING, EPOS4)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +26,7 @@ class CanOpenSettings(ServedOnBus):
     """A drive, its joint and its bus.
 
     Attributes:
-        family: "generic" or "epos4".
+        family: "generic", "homing" (that one with homing) or "epos4".
         eds: data sheet or configuration file of the drive to be, instead of a family.
         node_id: 1 .. 127; None: what the file says, or 5.
         conduct: the drive's manners.

@@ -3,7 +3,7 @@
 from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.mit.motor import MitMotor
 from sim_backend.devices.mit.short_frames import Top, command_of, motion_of
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import Trip, tripped
 from sim_backend.plant.parameters import PlantParameters
 
 HOT, OVER_CURRENT, UNDER_VOLTAGE, ENCODER = 1, 2, 4, 5
@@ -45,13 +45,8 @@ class CubemarsMotor(MitMotor):
         return True
 
     def trip(self, cause: Trip | None) -> None:
-        """Keep its error; a supply that a hand has cut is a voltage that is too low."""
-        if isinstance(cause, OverTemperature):
-            self._error = HOT
-        elif isinstance(cause, OverCurrent):
-            self._error = OVER_CURRENT
-        else:
-            self._error = UNDER_VOLTAGE if cause is None or isinstance(cause, SupplyLost) else ENCODER
+        """Keep its error."""
+        self._error = tripped(cause, HOT, OVER_CURRENT, UNDER_VOLTAGE, ENCODER)
 
     def lost(self) -> None:
         """Silence does not stop it."""

@@ -5,7 +5,7 @@ from struct import pack, unpack
 from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.mit.motor import Command, MitMotor
 from sim_backend.devices.mit.short_frames import Top, command_of, motion_of
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import Trip, tripped
 from sim_backend.plant.parameters import PlantParameters
 
 SOFTWARE = 0xFFFFFFFF  # so that no record of it is taken for one of hardware
@@ -59,13 +59,8 @@ class DamiaoMotor(MitMotor):
         return False
 
     def trip(self, cause: Trip | None) -> None:
-        """Keep its error; a supply that a hand has cut is a voltage that is too low."""
-        if isinstance(cause, OverTemperature):
-            self._error = HOT
-        elif isinstance(cause, OverCurrent):
-            self._error = OVER_CURRENT
-        else:
-            self._error = UNDER_VOLTAGE if cause is None or isinstance(cause, SupplyLost) else OVERLOAD
+        """Keep its error."""
+        self._error = tripped(cause, HOT, OVER_CURRENT, UNDER_VOLTAGE, OVERLOAD)
 
     def lost(self) -> None:
         """Keep that nobody talks to it."""

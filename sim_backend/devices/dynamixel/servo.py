@@ -7,7 +7,7 @@ from sim_backend.devices.axis import CURRENT, OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.dynamixel.memory import EEPROM, GOALS, READ_ONLY, Kind, Memory
 from sim_backend.devices.dynamixel.packets import EVERYBODY, Instruction, status
 from sim_backend.devices.servos.position_hold import PositionHold, count_rad
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 SIMULATED_FIRMWARE = 255
@@ -69,7 +69,9 @@ class XServo:
             self._watch()
         trip = self.axis.trip()
         if trip is not None or self.axis.torque_is_disabled():
-            memory.put(ERROR, "B", memory.get(ERROR) | _error_of(trip))
+            memory.put(
+                ERROR, "B", memory.get(ERROR) | tripped(trip, OVERHEATING, OVERLOAD, INPUT_VOLTAGE, ELECTRICAL_SHOCK)
+            )
             memory.put(TORQUE, "B", 0)
         if not memory.get(TORQUE):
             return OFF
@@ -199,12 +201,3 @@ def _piece(parameters: bytes) -> tuple[int, int]:
 
 def _within(value: float, limit: float) -> float:
     return max(-limit, min(limit, value))
-
-
-def _error_of(trip: Trip | None) -> int:
-    """Return the bit of Hardware Error Status; a supply that a hand has cut (safe torque off) is too low, too."""
-    if isinstance(trip, OverTemperature):
-        return OVERHEATING
-    if isinstance(trip, OverCurrent):
-        return OVERLOAD
-    return INPUT_VOLTAGE if trip is None or isinstance(trip, SupplyLost) else ELECTRICAL_SHOCK

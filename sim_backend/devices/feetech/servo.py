@@ -7,7 +7,7 @@ from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, VOLTAGE, Axis, Demand
 from sim_backend.devices.feetech.packets import EVERYBODY, Instruction, status
 from sim_backend.devices.servos.position_hold import PositionHold, count_rad
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 SIMULATED_FIRMWARE = (255, 255)
@@ -61,7 +61,7 @@ class StsServo:
         """Return what the stage does for the coming tick."""
         trip = self.axis.trip()
         wrong = trip is not None or self.axis.torque_is_disabled()
-        self._bytes[STATUS] = _status_of(trip) if wrong else 0
+        self._bytes[STATUS] = tripped(trip, HEAT_BIT, CURRENT_BIT, VOLTAGE_BIT, OVERLOAD_BIT) if wrong else 0
         if wrong:
             self._bytes[TORQUE] = 0
         if self._bytes[TORQUE] != 1:
@@ -141,12 +141,3 @@ def _word(value: float, sign_bit: int) -> int:
 def _magnitude(word: int, sign_bit: int) -> int:
     sign = 1 << sign_bit
     return sign - word if word >= sign else word
-
-
-def _status_of(trip: Trip | None) -> int:
-    """Return the bit of the status; a supply that a hand has cut is a voltage that is too low."""
-    if isinstance(trip, OverTemperature):
-        return HEAT_BIT
-    if isinstance(trip, OverCurrent):
-        return CURRENT_BIT
-    return VOLTAGE_BIT if trip is None or isinstance(trip, SupplyLost) else OVERLOAD_BIT

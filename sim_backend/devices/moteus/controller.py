@@ -6,7 +6,7 @@ from typing import NamedTuple
 from drivers.contract import Sample
 from sim_backend.devices.axis import BRAKE, CURRENT, OFF, Axis, Demand
 from sim_backend.devices.moteus.subframes import Console, Read, Scale, Write, apart, console_reply, in_si, reply
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 STOPPED, FAULT, POSITION, TIMEOUT, BRAKING = 0, 1, 10, 11, 15
@@ -86,7 +86,7 @@ class MoteusController:
         """Return what the stage does for the coming tick."""
         cause = self.axis.trip()
         if cause is not None or self.axis.torque_is_disabled():
-            self._mode, self._fault = FAULT, _fault_of(cause)
+            self._mode, self._fault = FAULT, tripped(cause, HOT, DRIVER_FAULT, UNDER_VOLTAGE, NOT_ENABLED)
         if self._mode == BRAKING:
             return Demand(BRAKE)
         if self._mode == POSITION and self._is_late():
@@ -167,12 +167,3 @@ class MoteusController:
                     return b"ERR error setting"
                 return b"OK"
         return b"ERR unknown command"
-
-
-def _fault_of(cause: Trip | None) -> int:
-    """Return the code; a supply that a hand has cut is a voltage that is too low."""
-    if isinstance(cause, OverTemperature):
-        return HOT
-    if isinstance(cause, OverCurrent):
-        return DRIVER_FAULT
-    return UNDER_VOLTAGE if cause is None or isinstance(cause, SupplyLost) else NOT_ENABLED

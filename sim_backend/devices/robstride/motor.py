@@ -4,7 +4,7 @@ from struct import pack, unpack
 
 from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.mit.motor import Command, MitMotor, number, word_of
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import Trip, tripped
 from sim_backend.plant.parameters import PlantParameters
 
 SERIAL = b"SIMULATE"  # so that no record of it is taken for one of hardware
@@ -66,13 +66,8 @@ class RobstrideMotor(MitMotor):
         return True
 
     def trip(self, cause: Trip | None) -> None:
-        """Keep its fault; a supply that a hand has cut is a voltage that is too low."""
-        if isinstance(cause, OverTemperature):
-            self._faults |= HOT
-        elif isinstance(cause, OverCurrent):
-            self._faults |= OVER_CURRENT
-        else:
-            self._faults |= UNDER_VOLTAGE if cause is None or isinstance(cause, SupplyLost) else OVERLOAD
+        """Keep its fault."""
+        self._faults |= tripped(cause, HOT, OVER_CURRENT, UNDER_VOLTAGE, OVERLOAD)
 
     def lost(self) -> None:
         """It goes to its reset mode, and keeps no fault of it."""

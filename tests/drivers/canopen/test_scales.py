@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers.canopen.cia301.bus_load import cycle_s
+from drivers.canopen.cia301.period import cycle_s
 from drivers.canopen.cia402.profiles import CIA402, EPOS4
 from drivers.canopen.cia402.scale import DriveScale
 from drivers.canopen.cia402.units import (

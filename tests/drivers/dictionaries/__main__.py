@@ -13,6 +13,7 @@ from drivers.contract import Watchdog
 from sim_backend.devices.canopen.conduct import Conduct
 from tests.drivers.dictionaries.attempt import Result, attempt
 from tests.drivers.dictionaries.fault_reset import RESETS, TICKS_MS, resets
+from tests.drivers.dictionaries.homing import home
 from tests.drivers.dictionaries.real import sheets_in
 from tests.drivers.dictionaries.traits import TRAITS
 from tests.drivers.dictionaries.two_hosts import WAYS
@@ -37,6 +38,10 @@ def report(folder: Path | None) -> None:
         say(f"data sheets of real drives: {right} of {len(results)} run, or are refused for want of a watchdog")
         for name, result in results.items():
             say(row(name, result))
+        homes = {path.name: home(path) for path in sheets_in(folder)}
+        say(f"homed by an index pulse: {sum(one.found for one in homes.values())} of {len(homes)}")
+        for name, homed in homes.items():
+            say(f"  {name:40} {'homed' if homed.found else homed.refusal or 'not homed'}")
     with tempfile.TemporaryDirectory() as made:
         _report_traits(Path(made))
         plain = TRAITS["plain"].write(Path(made), "plain")

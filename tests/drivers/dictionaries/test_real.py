@@ -5,6 +5,7 @@ import pytest
 from drivers.contract import Watchdog
 from sim_backend.devices.canopen.conduct import Conduct
 from tests.drivers.dictionaries.attempt import attempt
+from tests.drivers.dictionaries.homing import home
 from tests.drivers.dictionaries.real import FOLDER, real_sheets
 
 MISSING = pytest.param(None, marks=pytest.mark.skip(reason=f"{FOLDER} names no folder with EDS or DCF files"))
@@ -29,3 +30,9 @@ def test_one_that_never_watches_is_never_called_proven(sheet) -> None:
     result = attempt(sheet, Conduct(deaf=True, reaction="nothing"))
     assert result.watchdog is not Watchdog.PROVEN
     assert not result.stopped
+
+
+@pytest.mark.parametrize("sheet", SHEETS)
+def test_it_homes_or_is_told_what_it_lacks(sheet) -> None:
+    homed = home(sheet)
+    assert homed.found or "no homing method (0x6098:00)" in homed.refusal, homed

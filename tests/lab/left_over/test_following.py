@@ -5,7 +5,7 @@ import pytest
 
 from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
-from compensator.lab.left_over import following
+from compensator.lab.left_over import following, white_rows
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.following import Following, following_of
 from compensator.lab.left_over.left_over import left_over
@@ -65,7 +65,7 @@ def test_less_sure_curves_are_told_where_they_are_more_than_the_joints_own(monke
     told = following_of(*given, most_if_large=MOST_IF_LARGE)
     assert told is not None
     assert PLAIN.following < told.chance <= MOST_IF_LARGE
-    monkeypatch.setattr(following, "LEAST_OF_FRICTION", 1.0)
+    monkeypatch.setattr(white_rows, "LEAST_OF_FRICTION", 1.0)
     assert following_of(*given, most_if_large=MOST_IF_LARGE) is None
 
 
@@ -75,7 +75,7 @@ def test_a_curve_does_not_hide_itself_in_noise_that_is_learnt_with_it(monkeypatc
     told = following_of(*given, most_if_large=MOST_IF_LARGE)
     assert told is not None
     assert told.driver.startswith("velocity")
-    monkeypatch.setattr(following, "LEAST_OF_FRICTION", 1.0)
+    monkeypatch.setattr(white_rows, "LEAST_OF_FRICTION", 1.0)
     assert following_of(*given, most_if_large=MOST_IF_LARGE) is None
 
 

@@ -10,8 +10,7 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over import ripple
-from compensator.lab.left_over.constants import gather_in_motion
-from compensator.lab.left_over.left_over import left_over
+from compensator.lab.left_over.left_over import gather_in_motion, left_over
 from compensator.lab.left_over.ripple import MOST_GAIN, chance_of_sum, chance_over_noise, ripple_of
 from compensator.lab.left_over.swinging import Swing, motions_of, swing_of
 from compensator.lab.model.fit import fit_model, widened

@@ -5,7 +5,7 @@ import pytest
 
 from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
-from compensator.lab.left_over import following, varying
+from compensator.lab.left_over import varying, white_rows
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.varying import Varying, varying_of
@@ -69,5 +69,5 @@ def test_a_load_that_was_weighed_wrongly_is_none(monkeypatch):
 def test_what_is_next_to_nothing_beside_dry_friction_is_none(monkeypatch):
     fit = thinning()
     assert found(fit) is not None
-    monkeypatch.setattr(following, "LEAST_OF_FRICTION", 1.0)
+    monkeypatch.setattr(white_rows, "LEAST_OF_FRICTION", 1.0)
     assert found(fit) is None

@@ -9,7 +9,8 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over import cells
 from compensator.lab.left_over.constancy import change_of
-from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants, gather_in_motion
+from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET
+from compensator.lab.left_over.left_over import gather_constants, gather_in_motion
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
@@ -28,7 +29,7 @@ def fitted(extra=None, seed=0, **bench):
 
 
 def judged(fit):
-    return wandering_of(Constants.tested(gather_in_motion(fit)))
+    return wandering_of(gather_constants(gather_in_motion(fit)))
 
 
 def jumping(share, of=lambda x: np.sign(x.v)):
@@ -78,7 +79,7 @@ def from_stop_to_stop(share):
 def test_a_jump_that_is_too_small_for_stretches_is_told_with_its_size_and_where_it_is(what, of):
     fit = fitted(jumping(0.03, of), seed=1)
     assert change_of(constants_of(fit)) is None
-    constants, found = Constants.tested(gather_in_motion(fit)), judged(fit)
+    constants, found = gather_constants(gather_in_motion(fit)), judged(fit)
     assert found is not None
     assert found.what == what
     assert found.size == pytest.approx(0.03 * COULOMB_N_M, rel=0.5)
@@ -142,7 +143,7 @@ def test_what_any_joint_has_is_no_wandering(extra, seed):
 
 
 def test_a_trial_whose_reversals_scatter_more_has_a_larger_scale_of_that():
-    constants = Constants.tested(gather_in_motion(fitted(from_reversal_to_reversal(0.3))))
+    constants = gather_constants(gather_in_motion(fitted(from_reversal_to_reversal(0.3))))
     near = (constants.dataset.trial_index[constants.rows] == FASTEST) & ~constants.sliding
     base = replace(constants.base, residual=np.where(near, 3.0, 1.0) * constants.base.residual)
     before, after = (

@@ -62,7 +62,9 @@ def test_far_from_the_tangent_the_model_itself_is_asked(both):
     changed = both.coefficients + 0.02 * (np.arange(len(both.coefficients)) == 3)  # of Coulomb friction
     wanted = with_coefficients(both, changed).predicted
     tangent = both.columns @ changed - both.dataset.bent_effort
-    more = np.concatenate([beyond_tangent(both, index, changed) for index in range(len(both.dataset.trials))])
+    more = np.concatenate(
+        [beyond_tangent(both.dataset, both.terms, index, changed) for index in range(len(both.dataset.trials))]
+    )
     assert np.linalg.norm(tangent + more - wanted) < 0.1 * np.linalg.norm(tangent - wanted)
 
 

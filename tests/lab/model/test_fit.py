@@ -94,7 +94,7 @@ def test_load_friction_comes_from_the_models_own_prediction():
     fit = fit_model(dataset, [*DEFAULT, "load_friction"])
     assert value(fit, "load_friction") == pytest.approx(0.15, rel=0.02)
     assert value(fit, "gravity") == pytest.approx(0.25, rel=0.01)
-    assert effort_per_torque(fit) == 1.0
+    assert effort_per_torque(fit.dataset, fit.terms) == 1.0
     trial = fit.dataset.trials[-1]
     inside = trial.signals.usable
     expected = (0.25 + 0.25 * G_M_S2 * 0.3) * np.sin(trial.motion.position)
@@ -103,7 +103,7 @@ def test_load_friction_comes_from_the_models_own_prediction():
 
 
 def test_the_predicted_load_never_holds_friction_or_the_rotor(noisy):
-    predicted = with_own_prediction(noisy)
+    predicted = with_own_prediction(noisy.dataset, noisy.terms)
     without_load = predicted.trials[0].motion  # nothing hangs: gravity of the arm alone
     assert without_load.load_effort == pytest.approx(value(noisy, "gravity") * np.sin(without_load.position))
     total = noisy.terms[0].coefficients[0] * without_load.acceleration + 0.25 * np.sin(without_load.position)

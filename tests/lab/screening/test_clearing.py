@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from compensator.lab.screening.clearing import _learnt, with_noise
+from compensator.lab.screening.candidates import noise_of
+from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Base, Block, most_likely
 from compensator.lab.screening.noise import Noise
 from tests.lab.screening.test_noise import ALL, NOTHING, ROWS, STEADY, TRIALS, coloured, dataset
@@ -48,7 +49,7 @@ def test_slow_noise_stays_noise():
         noise = coloured(random, 0.95) + random.standard_normal(len(ALL))
         model = Model([Base.of(NOTHING, noise)], slow_curves())
         if most_likely(model.bases, model.named) is not None:
-            kept = _learnt(model, model).autocovariances
+            kept = noise_of(model, model).autocovariances
             cleared.append(not np.array_equal(with_noise(model).autocovariances, kept))
     assert len(cleared) > 8  # else this test shows nothing
     assert np.mean(cleared) <= 0.2

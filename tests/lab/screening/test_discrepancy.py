@@ -10,7 +10,8 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
 from compensator.lab.effects.effect import SESSION_START, Motion
 from compensator.lab.model.fit import fit_model
-from compensator.lab.model.fitted import Fit, Term
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.linear import Term
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset

@@ -41,7 +41,7 @@ def test_an_arm_that_is_behind_weighs_less_by_what_is_known():
     told = replace(FACTS, backlash_rad=GAP_RAD, stiffness_n_m_rad=STIFFNESS_N_M_RAD, arm_inertia_kg_m2=1e-3)
     told = replace(told, arm_moment_n_m=Joint().arm_moment)
     fit = fitted(told)
-    dataset = with_own_prediction(fit)
+    dataset = with_own_prediction(fit.dataset, fit.terms)
     lacking = nuisance_columns(dataset)["far_side_weight"]
     wide = np.column_stack([fit.columns, lacking])[fit.training]
     size = np.linalg.lstsq(wide, dataset.effort[fit.training], rcond=None)[0][-1]
@@ -54,7 +54,8 @@ def test_an_arm_that_is_behind_weighs_less_by_what_is_known():
 
 
 def test_without_free_play_and_stiffness_nothing_is_behind():
-    assert "far_side_weight" not in nuisance_columns(with_own_prediction(fitted(FACTS)))
+    fit = fitted(FACTS)
+    assert "far_side_weight" not in nuisance_columns(with_own_prediction(fit.dataset, fit.terms))
     level = replace(FACTS, backlash_rad=GAP_RAD, horizontal=True)
     assert "far_side_weight" not in nuisance_columns(dataset_of(level))
 
@@ -68,7 +69,8 @@ def test_which_columns_stand_there_is_a_matter_of_the_joint_not_of_the_trials():
 
 def test_known_teeth_and_shafts_are_not_missing_in_slow_motion_either():
     told = replace(FACTS, backlash_rad=GAP_RAD, stiffness_n_m_rad=STIFFNESS_N_M_RAD, arm_inertia_kg_m2=0.012)
-    dataset = with_own_prediction(fitted(told))
+    fit = fitted(told)
+    dataset = with_own_prediction(fit.dataset, fit.terms)
     sliding, moving = (nuisance_columns(dataset, show_in) for show_in in ("sliding", "moving"))
     assert {*moving} - {*sliding} == {"delay"}
     flying = sliding["known_play"][dataset.regime == Regime.SLIDING]

@@ -45,6 +45,7 @@ function calibrationTable(items, show, use) {
     { title: "Calibration", number: true, cell: (one) => one.calibration_id },
     { title: "From experiments", cell: (one) => one.experiment_ids.join(", ") },
     { title: titled("Loads", "kg"), cell: (one) => one.curves.map((curve) => number(toShown(curve.load_kg, "kg"), 3)).join(", ") },
+    { title: "At rest", cell: (one) => one.at_rest || "both sides" },
     { title: "Made", cell: (one) => when(one.created_utc) },
     { title: "", unseen: "In use", cell: (one) => (one.in_use ? h("span", { class: "badge completed" }, "in use") : null) },
     { title: "", cell: (one) => h("div", { class: "actions" },

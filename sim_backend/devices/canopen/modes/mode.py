@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 TARGET_REACHED, FOLLOWS, SET_POINT_TAKEN = 1 << 10, 1 << 12, 1 << 12
+HOMED, HOMING_FAILED = 1 << 12, 1 << 13
 HALT = 1 << 8
 
 

@@ -9,8 +9,9 @@ from sim_backend.devices.canopen.objects.entry import Entry, Object
 from sim_backend.devices.canopen.objects.epos4 import EPOS4, MAXON
 from sim_backend.devices.canopen.objects.family import Family, Rating, increment
 from sim_backend.devices.canopen.objects.generic import GENERIC
+from sim_backend.devices.canopen.objects.homing import homing_objects
 
-_DEVICE_NAME = 0x1008
+_DEVICE_NAME, _HOMING_METHOD = 0x1008, 0x6098
 # what whoever commissions a drive enters for the motor on it; a data sheet cannot know it
 _OF_THE_MOTOR = frozenset({(0x6075, 0), (0x6076, 0), (0x608F, 1), (0x608F, 2), (0x3001, 1), (0x3001, 2), (0x3001, 5)})
 _REVOLUTION, _RADIAN, _DEGREE = 0xB4, 0x10, 0x41  # of CiA 303-2
@@ -44,7 +45,8 @@ def _modes(sheet: DataSheet) -> frozenset[int]:
 
 def _objects(sheet: DataSheet, base: Family, rating: Rating) -> list[Object]:
     """The file's objects, and hidden ones for whatever the drive works with beside them."""
-    inside = {one.index: one for one in base.objects(rating)}
+    homes = any(one.index == _HOMING_METHOD for one in sheet.objects)
+    inside = {one.index: one for one in (*(homing_objects(rating) if homes else ()), *base.objects(rating))}
     made = [_visible(one, inside.pop(one.index, None), sheet) for one in sheet.objects]
     return [*made, *(_hidden(one) for one in inside.values())]
 

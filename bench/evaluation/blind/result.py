@@ -1,0 +1,143 @@
+"""What came of an item: answer of the lab, standing of the truth, and the trials that settle it."""
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+Classes = tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How far one true effect stands out.
+
+    Attributes:
+        ratio: r.
+        detectability: d'.
+        rival: the effect that is most like it.
+        smallest: the r that theory needs to find any one of so many effects nine times in ten.
+    """
+
+    ratio: float
+    detectability: float
+    rival: str
+    smallest: float
+
+
+@dataclass(frozen=True, slots=True)
+class LabAnswer:
+    """What the lab says.
+
+    Attributes:
+        verdict: of the first diagnosis.
+        first: the class that it names; empty where it names none.
+        named: the class that is named first; where several are searched for, those that are in the model at the end.
+        unknown: the last step says that none of the catalogue is it, or that something remains.
+        p_value, detectability: of the first diagnosis and its best candidate.
+        error: held-out, of the model with all that was named in it.
+        ranked: the first three effects of the first diagnosis, named or not; None in older results, which do not tell.
+    """
+
+    verdict: str
+    first: tuple[str, ...]
+    named: Classes
+    unknown: bool
+    p_value: float
+    detectability: float
+    error: float
+    ranked: tuple[str, ...] | None = None
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> "LabAnswer":
+        """From a dict of lists."""
+        named = tuple(tuple(names) for names in values["named"])
+        lists = {name: tuple(values[name]) for name in ("first", "ranked") if values.get(name) is not None}
+        return cls(**{**values, **lists, "named": named})
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """What the lab said before and after the trials that it asked for.
+
+    Attributes:
+        rivals: that were to be separated at first.
+        before, predicted: smallest d' of the truth, predicted on the trials measured and with the six first suggested;
+            0 where it is none of the rivals, so that nothing is predicted of it.
+        by_chance: the same with as many trials drawn at random from the same options.
+        trials: that were recorded; failed: that did not complete.
+        named: the class that is named at the end.
+        stated: of each round, the truth's smallest d' as it was predicted, and as it came; 0 where it is no rival, or
+            no candidate.
+        promised: as `predicted`, of the d' that nine in ten of the sizes reach that the trials measured allow.
+    """
+
+    rivals: tuple[str, ...]
+    before: float
+    predicted: float
+    trials: int
+    named: tuple[str, ...]
+    by_chance: float = 0.0  # not known of older results, as all below
+    failed: int = 0
+    stated: tuple[tuple[float, float], ...] = ()
+    promised: float = 0.0
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> "Settled":
+        """From nested lists."""
+        lists = {name: tuple(values[name]) for name in ("rivals", "named")}
+        stated = tuple((predicted, came) for predicted, came in values.get("stated", ()))
+        return cls(**{**values, **lists, "stated": stated})
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What came of an item.
+
+    Attributes:
+        key, family: of the item.
+        truths: mechanisms hidden; names: what the catalogue calls each, "" where it does not.
+        sizes: of the mechanisms.
+        answer: of the lab; None where it refused the data, and `refusal` says why.
+        standings: of the truths, by the oracle; None where it cannot say.
+        unexplained: rms that the base model leaves with the mechanisms over that without them, where that was measured.
+        oracle_error: held-out, of the model with the truth in it.
+        rivals: rival -> what it names.
+        seconds: that the lab took.
+        withheld: answer of the lab to the same data where the catalogue has no name for the truth; None: not asked.
+        withheld_left: standing of the truth beside what was named in its place; None where the oracle cannot say.
+        settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
+    """
+
+    key: str
+    family: str
+    truths: tuple[str, ...]
+    names: tuple[str, ...]
+    sizes: tuple[float, ...]
+    answer: LabAnswer | None
+    standings: tuple[Standing | None, ...]
+    unexplained: float | None
+    oracle_error: float
+    rivals: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    seconds: float = 0.0
+    refusal: str = ""
+    settled: Settled | None = None
+    withheld: LabAnswer | None = None
+    withheld_left: Standing | None = None
+
+    def to_json(self) -> dict[str, object]:
+        """Nested dicts."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> "Result":
+        """From nested dicts."""
+        made: dict[str, Any] = {
+            key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
+        }
+        for which in ("answer", "withheld"):
+            made[which] = None if values.get(which) is None else LabAnswer.from_json(values[which])
+        made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
+        left = values.get("withheld_left")
+        made["withheld_left"] = None if left is None else Standing(**left)
+        made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
+        made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
+        return cls(**made)
