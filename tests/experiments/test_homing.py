@@ -6,13 +6,15 @@ import pytest
 
 from bench.config.configuration import parse_configuration
 from bench.control.clock import VirtualClock
+from bench.control.cycle import Reading
 from bench.control.drive_factory import make_equipment
 from bench.control.ending import StopRequest
 from bench.control.limits import Guard
 from bench.control.loop import joint_loop
 from bench.control.servo import CurrentServo
-from bench.experiments.kinds.homing import OFF_RAD, home_at_end_stop, search_bench
-from drivers.contract import Status
+from bench.errors import ExperimentError
+from bench.experiments.kinds.homing import OFF_RAD, home_at_end_stop, home_by_drive, search_bench
+from drivers.contract import Command, Mode, Sample, Status
 from tests.control.fake_drive import ListSink
 from tests.control.test_sim_faults import RIG
 
@@ -34,6 +36,49 @@ def home(faults=(), at_rad=0.0, stop=None, load_kg=0.0, **changes):
     outcome = loop.run(home_at_end_stop(bench), ListSink(), stop or StopRequest())
     assert joint.inspect().status is not Status.ENABLED
     return outcome, joint
+
+
+BY_DRIVE = {"method": "drive", "drive_method": 34, "angle_rad": 0.1, "travel_rad": 0.5}
+
+
+def home_by(positions_rad, homed_from=10**9):
+    """What the search by the drive comes to, where its position is as listed, and then stays."""
+    drive = {
+        "kind": "canopen",
+        "interface": "virtual",
+        "channel": "c",
+        "node_id": 5,
+        "homing": BY_DRIVE,
+        "zero_rad": 0.7,
+    }
+    told = {"name": "b", "rig": RIG, "drive": drive | {"homing": BY_DRIVE}}
+    bench = parse_configuration(told, "bench.toml")
+    search = home_by_drive(search_bench(bench, 0.0))
+    action, cycle = next(search), -1
+    while True:
+        at_rad = positions_rad[min(max(cycle, 0), len(positions_rad) - 1)]
+        sample = Sample(0.0, 0.0, at_rad, *[0.0] * 5, Status.ENABLED, homed=cycle >= homed_from)
+        try:
+            action = search.send(Reading(0.0, sample, 0.0, 0.0))
+        except StopIteration as end:
+            return end.value
+        assert action.command == Command(Mode.HOME, 1.0)
+        cycle += 1
+
+
+def test_the_drive_may_count_from_home_before_it_says_that_it_is_there():
+    results = home_by([0.0, 0.1, 0.2, -3.0, -3.0, -3.0], homed_from=6)
+    assert results[OFF_RAD] == pytest.approx(-0.7 - 0.1)
+
+
+def test_a_drive_that_goes_on_beyond_the_travel_is_ended():
+    with pytest.raises(ExperimentError, match=r"the drive went 0\.6 rad and was not at home; 0\.5 rad are"):
+        home_by([0.0, 0.3, 0.6])
+
+
+def test_a_drive_that_never_comes_home_is_ended_in_time():
+    with pytest.raises(ExperimentError, match="not at home within 25 s"):
+        home_by([0.0])
 
 
 class StopsSoon(StopRequest):

@@ -26,6 +26,7 @@ STILL_COUNTS = 1.5
 SEARCH_SHARE = 0.75  # of the current that the search takes; all of it tells a stop from a weight that is too heavy
 PRESSING_SHARE = 0.9  # of that: the servo presses against something
 PATIENCE_S = 5.0  # beyond twice the time of the travel
+TOLD_S = 0.1  # a drive may count from home a moment before it says that it is there
 ANYWHERE_RAD = 1e3  # the drive's count begins anew when it is at home: the way is watched instead
 Search = Generator[Action, Reading, float]
 
@@ -123,14 +124,16 @@ def home_by_drive(configuration: BenchConfiguration) -> Procedure:
     homing, joint = settings_of(configuration), Joint(configuration)
     start_rad = (yield from joint.wake()).sample.position_rad
     slowest_rad_s = min(homing.speed_rad_s, homing.slow_speed_rad_s)
+    period_s, beyond = configuration.control.period_s, 0
     way_rad, longest_s = 0.0, 2.0 * homing.travel_rad / slowest_rad_s + PATIENCE_S
-    for _ in range(ceil(longest_s / configuration.control.period_s)):
+    for _ in range(ceil(longest_s / period_s)):
         reading = yield from joint.push(Command(Mode.HOME, 1.0))
         if reading.sample.homed:
             # home is 0 by the drive's count
             return {"way_rad": way_rad, OFF_RAD: -_zero_rad(configuration) - homing.angle_rad}
         way_rad = reading.sample.position_rad - start_rad
-        if abs(way_rad) > homing.travel_rad:
+        beyond = beyond + 1 if abs(way_rad) > homing.travel_rad else 0
+        if beyond * period_s > TOLD_S:
             raise ExperimentError(
                 f"the drive went {way_rad:.3g} rad and was not at home; {homing.travel_rad:g} rad are allowed "
                 "(drive.homing.travel_rad). Nothing was written. Is drive.homing.drive_method the right one, and "
