@@ -65,7 +65,7 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         network.connect(**bus)
         node = BaseNode402(NODE, str(eds))
         network.add_node(node)
-        node.sdo.RESPONSE_TIMEOUT = 1.0
+        node.sdo.RESPONSE_TIMEOUT = LONGEST_S
         for limit in ("CHECK_TPDO", "RESET_FAULT", "SWITCH_OP_MODE", "SWITCH_STATE_SINGLE", "SWITCH_STATE_FINAL"):
             setattr(node, f"TIMEOUT_{limit}", LONGEST_S)  # the library's own are of a host that is never busy
         yield Bench(network, node, side)

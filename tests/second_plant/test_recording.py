@@ -73,8 +73,10 @@ def test_a_measured_supply_hides_nothing_of_the_sag_and_a_nominal_one_all():
 
 
 def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
-    small, large = (evidence(draw_joint(9, ("tooth_loss",), (size,)), "tooth_loss").ratio for size in (0.02, 0.2))
-    winding = draw_joint(9, ("hot_winding",), (1.0,))
+    small, large = (
+        evidence(short(draw_joint(9, ("tooth_loss",), (size,))), "tooth_loss").ratio for size in (0.02, 0.2)
+    )
+    winding = short(draw_joint(9, ("hot_winding",), (1.0,)))
     control = winding.control._replace(voltage_drive=False)
     by_current = replace(winding, sensors=replace(winding.sensors, effort="current"), control=control)
 
@@ -96,7 +98,7 @@ def test_a_joint_led_along_its_own_motion_needs_the_effort_that_it_had(seed):
 
 
 def test_a_mechanism_too_small_to_show_has_no_evidence_though_each_run_sticks_at_other_moments():
-    joint = draw_joint(9, ("backlash",), (1e-6,))
+    joint = short(draw_joint(9, ("backlash",), (1e-6,)))
     found, without = record(joint, quiet=True), record(joint, quiet=True, without=frozenset({"backlash"}))
 
     assert any(np.abs(one.effort - two.effort).max() > 0.0 for one, two in zip(found, without, strict=True))
