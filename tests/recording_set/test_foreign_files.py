@@ -92,3 +92,12 @@ def test_an_infinite_time_is_refused_by_its_file(tmp_path):
     path.write_text("time_s,position_rad,current_a\n" + "\n".join(rows) + "\n", encoding="utf-8")
     with pytest.raises(RecordingSetError, match="endless"):
         read_unknown([path], Rig(name="endless"), Known({}))
+
+
+def test_numbers_beyond_any_clock_are_refused_as_time(tmp_path: Path) -> None:
+    """Near the largest number, even sums and steps are none."""
+    path = tmp_path / "large.csv"
+    rows = [f"{(-1) ** i * 1.7e308 * (0.5 + i / 80)!r},{0.01 * i:g},0.5" for i in range(40)]
+    path.write_text("\n".join(["time,position_rad,current_a", *rows]))
+    with pytest.raises(RecordingSetError, match="'time' has steps of .*, and its unit is not sure"):
+        read_unknown([path], None, Known({}))

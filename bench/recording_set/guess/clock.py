@@ -86,7 +86,8 @@ def _of_numbers(name: str, values: FloatArray, assigned: Assigned, clock: Clock)
     if unit is None and len(possible) == 1:
         clock.why[name] = f"in {possible[0]} the sampling is possible"
         return Column(source=name, unit=possible[0])
-    step = float(np.nanmedian(np.abs(np.diff(values))))
+    with np.errstate(over="ignore"):  # numbers beyond any clock's: the question says so
+        step = float(np.nanmedian(np.abs(np.diff(values))))
     options = " or ".join(f"--take '{name}=time[{one}]'" for one in (possible or ["s", "ms"]))
     clock.questions.append(f"'{name}' has steps of {step:.4g}, and its unit is not sure: say {options}")
     return None

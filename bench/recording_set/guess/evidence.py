@@ -23,9 +23,11 @@ KNOWN_PERIODS = (360.0, 2.0 * np.pi, 1.0, 180.0, np.pi, *(float(2**bits) for bit
 
 def clock_units(values: FloatArray) -> list[str]:
     """Units in which a column of time gives a sampling that is possible, from seconds to nanoseconds."""
-    steps = np.diff(np.unique(values[np.isfinite(values)]))
-    if len(steps) < 2:
+    known = np.unique(values[np.isfinite(values)])
+    # of numbers beyond any date in nanoseconds even the steps may be none
+    if len(known) < 3 or np.abs(known).max() > EPOCH_S[1] / UNITS["ns"].factor:
         return []
+    steps = np.diff(known)
     step = typical_step_s(np.append(0.0, np.cumsum(steps)))
     start = abs(float(values[0]))
     found = []
