@@ -85,9 +85,9 @@ benchmark: $(STAMP) ## rates of plant, store, service, drivers, lab and command 
 	$(BIN)/python -m tests.drivers.rates
 	$(BIN)/python -m tests.lab.rates
 
-kills: $(STAMP)  ## 200 runs ended at random moments in every way, by itself and beside a laboratory that is killed, too
+kills: $(STAMP)  ## 200 runs ended at random moments in every way, by itself, and beside a laboratory and on a server's store
 	$(BIN)/python -m tests.stopping.kills --kills 200
-	$(BIN)/python -m tests.stopping.kills --kills 200 --lab
+	$(BIN)/python -m tests.stopping.kills --kills 200 --lab --server
 
 fuzz: $(STAMP)   ## what is drawn at random, for long: requests, files and bytes on every wire; says how many
 	FUZZ_TIMES=40 $(BIN)/pytest --numprocesses auto --timeout=7200 tests/fuzz

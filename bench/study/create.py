@@ -50,8 +50,9 @@ def create_study(
     Raises:
         StudyError: no usable trials, a criterion that fits none, different rigs, an unknown effect.
     """
-    definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows)
-    return _create(store, name, definition)
+    read: dict[int, Recording] = {}
+    definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows, read)
+    return _create(store, name, definition, read)
 
 
 def definition_of(
@@ -62,14 +63,17 @@ def definition_of(
     where: Sequence[str] = (),
     cutoff_hz: float | None = None,
     rows: RowChoice = "sliding",
+    read: dict[int, Recording] | None = None,
 ) -> Definition:
-    """What a study is made of; arguments and errors as `create_study`."""
+    """What a study is made of; arguments and errors as `create_study`; `read` gets the recordings of all trials."""
     if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
         raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
     trials = _trials(store, experiment_ids, where)
     facts = _facts(store, experiment_ids)
     with lab_errors():
         recordings = [store.recording(trial.id) for trial in progress.each(trials)]
+        if read is not None:
+            read.update(zip((trial.id for trial in trials), recordings, strict=True))
         told = all(LOAD in one.channels and bool(np.isfinite(one.channels[LOAD]).any()) for one in recordings)
         effects = _base_effects(base) if base else base_model(store, experiment_ids, facts, told)
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
@@ -94,8 +98,8 @@ def describe(store: Store, study_id: int) -> Study:
     return _describe(store, load(store, study_id))
 
 
-def _create(store: Store, name: str, definition: Definition) -> Study:
-    draft = material_of(store, 0, name, definition)
+def _create(store: Store, name: str, definition: Definition, read: dict[int, Recording]) -> Study:
+    draft = material_of(store, 0, name, definition, read)
     if any(definition.held_out) and not (draft.dataset.counted & ~draft.training).any():
         raise StudyError(
             f"the trials of hold-out {', '.join(definition.hold_out)} have no row that counts ({definition.rows}); "

@@ -21,7 +21,7 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, Facts
-from compensator.lab.recordings.recording import BoolArray
+from compensator.lab.recordings.recording import BoolArray, Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing, RowChoice
 
@@ -195,10 +195,20 @@ def trials_of(model: ModelRow, definition: Definition) -> Definition:
     return definition.first(kept_of(model).trials or len(definition.trial_ids))
 
 
-def material_of(store: Store, study_id: int, name: str, definition: Definition) -> Material:
-    """The material of a definition, whether it is kept already or not. Errors as `load`."""
+def material_of(
+    store: Store, study_id: int, name: str, definition: Definition, read: dict[int, Recording] | None = None
+) -> Material:
+    """The material of a definition, whether it is kept already or not. Errors as `load`.
+
+    Args:
+        store: with the trials.
+        study_id: of the material.
+        name: of the study.
+        definition: of the study.
+        read: recordings by trial that were read just now; emptied.
+    """
     trials = tuple(store.trials_of(definition.trial_ids))
-    source = _Source(store, definition.trial_ids)
+    source = _Source(store, definition.trial_ids, read)
     return Material(study_id, name, definition, trials, _dataset(source, definition), source)
 
 
@@ -219,8 +229,15 @@ def model_of(store: Store, study_id: int, model_id: int | None) -> ModelRow:
 class _Source:
     """Where a dataset comes from; equal when store and trials are, so that a dataset is made once."""
 
-    def __init__(self, store: Store, trial_ids: tuple[int, ...]) -> None:
-        self.store, self.trial_ids = store, trial_ids
+    def __init__(self, store: Store, trial_ids: tuple[int, ...], read: dict[int, Recording] | None = None) -> None:
+        self.store, self.trial_ids, self._read = store, trial_ids, {} if read is None else read
+
+    def recordings(self) -> list[Recording]:
+        """Of the trials; those that were read before are let go of."""
+        read = self._read
+        found = [read[one] if one in read else self.store.recording(one) for one in progress.each(self.trial_ids)]
+        read.clear()
+        return found
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Source) and (self.store, self.trial_ids) == (other.store, other.trial_ids)
@@ -232,7 +249,7 @@ class _Source:
 @lru_cache(maxsize=4)  # finished trials never change; a study asks for the same rows at every step
 def _dataset(source: _Source, definition: Definition) -> Dataset:
     progress.enter(READING)
-    recordings = [source.store.recording(trial_id) for trial_id in progress.each(source.trial_ids)]
+    recordings = source.recordings()
     progress.enter(FILTERING)
     with lab_errors():
         return make_dataset(recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows))

@@ -84,7 +84,7 @@ def test_the_page_and_its_files_are_served(service):
     assert page.headers["content-type"].startswith("text/html")
     for part in ("/static/style.css", "/static/plots.css", "/static/modules/app/main.js"):
         assert part in re.sub(r"/static/\w{12}/", "/static/", page.text)
-        assert httpx.get(service.url + part).status_code == 200
+        assert httpx.get(service.url + part, timeout=60.0).status_code == 200
     plotly = httpx.get(service.url + "/static/plotly.min.js")
     assert plotly.headers["content-type"].startswith("text/javascript")
     assert "plotly.js" in plotly.text[:200]

@@ -1,14 +1,14 @@
 """A bench whose drive is a simulated device in a process of its own, and the programs that run it."""
 
+import json
 import multiprocessing
 import os
-import sqlite3
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,12 +24,12 @@ from bench.store import Store
 from tests.devices.device_process import DeviceProcess, device_process
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured
 from tests.experiments.calibrated import calibrated_configuration
+from tests.stopping.records import PATIENCE_S, FileRecords, Records, ServerRecords
 
 TOKEN = "a-token-for-the-kill-tests"
 WATCHDOG_S = 1.0  # a busy machine keeps a host waiting for longer than a lab's would
 HARDWARE_PRIORITY = 20  # of the device, where that is permitted: real ones do not share a processor with the host
 ROOT = Path(__file__).parents[2]
-PATIENCE_S = 120.0
 PARAMETERS = {"loads_kg": [0.05], "waveforms": ["multisine"], "duration_s": 600, "repeats": 1}
 PAIR_PARAMETERS = {"load_kg": 0.05, "angles_rad": [0.2] * 10, "rest_s": 60, "reflect": ["none"]}
 CLIENTS, ASKED_FOR = 40, ("trials?limit=1000", "experiments?limit=1000", "bench", "live/now")
@@ -44,12 +44,17 @@ class Bench:
         folder: where all is kept.
         devices: behind the wire: the joint's; or the slave's, and the master's.
         configuration: of the bench.
+        records: its store.
+        output_file: what the program that runs has said.
     """
 
     folder: Path
     devices: tuple[DeviceProcess, ...]
     configuration: BenchConfiguration
-    starts: int = field(default=0)
+    records: Records
+    output_file: Path = field(default=Path("/dev/null"))
+    _waiting: "tuple[subprocess.Popen[bytes], Path] | None" = field(default=None)
+    _programs: int = field(default=0)
 
     @property
     def device(self) -> DeviceProcess:
@@ -66,21 +71,40 @@ class Bench:
             device.side.ask("repair")
 
     @property
-    def database(self) -> Path:
-        return self.folder / "bench.sqlite"
-
-    @property
     def output(self) -> str:
-        return (self.folder / "output").read_text(errors="replace")
+        return self.output_file.read_text(errors="replace")
+
+    def prepare(self) -> None:
+        """Have the next program import what it needs, while this one runs."""
+        if self._waiting is None:
+            self._programs += 1
+            file = self.folder / f"output {self._programs}"
+            command = [sys.executable, "-m", "tests.stopping.raising", str(self.folder / "raise")]
+            environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}
+            with file.open("wb") as output:
+                process = subprocess.Popen(
+                    command, stdin=subprocess.PIPE, stdout=output, stderr=output, env=environment, cwd=ROOT
+                )
+            self._waiting = process, file
+
+    def close(self) -> None:
+        """End a program that nobody has given its words."""
+        if self._waiting is not None:
+            process, _ = self._waiting
+            process.kill()
+            process.communicate()
 
     @contextmanager
     def program(self, *words: str) -> "Iterator[subprocess.Popen[bytes]]":
         """A command of ours, ended at the end."""
-        environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}
-        options = ["--config", str(self.folder / "bench.toml"), "--store", str(self.database)]
-        with (self.folder / "output").open("wb") as output:
-            command = [sys.executable, "-m", "tests.stopping.raising", str(self.folder / "raise"), *options, *words]
-            process = subprocess.Popen(command, stdout=output, stderr=output, env=environment, cwd=ROOT)
+        self.prepare()
+        assert self._waiting is not None
+        process, self.output_file = self._waiting
+        self._waiting = None
+        options = ["--config", str(self.folder / "bench.toml"), "--store", self.records.url]
+        assert process.stdin is not None
+        with process.stdin as told:
+            told.write(json.dumps([*options, *words]).encode() + b"\n")
         try:
             yield process
         finally:
@@ -89,26 +113,25 @@ class Bench:
 
     def committed(self) -> int:
         """Rows of the newest trial, where it runs, as another process sees them."""
-        found = self._newest("SELECT rows, outcome FROM trial ORDER BY id DESC LIMIT 1")
+        found = self.records.newest("SELECT rows, outcome FROM trial ORDER BY id DESC LIMIT 1")
         return int(found[0]) if found and found[1] == "running" else 0
 
     def is_recorded_as_running(self) -> bool:
         """Whether the newest experiment is."""
-        return self._newest("SELECT outcome FROM experiment ORDER BY id DESC LIMIT 1") == ("running",)
-
-    def _newest(self, query: str) -> Any:
-        with closing(sqlite3.connect(f"file:{self.database}?mode=ro", uri=True)) as connection:
-            return connection.execute(query).fetchone()
+        return bool(self.records.newest("SELECT outcome FROM experiment ORDER BY id DESC LIMIT 1") == ("running",))
 
 
 @contextmanager
-def kills_bench(folder: Path, joints: int = 1, lab_url: str | None = None) -> Iterator[Bench]:
+def kills_bench(
+    folder: Path, joints: int = 1, lab_url: str | None = None, store_url: str | None = None
+) -> Iterator[Bench]:
     """A bench whose drives have passed the commissioning move, as the store remembers it.
 
     Args:
         folder: for store and configuration.
         joints: 1, or 2 for a master and a slave.
         lab_url: database of the laboratory that its service hands in to; None: it is by itself.
+        store_url: a database on a server for its own store, empty; None: a file.
     """
     with ExitStack() as stack:
         devices = [stack.enter_context(device_process("modbus", "--transport", "tcp")) for _ in range(joints)]
@@ -123,7 +146,13 @@ def kills_bench(folder: Path, joints: int = 1, lab_url: str | None = None) -> It
         if lab_url is not None:
             values["store"] = {"lab_url": lab_url}
         (folder / "bench.toml").write_text(tomli_w.dumps(values))
-        found = Bench(folder, tuple(devices), parse_configuration(values, "bench.toml"))
+        records: Records = FileRecords(folder / "bench.sqlite")
+        if store_url is not None:
+            Store.open(store_url).close()
+            records = server = ServerRecords(store_url)
+            stack.callback(server.close)
+        found = Bench(folder, tuple(devices), parse_configuration(values, "bench.toml"), records)
+        stack.callback(found.close)
         _commission(found)
         yield found
 
@@ -140,7 +169,7 @@ def _do_not_share(device: DeviceProcess) -> None:
 
 def _commission(bench: Bench) -> None:
     benches = [bench.configuration] + ([bench.configuration.of_master()] if len(bench.devices) == 2 else [])
-    with Store.open(f"sqlite:///{bench.database}") as store:
+    with Store.open(bench.records.url) as store:
         for one in benches:
             opened = make_equipment(one).drive
             opened.open(PERIOD_S)

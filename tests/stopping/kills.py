@@ -1,6 +1,6 @@
 """Ends runs at random moments, in every way a run can end, and looks at what is left: `python -m tests.stopping.kills`.
 
-    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"] [--joints 2] [--lab]
+    python -m tests.stopping.kills --kills 200 --seed 1 [--way "disk full"] [--joints 2] [--lab] [--server]
 
 The drive is a simulated device in a process of its own, over Modbus TCP; when the motor was off is what the device
 says. All runs share one store and one drive: that the next run starts is part of what is tested. After each: the
@@ -9,19 +9,21 @@ record says. A line for each run as it ends, and a table at the end, also after 
 
 With --lab the service hands in to a PostgreSQL server, whose link is cut and which is killed at random moments all the
 while. No run may end otherwise for it, and at the end the laboratory has every row of the bench, once.
+
+With --server every fourth round of all ways is that of a bench whose own store is on a PostgreSQL server.
 """
 
 import argparse
 import re
 import signal
 import socket
-import sqlite3
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from itertools import count, islice
 from pathlib import Path
 
 import httpx
@@ -29,6 +31,7 @@ import numpy as np
 
 from bench.store import Store
 from bench.store.records import Trial
+from tests.databases import postgresql_server
 from tests.drivers.conformance.benches import PERIOD_S
 from tests.stopping.bench import OPTIONS, Bench, Service, is_there, kills_bench, wait_for
 from tests.stopping.laboratory import laboratory
@@ -36,6 +39,7 @@ from tests.stopping.ways import WAYS, Scene, Way
 
 ALLOWED_LOSS_S = 0.2
 LONGEST_S = 1.0  # of a run after its first rows
+SERVER_EVERY = 4  # rounds of all ways: one of so many is on a server's store
 
 
 @dataclass(frozen=True)
@@ -67,10 +71,13 @@ class Killer:
     Args:
         bench: store and drive.
         seed: of the moments.
+
+    Attributes:
+        bench: as given.
     """
 
     def __init__(self, bench: Bench, seed: int) -> None:
-        self._bench = bench
+        self.bench = bench
         self._generator = np.random.default_rng(seed)
         self._programs = ExitStack()
         self._scene: Scene | None = None
@@ -78,21 +85,23 @@ class Killer:
     def end_one(self, way: Way) -> Ending:
         """Start a run, end it at a random moment, and look at what is left."""
         scene = self._started(way)
-        on_s = self._bench.wait_for_power(True)
-        wait_for(lambda: self._bench.committed() > 0 or scene.process.poll() is not None, self._bench)
+        on_s = self.bench.wait_for_power(True)
+        if not way.survives:
+            self.bench.prepare()
+        wait_for(lambda: self.bench.committed() > 0 or scene.process.poll() is not None, self.bench)
         time.sleep(float(self._generator.uniform(0.0, LONGEST_S)))
-        seen = self._bench.committed()
+        seen = self.bench.committed()
         loop = scene.loop_process()
         deed_s = way.deed(scene)
-        wait_for(lambda: self._has_ended(scene), self._bench)
-        off_s = self._bench.wait_for_power(False)
-        self._bench.repair()
+        wait_for(lambda: self._has_ended(scene), self.bench)
+        off_s = self.bench.wait_for_power(False)
+        self.bench.repair()
         if not way.survives:
             self.leave()
-            wait_for(lambda: not is_there(loop), self._bench)  # nobody is left behind
+            wait_for(lambda: not is_there(loop), self.bench)  # nobody is left behind
         else:
-            wait_for(lambda: not self._bench.is_recorded_as_running(), self._bench)
-        return look(self._bench, way, seen, Times(on_s, deed_s, off_s))
+            wait_for(lambda: not self.bench.is_recorded_as_running(), self.bench)
+        return look(self.bench, way, seen, Times(on_s, deed_s, off_s))
 
     def leave(self) -> None:
         """End what still runs."""
@@ -101,16 +110,16 @@ class Killer:
 
     def _started(self, way: Way) -> Scene:
         if way.served and self._scene is not None and self._scene.service is not None:
-            self._scene.service.start(self._bench)
+            self._scene.service.start(self.bench)
             return self._scene
         self.leave()
         words = ["serve", "--port", str(port := free_port())] if way.served else ["run", "excitation", *OPTIONS]
-        process = self._programs.enter_context(self._bench.program(*words))
+        process = self._programs.enter_context(self.bench.program(*words))
         service = Service(process, port) if way.served else None
         if service is not None:
-            service.wait_until_up(self._bench)
-            service.start(self._bench)
-        self._scene = Scene(self._bench, process, service)
+            service.wait_until_up(self.bench)
+            service.start(self.bench)
+        self._scene = Scene(self.bench, process, service)
         return self._scene
 
     def _has_ended(self, scene: Scene) -> bool:
@@ -134,16 +143,14 @@ class Times:
 
 def look(bench: Bench, way: Way, seen: int, times: Times) -> Ending:
     """What is left, and everything about it that must not be."""
-    with closing(sqlite3.connect(bench.database)) as connection:
-        sound = connection.execute("PRAGMA integrity_check").fetchone()[0]
-    with Store.open(f"sqlite:///{bench.database}") as store:
+    problems = bench.records.problems()
+    with Store.open(bench.records.url) as store:
         (experiment,) = store.experiments(limit=1)
         trial = store.trials(experiment.id)[-1]
         # of a pair, the master gets its power last: the run is ended while both have it
         enabled = "master_enabled" if len(bench.devices) == 2 else "enabled"
         samples = store.samples(trial.id, ["time_s", enabled])
     off_s, lost_s = times.off_s - times.deed_s, _lost_s(way, samples["time_s"], samples[enabled], times)
-    problems = [] if sound == "ok" else [f"integrity_check says {sound}"]
     problems += list(_wrong_in_record(way, trial, samples["time_s"], seen))
     if off_s > way.off_s:
         problems.append(f"the motor was off after {off_s:.3f} s; stated are {way.off_s:.3f} s")
@@ -172,6 +179,18 @@ def _wrong_in_record(way: Way, trial: Trial, time_s: np.ndarray, seen: int) -> I
         yield "the rows are not in order"
 
 
+def plan(ways: list[Way], on_server: bool) -> Iterator[tuple[Way, bool]]:
+    """Ways without end, and whether the store is on a server.
+
+    Args:
+        ways: each in turn.
+        on_server: whether some rounds of them are.
+    """
+    for turn in count():
+        there = on_server and turn % SERVER_EVERY == 1
+        yield from ((way, there) for way in ways if not (there and way.of_file))
+
+
 def free_port() -> int:
     with socket.create_server(("127.0.0.1", 0)) as probe:
         return int(probe.getsockname()[1])
@@ -191,6 +210,18 @@ def table(endings: list[Ending]) -> Iterator[str]:
             )
 
 
+@contextmanager
+def killer_of(
+    arguments: argparse.Namespace, lab_url: str | None = None, store_url: str | None = None
+) -> Iterator[Killer]:
+    """One with a bench of its own."""
+    with (
+        tempfile.TemporaryDirectory(prefix="friction-bench-kills-") as folder,
+        kills_bench(Path(folder), arguments.joints, lab_url, store_url) as bench,
+    ):
+        yield Killer(bench, arguments.seed)
+
+
 def main() -> None:
     """Kill, and print what was left."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -199,6 +230,7 @@ def main() -> None:
     parser.add_argument("--way", action="append", help="only this one; repeatable")
     parser.add_argument("--joints", type=int, choices=(1, 2), default=1, help="2: a master and a slave, served")
     parser.add_argument("--lab", action="store_true", help="hand in to a PostgreSQL server that is cut off and killed")
+    parser.add_argument("--server", action="store_true", help="every fourth round with a store on a PostgreSQL server")
     arguments = parser.parse_args()
     for number in (signal.SIGINT, signal.SIGTERM):  # a shell has what it starts in the background ignore the first
         signal.signal(number, signal.default_int_handler)
@@ -206,22 +238,29 @@ def main() -> None:
     ways = [way for way in ways if way.served or arguments.joints == 1]
     endings, astray = [], 0
     with ExitStack() as stack:
-        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="friction-bench-kills-"))
         lab = stack.enter_context(laboratory(arguments.seed)) if arguments.lab else None
-        bench = stack.enter_context(kills_bench(Path(folder), arguments.joints, lab and lab.link.url))
-        killer = Killer(bench, arguments.seed)
+        killers = {False: stack.enter_context(killer_of(arguments, lab_url=lab.link.url if lab else None))}
+        if arguments.server:
+            server = stack.enter_context(postgresql_server())
+            killers[True] = stack.enter_context(killer_of(arguments, store_url=server.url(server.create())))
         try:
-            for number in range(arguments.kills):
-                ending = killer.end_one(ways[number % len(ways)])
+            for way, there in islice(plan(ways, arguments.server), arguments.kills):
+                for other, killer in killers.items():
+                    if other != there:
+                        killer.leave()
+                ending = killers[there].end_one(way)
                 endings.append(ending)
-                print(f"{number + 1:4}/{arguments.kills} {ending.in_words()}", flush=True)
+                where = "server" if there else "file"
+                print(f"{len(endings):4}/{arguments.kills} {where:6} {ending.in_words()}", flush=True)
         except KeyboardInterrupt:
             print(f"interrupted after {len(endings)} of {arguments.kills}")
         finally:
             print("\n".join(table(endings)), flush=True)
-            killer.leave()
+            for killer in killers.values():
+                killer.leave()
         if lab is not None:
-            lost, doubled, told = lab.held_against(bench.database, bench.configuration.name)
+            bench = killers[False].bench
+            lost, doubled, told = lab.held_against(bench.records.url, bench.configuration.name)
             print(f"{told}: rows lost {lost}, doubled {doubled}", flush=True)
             astray = lost + doubled
     sys.exit(len(endings) < arguments.kills or any(ending.problems for ending in endings) or astray > 0)

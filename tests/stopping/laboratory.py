@@ -3,7 +3,6 @@
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 
 import numpy as np
 
@@ -37,10 +36,10 @@ class Laboratory:
         self._thread = threading.Thread(target=self._disturb, name="disturbances", daemon=True)
         self._thread.start()
 
-    def held_against(self, database: Path, name: str) -> tuple[int, int, str]:
+    def held_against(self, url: str, name: str) -> tuple[int, int, str]:
         """Rows lost, rows doubled, and what was done; the bench first hands in what is left."""
         self.end()
-        with Store.open(f"sqlite:///{database}") as own, Store.open(self._url) as lab:
+        with Store.open(url) as own, Store.open(self._url) as lab:
             hand = own.hand_in_to(lab, name)
             left = hand.waiting()
             for experiment_id in left:

@@ -1,13 +1,18 @@
-"""`friction-bench` with a drive that raises as soon as a file is there: `python -m tests.stopping.raising FILE ...`.
+"""`friction-bench` with a drive that raises as soon as a file is there: `python -m tests.stopping.raising FILE`.
 
-An error of no known kind, in the middle of a trial: what a fault of our own software would look like.
+An error of no known kind, in the middle of a trial: what a fault of our own software would look like. The words of the
+command come as a line of JSON on standard input, when all that takes long to import is there.
 """
 
+import importlib
+import json
 import sys
 from pathlib import Path
 from typing import Any
 
 from drivers.contract import Command, Sample
+
+IMPORTED_BEFORE = ("bench.cli", "bench.cli.operation.serve", "bench.cli.operation.run", "bench.service.server")
 
 
 class RaisingDrive:
@@ -43,7 +48,9 @@ def install(file: Path) -> None:
 def main() -> None:
     """The command."""
     file = Path(sys.argv[1])
-    sys.argv = ["friction-bench", *sys.argv[2:]]
+    for name in IMPORTED_BEFORE:
+        importlib.import_module(name)
+    sys.argv = ["friction-bench", *json.loads(sys.stdin.readline())]
     if "run" in sys.argv:  # the control loop of a service is elsewhere
         install(file)
     from bench.cli import main as command

@@ -43,4 +43,4 @@ def test_what_a_killed_service_recorded_comes_to_a_laboratory_that_breaks_down_i
             assert made.end_one(way).problems == []
         finally:
             made.leave()
-        assert lab.held_against(bench.database, bench.configuration.name)[:2] == (0, 0)
+        assert lab.held_against(bench.records.url, bench.configuration.name)[:2] == (0, 0)

@@ -3,11 +3,9 @@
 import os
 import resource
 import signal
-import sqlite3
 import subprocess
 import time
 from collections.abc import Callable
-from contextlib import closing
 from dataclasses import dataclass
 
 from bench.control.late_cycles import BRAKING_S
@@ -64,6 +62,7 @@ class Way:
         served: whether a service runs it, else a command at the terminal.
         survives: whether the service is there afterwards.
         keeps_all: whether every sample up to the power-off is kept, else those up to the deed.
+        of_file: whether it can only be done to a store that is a file.
     """
 
     name: str
@@ -74,6 +73,7 @@ class Way:
     served: bool = False
     survives: bool = False
     keeps_all: bool = True
+    of_file: bool = False
 
 
 def _signals(*numbers: signal.Signals) -> Deed:
@@ -118,7 +118,7 @@ def _fill_the_disk(scene: Scene) -> float:
 
     Its log begins anew now and then, within the length that it has had: more than that has to be forbidden.
     """
-    size = (scene.bench.folder / "output").stat().st_size + FEW_PAGES
+    size = scene.bench.output_file.stat().st_size + FEW_PAGES
     now_s = time.monotonic()
     resource.prlimit(scene.loop_process(), resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
     return now_s
@@ -145,23 +145,19 @@ def _pull_the_cable(scene: Scene) -> float:
 
 def _lock_for_a_moment(scene: Scene) -> float:
     """Another program writes for a second: the rows wait, and none is lost. Then a signal ends the run."""
-    with closing(sqlite3.connect(scene.bench.database, isolation_level=None, timeout=PATIENCE_S)) as other:
-        other.execute("BEGIN IMMEDIATE")
+    with scene.bench.records.locked():
         time.sleep(1.0)
-        other.execute("ROLLBACK")
     return _signals(signal.SIGTERM)(scene)
 
 
 def _lock_until_the_end(scene: Scene) -> float:
     """Another program never lets go while the run lasts: the run ends, and its end is written later."""
-    with closing(sqlite3.connect(scene.bench.database, isolation_level=None, timeout=PATIENCE_S)) as other:
-        other.execute("BEGIN IMMEDIATE")
+    with scene.bench.records.locked():
         now_s = time.monotonic()
         if scene.service is None:
             scene.process.wait(PATIENCE_S)
         else:
             wait_for(lambda: not scene.served.runs(), scene.bench)
-        other.execute("ROLLBACK")
     return now_s
 
 
@@ -178,7 +174,7 @@ WAYS = (
     Way("kill -9 of the loop", _kill_the_loop, "interrupted", "SIGKILL", WATCHDOG_S + HOST_S, True, True, False),
     Way("SIGTERM to the loop", _end_the_loop, "stopped", "ended by a signal", served=True, survives=True),
     Way("locked until the end", _lock_until_the_end, "failed", "locked|keep up", LOCKED_S + STOP_S, True, True, False),
-    Way("disk full", _fill_the_disk, "failed", "disk|full", FULL_S, True, False, False),
+    Way("disk full", _fill_the_disk, "failed", "disk|full", FULL_S, True, False, False, True),
     Way("kill -9 of the service", _signals(KILL), "stopped", "service .* is gone", served=True),
     Way("Ctrl-C to the service", _signals(INT), "stopped", ENDED, served=True),
     Way("Ctrl-C twice to the service", _signals(INT, INT), "stopped", ENDED, served=True),
@@ -190,7 +186,7 @@ WAYS = (
     Way("run: kill -9", _signals(KILL), "interrupted", KILLED, WATCHDOG_S + HOST_S, keeps_all=False),
     Way("run: exception in the trial", _raise, "failed", "a fault of the software"),
     Way("run: limit trip", _trip, "tripped", "position is .* allowed is"),
-    Way("run: disk full", _fill_the_disk, "failed", "disk|full", FULL_S, keeps_all=False),
+    Way("run: disk full", _fill_the_disk, "failed", "disk|full", FULL_S, keeps_all=False, of_file=True),
     Way("run: drive gone", _pull_the_cable, "failed", "check the cable", WATCHDOG_S + HOST_S, keeps_all=False),
     Way("run: locked for a second", _lock_for_a_moment, "stopped", "SIGTERM at the terminal"),
 )

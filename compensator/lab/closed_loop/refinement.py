@@ -70,7 +70,7 @@ def _along(fit: Fit, moved: LoopComparison) -> Fit:
         moved_recording(dataset, trial, run.simulated.position)
         for trial, run in zip(dataset.trials, moved.trials, strict=True)
     ]
-    along = replace(more_trials(dataset, recordings), cache={})
+    along = replace(more_trials(dataset, recordings), cache={}, unfiltered={})
     rows = along.in_regimes(along.choice_for(fit.effects))
     return fit_model(
         along, fit.names, rows & np.isin(along.trial_index, trained_trials(dataset, fit.training)), fit.shapes

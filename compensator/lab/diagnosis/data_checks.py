@@ -61,10 +61,11 @@ def _mirrored_trials(fit: Fit) -> list[str]:
     for index, trial in enumerate(dataset.trials):
         rows = dataset.counted & (dataset.trial_index == index)
         own, own_effort = columns[rows & fit.training], effort[rows & fit.training]
-        predicted = columns @ solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
-        as_is, turned = (rms(sign * effort[rows] - predicted[rows]) for sign in (1.0, -1.0))
+        without = solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
+        predicted = columns[rows] @ without
+        as_is, turned = (rms(sign * effort[rows] - predicted) for sign in (1.0, -1.0))
         if int(rows.sum()) >= FEWEST_ROWS and turned < MIRRORED * as_is:
-            if as_is < UNLIKE * _median_error(dataset, effort - predicted, dataset.counted & ~rows):
+            if as_is < UNLIKE * _median_error(dataset, effort - columns @ without, dataset.counted & ~rows):
                 continue
             nothing = np.zeros_like(whole[0])
             with_turned = solve_without(whole, (nothing, 2.0 * own.T @ own_effort), bounds)

@@ -95,6 +95,11 @@ class Motion:
         return found
 
     @cached_property
+    def is_bent(self) -> bool:
+        """Whether any column carries what an effect with a slope makes of it."""
+        return bool(self.bend.any())
+
+    @cached_property
     def strokes(self) -> Strokes:
         """The motion cut at its turning points."""
         return strokes_of(self.position)

@@ -11,7 +11,7 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit, bounds_of, trained_trials, with_terms
 from compensator.lab.model.linear import Solution, Term, solve
-from compensator.lab.model.prediction import PlainColumns, with_own_prediction
+from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.shape_search import find_shapes, first_shapes
 from compensator.lab.model.weights import regime_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -116,9 +116,8 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], we
     """
     misread = any(effect.misreads is not None for effect in effects)  # a position need not be found more exactly
     last, given, before, earlier = np.inf, fit, fit.predicted, None
-    kept: PlainColumns | None = None if misread else {}  # else the motions themselves change
     for _ in range(MOST_PASSES):
-        fit = fit_linear(with_own_prediction(given.dataset, given.terms, kept), effects, fit.training, shapes, weight)
+        fit = fit_linear(with_own_prediction(given.dataset, given.terms), effects, fit.training, shapes, weight)
         step = fit.predicted - before
         change = float(np.linalg.norm(step))
         if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or (change >= last and earlier is None):

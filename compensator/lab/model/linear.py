@@ -76,7 +76,8 @@ def independent(columns: FloatArray) -> BoolArray:
 
 def orthonormal(columns: FloatArray) -> FloatArray:
     """Orthonormal basis of the span of (N, k); shape (N, rank)."""
-    kept = independent(columns)
+    # one column needs no other to be told from
+    kept = np.array([columns.any()]) if columns.shape[1] == 1 else independent(columns)
     if not kept.any():
         return np.empty((len(columns), 0))
     basis: FloatArray = np.linalg.qr(columns[:, kept])[0]

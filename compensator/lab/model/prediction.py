@@ -10,44 +10,41 @@ from dataclasses import replace
 
 import numpy as np
 
-from compensator.lab.effects.effect import Motion, Shape
+from compensator.lab.effects.effect import Motion
 from compensator.lab.model.linear import Term
 from compensator.lab.model.reading import at_true_position
 from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 
-PlainColumns = dict[tuple[int, str, Shape], FloatArray]
-"""Columns (k, n) at the full rate of effects that build on no prediction, by trial, effect and shape."""
 
-
-def with_own_prediction(dataset: Dataset, terms: Sequence[Term], kept: PlainColumns | None = None) -> Dataset:
+def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     """The rows, with the model's own predicted load and effort in every motion.
 
     Args:
         dataset: of the rows.
         terms: of the fitted model.
-        kept: filled, and used where the same motions are predicted once more, as in each pass of a fit; None: none are.
     """
     dataset = at_true_position(dataset, terms)
     per_torque = effort_per_torque(dataset, terms)
-    loads, totals, beyond, wholes = [], [], [], []
-    for index, trial in enumerate(dataset.trials):
-        load = np.zeros(len(trial.motion.time_s))
-        total = np.zeros(len(trial.motion.time_s))
-        for term in terms:
-            if term.effect.builds_on == "effort":
-                continue  # its column is made of the rest
-            part = term.coefficients @ _at_full_rate(term, index, trial.motion, kept)
-            total += part
+    motions = [trial.motion for trial in dataset.trials]
+    totals = [np.zeros(len(motion.time_s)) for motion in motions]
+    carried = [np.zeros(len(motion.time_s)) for motion in motions]
+    for term in terms:
+        if term.effect.builds_on == "effort":
+            continue  # its column is made of the rest
+        for index, columns in enumerate(dataset.at_full_rate(term.effect, term.shape)):
+            part = term.coefficients @ columns
+            totals[index] += part
             if term.effect.carried:
-                load += part
-        known = _inertia_beyond(terms, trial.motion, per_torque)
-        whole = whole_inertia(terms, trial.motion)
-        inertia = known if trial.motion.facts.arm_inertia_kg_m2 else whole
-        beyond.append((inertia, (load + inertia * trial.motion.acceleration) / (inertia or np.inf)))
-        loads.append(load + known * trial.motion.acceleration)
-        totals.append(total)
+                carried[index] += part
+    loads, beyond, wholes = [], [], []
+    for motion, own in zip(motions, carried, strict=True):
+        known = _inertia_beyond(terms, motion, per_torque)
+        whole = whole_inertia(terms, motion)
+        inertia = known if motion.facts.arm_inertia_kg_m2 else whole
+        beyond.append((inertia, (own + inertia * motion.acceleration) / (inertia or np.inf)))
+        loads.append(own + known * motion.acceleration)
         wholes.append(whole)
     dataset = dataset.with_prediction(loads, totals, beyond, wholes)
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
@@ -55,16 +52,6 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term], kept: PlainColu
         return dataset
     motions = [trial.motion for trial in dataset.trials]
     return dataset.with_bend([_bend(steep, one) for one in motions], [_doubt(steep, one) for one in motions])
-
-
-def _at_full_rate(term: Term, index: int, motion: Motion, kept: PlainColumns | None) -> FloatArray:
-    """The columns (k, n) of a term over the motion of a trial."""
-    if kept is None or term.effect.uses_prediction:
-        return term.effect.columns(motion, term.shape)
-    key = index, term.effect.name, term.shape
-    if key not in kept:
-        kept[key] = term.effect.columns(motion, term.shape)
-    return kept[key]
 
 
 def beyond_tangent(dataset: Dataset, terms: Sequence[Term], index: int, coefficients: FloatArray) -> FloatArray:
@@ -85,7 +72,7 @@ def beyond_tangent(dataset: Dataset, terms: Sequence[Term], index: int, coeffici
             found = found + part @ (
                 term.effect.columns(moved, term.shape) - term.effect.columns(trial.motion, term.shape)
             )
-    return replace(dataset, trials=(trial,), cache={}).stack([found[None]])[:, 0]
+    return replace(dataset, trials=(trial,), cache={}, unfiltered={}).stack([found[None]])[:, 0]
 
 
 def _bend(steep: Sequence[Term], motion: Motion) -> FloatArray:

@@ -15,6 +15,7 @@ from scipy.signal import butter, sosfilt_zi
 from compensator.lab.recordings.recording import FloatArray, IntArray
 
 FILTER_ORDER = 4
+TURNED_AT_ONCE = 8  # rows: what a line of the cache holds
 PADDING = 3  # times the filter's length, continued at both ends
 
 
@@ -40,20 +41,17 @@ def low_pass_each(blocks: Sequence[FloatArray], cutoff_hz: float, rates_hz: Sequ
         return found
     # the longest first, so that the columns that have begun stand side by side
     some.sort(key=lambda index: -blocks[index].shape[1])
-    designs = [filter_sections(cutoff_hz, rates_hz[index]) for index in some]
-    padding = PADDING * (2 * len(designs[0][0]) + 1)
-    widths, lengths = zip(*((len(blocks[index]), blocks[index].shape[1] + 2 * padding) for index in some), strict=True)
-    sections = np.repeat([one for one, _ in designs], widths, axis=0).transpose(1, 2, 0)
-    steady = np.repeat([one for _, one in designs], widths, axis=0).transpose(1, 2, 0)
+    widths = tuple(len(blocks[index]) for index in some)
+    sections, steady = _sections_of_columns(cutoff_hz, tuple(rates_hz[index] for index in some), widths)
+    padding = PADDING * (2 * len(sections) + 1)
+    lengths = [blocks[index].shape[1] + 2 * padding for index in some]
     first_rows = lengths[0] - np.array(lengths)
     together = np.empty((lengths[0], sum(widths)))
     parts = []
     for index, first, part in zip(some, first_rows, np.split(together, np.cumsum(widths)[:-1], axis=1), strict=True):
-        _put_with_odd_extension(blocks[index].T, part[first:], padding)
+        _put_with_odd_extension(blocks[index], part[first:], padding)
         parts.append((index, part[first + padding : lengths[0] - padding].T))
-    _there_and_back(
-        np.ascontiguousarray(sections), np.ascontiguousarray(steady), np.repeat(first_rows, widths), together
-    )
+    _there_and_back(sections, steady, np.repeat(first_rows, widths), together)
     for index, part in parts:
         found[index] = part
     return found
@@ -66,11 +64,32 @@ def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, Float
     return sections, sosfilt_zi(sections)
 
 
+@lru_cache(maxsize=256)
+def _sections_of_columns(
+    cutoff_hz: float, rates_hz: tuple[float, ...], widths: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Those of each column of blocks of such rates and widths, (sections, 6, k) and (sections, 2, k).
+
+    A fit asks for the same trials side by side again and again.
+    """
+    designs = [filter_sections(cutoff_hz, rate_hz) for rate_hz in rates_hz]
+    sections, steady = (np.repeat(kind, widths, axis=0).transpose(1, 2, 0) for kind in zip(*designs, strict=True))
+    return np.ascontiguousarray(sections), np.ascontiguousarray(steady)
+
+
+@njit(cache=True)
 def _put_with_odd_extension(values: FloatArray, into: FloatArray, count: int) -> None:
-    """Values (n, k), continued at both ends by their own mirror image through the end points."""
-    into[count:-count] = values
-    into[:count] = 2.0 * values[:1] - values[count:0:-1]
-    into[-count:] = 2.0 * values[-1:] - values[-2 : -count - 2 : -1]
+    """Values (k, n) as columns, continued at both ends by their own mirror image through the end points."""
+    columns, last = values.shape[0], values.shape[1] - 1
+    # some rows of all columns at a time: what is read and what is written both stay near
+    for start in range(0, last + 1, TURNED_AT_ONCE):
+        for column in range(columns):
+            for row in range(start, min(start + TURNED_AT_ONCE, last + 1)):
+                into[count + row, column] = values[column, row]
+    for away in range(1, count + 1):
+        for column in range(columns):
+            into[count - away, column] = 2.0 * values[column, 0] - values[column, away]
+            into[count + last + away, column] = 2.0 * values[column, last] - values[column, last - away]
 
 
 @njit(cache=True)

@@ -61,7 +61,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))
     trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in progress.each(signals)])
     plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
-    settled = replace(plain, trials=_on_one_flank(trials), cache={})
+    settled = replace(plain, trials=_on_one_flank(trials), cache={}, unfiltered={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
     dataset = settled if int(settled.counted.sum()) >= enough else replace(plain, crosses_free_play=True)
     found = int(dataset.counted.sum())
@@ -83,7 +83,7 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
     trials = tuple(_make_trial(s, facts, cutoff, dataset.scales) for s in signals)
     trials = trials if dataset.crosses_free_play else _on_one_flank(trials)
-    return replace(dataset, trials=trials, uncorrected=None, cache={})
+    return replace(dataset, trials=trials, uncorrected=None, cache={}, unfiltered={})
 
 
 def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]:

@@ -20,8 +20,8 @@ from compensator.lab.recordings.regimes import Regime
 RowChoice = Literal["sliding", "moving", "all"]
 ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds the one before
 
-MOST_VALUES = 2**20  # of one trial, at the full rate, that are filtered at once
-SIDE_BY_SIDE = 32  # columns of several trials that are filtered at once, at least
+AT_ONCE = 2**18  # values at the full rate that are filtered at once: what a processor's own cache holds
+SIDE_BY_SIDE = 32  # columns that are filtered at once, at least
 EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
 BLOCK_S = 2.0  # rows closer than this are not independent
 
@@ -91,6 +91,7 @@ class Dataset:
     crosses_free_play: bool = False
     uncorrected: "Dataset | None" = None
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
+    unfiltered: dict[tuple[str, Shape], list[FloatArray]] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def effort(self) -> FloatArray:
@@ -128,7 +129,7 @@ class Dataset:
     @cached_property
     def is_bent(self) -> bool:
         """Whether any column carries what an effect with a slope makes of it."""
-        return any(bool(np.any(trial.motion.bend)) for trial in self.trials)
+        return any(trial.motion.is_bent for trial in self.trials)
 
     @cached_property
     def trial_index(self) -> IntArray:
@@ -228,12 +229,33 @@ class Dataset:
             for e, shapes in wanted
         ]
 
+    def at_full_rate(self, effect: Effect, shape: Shape) -> list[FloatArray]:
+        """The effect's columns (k, n) over each trial's motion, before they are filtered.
+
+        Those that do not depend on the predicted load are kept: each pass of a fit asks for them.
+        """
+        kept = self.unfiltered.get((effect.name, shape))
+        if kept is not None:
+            return kept
+        made = [effect.columns(trial.motion, shape) for trial in self.trials]
+        if not effect.uses_prediction:
+            self.unfiltered[effect.name, shape] = made
+        return made
+
     def _portions(self, wanted: Sequence[tuple[Effect, Shape]]) -> Iterator[Sequence[tuple[Effect, Shape]]]:
-        """So many at a time that their columns at the full rate stay small beside the recordings themselves."""
+        """So many at a time that one trial's columns at the full rate are filtered at once."""
         longest = max((len(trial.motion.time_s) for trial in self.trials), default=1)
-        at_once = max(1, MOST_VALUES // longest)
-        for start in range(0, len(wanted), at_once):
-            yield wanted[start : start + at_once]
+        at_once = max(SIDE_BY_SIDE, AT_ONCE // longest)
+        some: list[tuple[Effect, Shape]] = []
+        columns = 0
+        for effect, shape in wanted:
+            if some and columns + len(effect.parameters) > at_once:
+                yield some
+                some, columns = [], 0
+            some.append((effect, shape))
+            columns += len(effect.parameters)
+        if some:
+            yield some
 
     def stack(self, full_rate: Iterable[FloatArray]) -> FloatArray:
         """Filter and thin arrays (k, n) given per trial, one after the other; shape (N, k)."""
@@ -243,7 +265,7 @@ class Dataset:
         for rows in full_rate:
             waiting.append(rows)
             values += rows.size
-            if values >= SIDE_BY_SIDE * rows.shape[1]:
+            if values >= max(AT_ONCE, SIDE_BY_SIDE * rows.shape[1]):
                 parts += self._filtered(len(parts), waiting)
                 waiting, values = [], 0
         parts += self._filtered(len(parts), waiting)
@@ -314,7 +336,7 @@ class Dataset:
     def corrected(self, motions: Sequence[Motion]) -> "Dataset":
         """The same rows with other motions, at the position that each trial's joint has rather than seems to have."""
         trials = tuple(replace(trial, motion=motion) for trial, motion in zip(self.trials, motions, strict=True))
-        return replace(self, trials=trials, uncorrected=self.as_read(), cache={EFFORT: self.effort})
+        return replace(self, trials=trials, uncorrected=self.as_read(), cache={EFFORT: self.effort}, unfiltered={})
 
     def straightened(self) -> "Dataset":
         """The same rows, for a model that is still to be fitted: nothing bends."""
@@ -364,14 +386,17 @@ class Dataset:
         # orders that an effect does not use are rows of zeros
         used = [_used(rows) for rows in full_rate]
         filtered = low_pass_each(
-            [rows[some] for rows, some in zip(full_rate, used, strict=True)],
+            [rows if some.all() else rows[some] for rows, some in zip(full_rate, used, strict=True)],
             self.cutoff_hz,
             [trial.signals.rate_hz for trial in trials],
         )
         found = []
         for trial, some, own in zip(trials, used, filtered, strict=True):
-            thinned = np.zeros((len(some), len(trial.picked)))
-            thinned[some] = own[:, trial.picked]
+            thinned = own[:, trial.picked]
+            if len(thinned) < len(some):
+                whole = np.zeros((len(some), len(trial.picked)))
+                whole[some] = thinned
+                thinned = whole
             found.append(thinned)
         return found
 
@@ -386,4 +411,4 @@ def _used(columns: FloatArray) -> BoolArray:
 def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:
     """The effect's columns (k, n), and what the model makes of them where it bends."""
     columns = effect.columns(motion, shape)
-    return columns * (1.0 + motion.bend) if effect.builds_on != "effort" and motion.bend.any() else columns
+    return columns * (1.0 + motion.bend) if effect.builds_on != "effort" and motion.is_bent else columns
