@@ -25,7 +25,10 @@ from bench.study.diagnose import diagnose
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+pytestmark = [
+    pytest.mark.skipif(os.name != "posix", reason="signals of POSIX"),
+    pytest.mark.timeout(600),  # the lab lets other programs go first: on a busy machine it takes minutes
+]
 
 
 @pytest.fixture(scope="module")

@@ -2,15 +2,17 @@
 
 import socket
 from collections.abc import Iterator
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import httpx
 import pytest
 
 from bench.service.http.limits import MOST_BYTES, MOST_DEPTH, MOST_DIGITS, MOST_PARTS, check_json
+from tests.devices.turns import HOST, ask_for_turns
 from tests.service.attacks import BODIES, STOPPED_WITHIN_S, stopped_under
 from tests.service.running_service import TOKEN
-from tests.service.served_process import served_process
+from tests.service.served_process import started_process
 
 JSON = {"Content-Type": "application/json"}
 
@@ -66,13 +68,23 @@ def test_whoever_has_no_token_is_answered_without_his_body_being_read(idle):
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory) -> Iterator[httpx.Client]:
-    """A service in a process of its own: the senders of these tests do not take its interpreter."""
+    """A service in a process of its own: the senders of these tests do not take its interpreter.
+
+    It and its bench have turns, and the senders have none: a machine that is busy with other work is no attack.
+    """
     headers = {"Authorization": f"Bearer {TOKEN}"}
     with (
-        served_process(tmp_path_factory.mktemp("served")) as url,
+        started_process(tmp_path_factory.mktemp("served")) as (process, url),
         httpx.Client(base_url=f"{url}/api/v1", headers=headers, timeout=60.0) as client,
     ):
+        for pid in (process.pid, *children_of(process.pid)):
+            ask_for_turns(pid, HOST)
         yield client
+
+
+def children_of(pid: int) -> list[int]:
+    tasks = Path(f"/proc/{pid}/task").glob("*/children")
+    return [int(one) for task in tasks for one in task.read_text().split()]
 
 
 @pytest.mark.wall_clock
