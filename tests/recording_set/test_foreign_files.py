@@ -99,5 +99,5 @@ def test_numbers_beyond_any_clock_are_refused_as_time(tmp_path: Path) -> None:
     path = tmp_path / "large.csv"
     rows = [f"{(-1) ** i * 1.7e308 * (0.5 + i / 80)!r},{0.01 * i:g},0.5" for i in range(40)]
     path.write_text("\n".join(["time,position_rad,current_a", *rows]))
-    with pytest.raises(RecordingSetError, match="'time' has steps of .*, and its unit is not sure"):
+    with pytest.raises(RecordingSetError, match=r"'time' has steps of .*, and its unit is not sure"):
         read_unknown([path], None, Known({}))
