@@ -80,10 +80,10 @@ class Bench:
             self._programs += 1
             file = self.folder / f"output {self._programs}"
             command = [sys.executable, "-m", "tests.stopping.raising", str(self.folder / "raise")]
-            environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}
+            environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN, "PYTHONPATH": str(ROOT)}
             with file.open("wb") as output:
                 process = subprocess.Popen(
-                    command, stdin=subprocess.PIPE, stdout=output, stderr=output, env=environment, cwd=ROOT
+                    command, stdin=subprocess.PIPE, stdout=output, stderr=output, env=environment, cwd=self.folder
                 )
             self._waiting = process, file
 
