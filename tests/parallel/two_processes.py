@@ -50,7 +50,7 @@ def main() -> None:
 def prepared(store: str, repeats: int) -> int:
     """Record, each study under loads of its own, and make the studies; how many trials each has."""
     for number in range(STUDIES):
-        loads_kg = ",".join(f"{kg + 0.002 * number:g}" for kg in (0.0, 0.05, 0.1))
+        loads_kg = ",".join(f"{kg - 0.002 * number:g}" for kg in (0.03, 0.06, 0.1))
         command(store, *RECORD, "--loads-kg", loads_kg, "--repeats", str(repeats))
     with Store.open(store) as opened:
         experiments = sorted(opened.experiments(), key=lambda one: one.id)
