@@ -33,7 +33,7 @@ def bench(tmp_path, monkeypatch):
 
 @pytest.fixture
 def store(bench):
-    with Store.open(f"sqlite:///{bench.database}") as opened:
+    with Store.open(bench.records.url) as opened:
         yield opened
 
 
@@ -130,7 +130,7 @@ def test_doctor_says_it(bench, store):
 
 
 def _doctor(bench):
-    options = ["--config", str(bench.folder / "bench.toml"), "--store", str(bench.database)]
+    options = ["--config", str(bench.folder / "bench.toml"), "--store", bench.records.url]
     ran = CliRunner().invoke(app, [*options, "doctor", "--json"])
     assert ran.exit_code == 0, ran.output
     return json.loads(ran.stdout)
