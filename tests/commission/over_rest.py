@@ -20,7 +20,7 @@ from tests.service.running_service import RunningService, running_service
 
 KNOWN = {"arm_length_m": 0.5, "gear_ratio": 50.0, "counts_per_turn": None, "motor_current_a": 2.0, "load_kg": 0.1}
 FIRST_KG, FIRST_ALLOWED_KG = 0.05, 2e-3
-PATIENT = {"watchdog_s": 1.0, "answer_timeout_s": 0.3}  # of a machine that is busy with other work
+WATCHDOG_S, ANSWER_S = 1.0, 0.3  # of a machine that is busy with other work
 PATIENCE_S = 300.0  # of one step: a busy machine makes a motion three times
 WIRING = "[wiring]\nmotor_reversed = true\nencoder_reversed = false\n"
 
@@ -62,7 +62,9 @@ def bench(folder: Path, kind: str = "roboclaw", *options: str) -> Iterator[tuple
     """A service with its bench process, on a simulated device whose motor leads are swapped; loads are hung by hand."""
     (folder / "plant.toml").write_text(WIRING if kind == "roboclaw" else "")
     with device_process(kind, "--plant", str(folder / "plant.toml"), "--patience", "0.02", *options) as device:
-        drive = {name: value for name, value in device.drive.items() if name != "side_channel"} | PATIENT
+        answer = "answer_s" if kind == "canopen" else "answer_timeout_s"
+        patient = {"watchdog_s": WATCHDOG_S, answer: ANSWER_S}
+        drive = {name: value for name, value in device.drive.items() if name != "side_channel"} | patient
         with running_service(folder, configuration=bench_of(drive), in_process_of_its_own=True) as service:
             yield service, device
 
