@@ -17,12 +17,20 @@ pytestmark = pytest.mark.virtual_time
 
 STOP_RAD = radians(80.0)
 WRONG_RAD = 0.7  # the zero that is written before: the arm hangs straight down all the same
+STOPS = {"present": True, "upper_rad": STOP_RAD, "lower_rad": -STOP_RAD}
+
+
+def _patient():
+    """A bench's tables, its period and limits those of a device that is looked at now and then."""
+    values = default_configuration().model_dump(mode="json", exclude_none=True)
+    values["control"]["period_s"] = 0.02
+    values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+    return values
 
 
 @pytest.fixture
 def device():
-    stops = {"present": True, "upper_rad": STOP_RAD, "lower_rad": -STOP_RAD}
-    with serve_roboclaw(RoboClawSettings(plant={"end_stops": stops})) as running:
+    with serve_roboclaw(RoboClawSettings(plant={"end_stops": STOPS})) as running:
         yield running
 
 
@@ -31,9 +39,7 @@ def bench(command, device, tmp_path):  # noqa: F811
     """Runs `friction-bench --config bench.toml ...` on the device, with a way of homing."""
 
     def made(homing, **tables):
-        values = default_configuration().model_dump(mode="json", exclude_none=True)
-        values["control"]["period_s"] = 0.02
-        values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+        values = _patient()
         for name, table in tables.items():
             values[name] |= table
         values["drive"] = {
@@ -149,8 +155,7 @@ ON_CAN = {"family": "homing", "interface": "slcan"}
 
 @pytest.fixture
 def can_device():
-    stops = {"present": True, "upper_rad": STOP_RAD, "lower_rad": -STOP_RAD}
-    with serve_canopen(CanOpenSettings(plant={"end_stops": stops}, **ON_CAN)) as running:
+    with serve_canopen(CanOpenSettings(plant={"end_stops": STOPS}, **ON_CAN)) as running:
         yield running
 
 
@@ -159,9 +164,7 @@ def can_bench(command, can_device, tmp_path):  # noqa: F811
     """Runs `friction-bench --config bench.toml ...` on a CiA 402 drive that homes by itself."""
 
     def made(homing, **drive):
-        values = default_configuration().model_dump(mode="json", exclude_none=True)
-        values["control"]["period_s"] = 0.02
-        values["limits"] |= {"sample_age_s": 1.0, "tracking_error_rad": 1.0}
+        values = _patient()
         values["drive"] = drive | {
             "kind": "canopen", "interface": "slcan", "channel": can_device.path, "node_id": can_device.node_id,
             "side_channel": can_device.side_channel, "watchdog_s": 1.0, "answer_s": 0.6, "homing": homing,
