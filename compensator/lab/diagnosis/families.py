@@ -1,6 +1,6 @@
 """What one family of effects has to say: its best effect, confirmed or not, or a curve that none of them follows."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -71,7 +71,6 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     family = _Family(fit, gathered, named, shapes, examined)
     if (curve := family.curve(generic)) is not None:
         return curve
-    family = family.with_the_first_in_the_model()
     return family.name() or family.bend() or family.nothing(generic)
 
 
@@ -83,8 +82,6 @@ class _Family:
         fit, gathered, named: as in `answer_of`.
         shapes: the best one of every effect, best effect first.
         examined: the first effects with their held-out errors; confirmed ones first.
-        explained: the model with the first of them; None where it is not to be named.
-        own_chance: that luck alone brings the first of them so far.
     """
 
     fit: Fit
@@ -92,13 +89,15 @@ class _Family:
     named: Screening
     shapes: list[Evidence]
     examined: list[Candidate]
-    explained: Fit | None = None
-    own_chance: float = 1.0
+
+    def evidence_of(self, candidate: Candidate) -> Evidence:
+        """Of one that is examined."""
+        return next(item for item in self.shapes if item.block.name == candidate.effect.name)
 
     @property
     def best(self) -> Evidence:
-        """Of the effect that would be named."""
-        return next(item for item in self.shapes if item.block.name == self.examined[0].effect.name)
+        """Of the first that is examined."""
+        return self.evidence_of(self.examined[0])
 
     @property
     def most(self) -> Evidence:
@@ -122,26 +121,29 @@ class _Family:
         sentence = answer_in_words("unknown-effect", p_value, self.examined, driver)
         return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], curve.noncentrality, remains=True)
 
-    def with_the_first_in_the_model(self) -> "_Family":
-        """The same, where the first is to be named: its errors are those of the model that would be had with it."""
-        fit, first = self.fit, self.examined[0]
-        own_chance = _own_chance(self.named, first, self.gathered.show_in)
-        if own_chance > SIGNIFICANT or self._is_shadow(self.best) or not is_confirmed(first):
-            return self
-        explained = fit_effects(fit.dataset, [*fit.names, first.effect.name], fit.training)
-        first = as_in_the_ladder(first, fit, explained, self.gathered.show_in)
-        return replace(self, examined=[first, *self.examined[1:]], explained=explained, own_chance=own_chance)
-
     def name(self) -> Answer | None:
-        """The effect that is missing; None where none is confirmed."""
-        explained, best, examined = self.explained, self.best, self.examined
-        if explained is None or not _holds(explained, examined[0]):
+        """The effect that is missing; None where none is confirmed.
+
+        It is the first that holds in the model that would be had: what turns out there to be more, or less, than it can
+        be leaves its place to the next.
+        """
+        return next((answer for one in self.examined if (answer := self._named(one)) is not None), None)
+
+    def _named(self, candidate: Candidate) -> Answer | None:
+        """The answer that a candidate is; None where it is not sure, or does not hold."""
+        fit, show_in, best = self.fit, self.gathered.show_in, self.evidence_of(candidate)
+        own_chance = _own_chance(self.named, candidate, show_in)
+        if own_chance > SIGNIFICANT or self._is_shadow(best) or not is_confirmed(candidate):
             return None
-        own_p = self.own_chance
-        sentence = answer_in_words("missing", own_p, examined, None)
+        explained = fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training)
+        first = as_in_the_ladder(candidate, fit, explained, show_in)
+        if not _holds(explained, first):
+            return None
+        examined = [first, *(one for one in self.examined if one is not candidate)]
+        sentence = answer_in_words("missing", own_chance, examined, None)
         notes = beside_a_name(explained, self.gathered, best)
         strength, remains = best.noncentrality, bool(notes)
-        return Answer("missing", sentence, own_p, examined, None, notes, strength, remains, explained, best)
+        return Answer("missing", sentence, own_chance, examined, None, notes, strength, remains, explained, best)
 
     def _is_shadow(self, best: Evidence) -> bool:
         """Whether it explains much less than another effect, which cannot be it."""

@@ -1,13 +1,15 @@
 """The cut-off of the final filter: four times the bandwidth of the motion, but never where there is mostly noise.
 
 Effort and the plainest columns (acceleration, velocity, its sign, position, sin q, and those that grow with the load)
-are split into bands; in each the share of the effort that the columns explain is a multiple coherence. Beyond the
-band where it falls below one half there is mostly noise, of the encoder after differentiation or of the effort itself.
+are split into bands; in each the share of the effort that the columns explain is a multiple coherence. What the
+columns lack lowers it in every band; noise, of the encoder after differentiation or of the effort itself, grows with
+the frequency. Beyond the band where it falls below half of what it was further down there is mostly noise.
 """
 
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
+from math import nan
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt, welch
@@ -19,7 +21,8 @@ from compensator.lab.recordings.place_locked import place_locked_hz
 from compensator.lab.recordings.processing import Signals, lowest_cutoff_hz, make_signals, sample_rate_hz
 from compensator.lab.recordings.recording import FloatArray, Recording
 
-COHERENT = 0.5
+COHERENT = 0.5  # of the highest coherence further down
+LEAST_COHERENCE = 0.1  # less is no motion's
 LOWEST_HZ = 2.0
 MOTION_SHARE = 0.99
 SEGMENT_S = 4.0
@@ -69,14 +72,19 @@ def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: 
 
 
 def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
-    """The frequency above which the motion explains less than half of the effort's power [Hz]."""
+    """The frequency above which the motion explains less than half as much of the effort's power as below it [Hz]."""
+    most, known_to_hz = 0.0, LOWEST_HZ
     edges = LOWEST_HZ * 2.0 ** (np.arange(64) / BANDS_PER_OCTAVE)
-    edges = np.append(edges[edges < 0.99 * highest_hz], max(highest_hz, LOWEST_HZ))
-    for low, high in pairwise(edges):
-        signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, float(high))]
-        if signals and _explained_share(signals, low, high) < COHERENT:
-            return float(low)
-    return float(highest_hz)
+    # the last band takes in what is left: a sliver would hold too few values
+    edges = np.append(edges[edges < 2.0 ** (-0.5 / BANDS_PER_OCTAVE) * highest_hz], max(highest_hz, LOWEST_HZ))
+    for low, high in pairwise(edges.tolist()):
+        signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, high)]
+        share = _explained_share(signals, low, high) if signals else nan
+        if share < max(COHERENT * most, LEAST_COHERENCE):
+            return known_to_hz
+        if share > 0.0:
+            most, known_to_hz = max(most, share), high
+    return known_to_hz
 
 
 def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[Recording]:
@@ -88,17 +96,21 @@ def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[
 
 
 def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -> float:
+    """Multiple coherence in a band, less what so many columns explain by chance (Bendat, Piersol 2010).
+
+    NaN where the band holds too few independent values to tell.
+    """
     stacks = [_band(trial, low_hz, high_hz) for trial in trials]
     columns = np.concatenate([stack[:-1] for stack in stacks], axis=1).T
     effort = np.concatenate([stack[-1] for stack in stacks])
-    if len(effort) <= columns.shape[1]:
-        return 0.0
+    length_s = sum(stack.shape[1] / trial.rate_hz for stack, trial in zip(stacks, trials, strict=True))
+    free, power = 2.0 * (high_hz - low_hz) * length_s, float(effort @ effort)
+    if free <= 2.0 * columns.shape[1] or power <= 0.0:
+        return nan
     scale = np.linalg.norm(columns, axis=0)
     columns = columns / np.where(scale > 0, scale, 1.0)
-    coefficients = np.linalg.lstsq(columns, effort, rcond=1e-9)[0]
-    rest = effort - columns @ coefficients
-    power = float(effort @ effort)
-    return 1.0 - float(rest @ rest) / power if power > 0 else 0.0
+    rest = effort - columns @ np.linalg.lstsq(columns, effort, rcond=1e-9)[0]
+    return float(1.0 - float(rest @ rest) / power * free / (free - columns.shape[1]))
 
 
 def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:

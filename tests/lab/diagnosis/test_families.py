@@ -68,6 +68,24 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
 
 
 @pytest.mark.parametrize(
+    ("extra", "cannot_be", "verdict", "first"),
+    [
+        (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),
+        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "nothing", "cogging"),  # what is next is but its shadow
+    ],
+)
+def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, cannot_be, verdict, first):
+    fit = fit_model(make_dataset(recordings(Joint(extra=extra), seed=4), FACTS, Processing()), default_effects(FACTS))
+    gathered = with_noise(gather(fit))
+    holds = families._holds
+    monkeypatch.setattr(families, "_holds", lambda fit, one: one.effect.name != cannot_be and holds(fit, one))
+    assert gathered.noise is not None
+    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
+    assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
+
+
+@pytest.mark.parametrize(
     ("show_in", "asked", "chance", "verdict"),
     [
         ("moving", None, None, "missing"),

@@ -50,6 +50,18 @@ def test_an_effort_of_mere_noise_has_its_corner_at_the_bottom():
     assert noise_corner_hz(made, effort, FACTS, 30.0) == LOWEST_HZ
 
 
+@pytest.mark.parametrize("share", [0.7, 1.2])
+def test_what_no_column_explains_does_not_move_the_corner_of_the_noise(share):
+    made = recordings(bench=Bench(noise=0.05))
+    effort = choose_effort(made, FACTS)
+    alone = noise_corner_hz(made, effort, FACTS, 40.0)
+    own = [one.channels["torque_n_m"].copy() for one in made]
+    # of the same spectrum as the effort, and of another motion: as of an axis that nobody records
+    for one, other in zip(made, [*own[1:], own[0]], strict=True):
+        one.channels["torque_n_m"][:] += share * other[::-1]
+    assert noise_corner_hz(made, effort, FACTS, 40.0) == alone > 2.0 * LOWEST_HZ
+
+
 def test_a_start_from_rest_of_two_seconds_has_no_say_in_what_is_noise():
     made, effort = swing(3.0, Bench(noise=0.001))
     short = {name: values[:400] for name, values in made[0].channels.items()}  # too short to be filtered at 2.8 Hz
