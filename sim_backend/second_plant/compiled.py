@@ -1,18 +1,40 @@
 """How functions of the plant are compiled: without checks for division by zero, which the physics excludes."""
 
+import zlib
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
 
 from numba import njit
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
+
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile at the first call.
-
-    Nothing is kept on disk: numba notices that a file has changed, but not one of which its functions are called.
-    """
-    made: Callable[P, R] = njit(error_model="numpy", fastmath={"contract", "arcp"})(function)
+    """Compile at the first call, into what calls it."""
+    made: Callable[P, R] = njit(**_OPTIONS)(function)
     return made
+
+
+def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile at the first call and keep the machine code on disk for later starts.
+
+    Numba notices that a file has changed, but not one of which its functions are called. The value of a closure's
+    variable is part of its key, though: name `SOURCES` there.
+    """
+    made: Callable[P, R] = njit(cache=True, **_OPTIONS)(function)
+    return made
+
+
+def _fingerprint() -> int:
+    digest = 0
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest = zlib.crc32(path.read_bytes(), digest)
+    return digest
+
+
+SOURCES = _fingerprint()
+"""A number that changes with any source file of this plant."""
