@@ -3,20 +3,17 @@
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 from numba import njit
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
-
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile at the first call, into what calls it."""
-    made: Callable[P, R] = njit(**_OPTIONS)(function)
-    return made
+    return _made(function, kept=False)
 
 
 def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
@@ -25,7 +22,11 @@ def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
     Numba notices that a file has changed, but not one of which its functions are called. The value of a closure's
     variable is part of its key, though: name `SOURCES` there.
     """
-    made: Callable[P, R] = njit(cache=True, **_OPTIONS)(function)
+    return _made(function, kept=True)
+
+
+def _made(function: Callable[P, R], kept: bool) -> Callable[P, R]:
+    made: Callable[P, R] = njit(cache=kept, error_model="numpy", fastmath={"contract", "arcp"})(function)
     return made
 
 
