@@ -93,7 +93,7 @@ def likeliest_of_moments(moments: Sequence[FloatArray], kernels: Sequence[FloatA
         variances = np.exp(logarithms)
         value, gradient = 0.0, np.zeros(len(variances))
         for moment, kernel in zip(moments, kernels, strict=True):
-            root = np.linalg.cholesky(np.tensordot(variances, kernel, 1))
+            root: FloatArray = np.linalg.cholesky(np.tensordot(variances, kernel, 1))
             precision = _inverse_of(root)
             value += float(np.sum(np.log(root.diagonal()))) + 0.5 * float(np.sum(precision * moment))
             gradient += 0.5 * np.tensordot(kernel, precision - precision @ moment @ precision, 2)
@@ -112,7 +112,7 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
     """Of the residuals, whatever the base's coefficients are, by variances (k,)."""
     precisions, volume = [], 0.0
     for part in parts:
-        root = np.linalg.cholesky(np.tensordot(variances, part.kernels, 1))
+        root: FloatArray = np.linalg.cholesky(np.tensordot(variances, part.kernels, 1))
         precisions.append(_inverse_of(root))
         volume += 2.0 * float(np.sum(np.log(root.diagonal())))
     sides = [precision @ part.base for precision, part in zip(precisions, parts, strict=True)]
