@@ -93,9 +93,8 @@ def likeliest_of_moments(moments: Sequence[FloatArray], kernels: Sequence[FloatA
         variances = np.exp(logarithms)
         value, gradient = 0.0, np.zeros(len(variances))
         for moment, kernel in zip(moments, kernels, strict=True):
-            root: FloatArray = np.linalg.cholesky(np.tensordot(variances, kernel, 1))
-            precision = _inverse_of(root)
-            value += float(np.sum(np.log(root.diagonal()))) + 0.5 * float(np.sum(precision * moment))
+            precision, volume = _inverse_of(np.tensordot(variances, kernel, 1))
+            value += 0.5 * (volume + float(np.sum(precision * moment)))
             gradient += 0.5 * np.tensordot(kernel, precision - precision @ moment @ precision, 2)
         return value, gradient * variances
 
@@ -112,9 +111,9 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
     """Of the residuals, whatever the base's coefficients are, by variances (k,)."""
     precisions, volume = [], 0.0
     for part in parts:
-        root: FloatArray = np.linalg.cholesky(np.tensordot(variances, part.kernels, 1))
-        precisions.append(_inverse_of(root))
-        volume += 2.0 * float(np.sum(np.log(root.diagonal())))
+        precision, own = _inverse_of(np.tensordot(variances, part.kernels, 1))
+        precisions.append(precision)
+        volume += own
     sides = [precision @ part.base for precision, part in zip(precisions, parts, strict=True)]
     normal = np.sum([side.T @ part.base for side, part in zip(sides, parts, strict=True)], axis=0)
     moment = np.sum([side.T @ part.residual for side, part in zip(sides, parts, strict=True)], axis=0)
@@ -134,9 +133,10 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
     return Likelihood(value, gradient, weighed)
 
 
-def _inverse_of(root: FloatArray) -> FloatArray:
-    """Of the matrix that a lower triangle (c, c) is the root of: a sixth of what any matrix would take."""
-    upper: FloatArray = dpotri(root.T, overwrite_c=False)[0]  # the other triangle stays 0
+def _inverse_of(covariance: FloatArray) -> tuple[FloatArray, float]:
+    """The inverse (c, c), for a sixth of what that of any matrix would take, and the logarithm of the determinant."""
+    root = np.linalg.cholesky(covariance)
+    upper: FloatArray = dpotri(root.T)[0]  # the other triangle stays 0
     inverse = upper + upper.T
     inverse.flat[:: len(root) + 1] *= 0.5
-    return inverse
+    return inverse, 2.0 * float(np.sum(np.log(root.diagonal())))
