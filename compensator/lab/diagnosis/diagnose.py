@@ -9,13 +9,12 @@ from math import nan
 
 from compensator.lab import progress
 from compensator.lab.at_rest.rest_comparison import compare_at_rest
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems
-from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.families import Answer
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Note
 from compensator.lab.diagnosis.four_families import LEFT, STAGES, judged
-from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.notes import at_rest, differs_by_run
 from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.diagnosis.run_to_run import differences_by_run

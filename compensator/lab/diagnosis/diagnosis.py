@@ -1,19 +1,58 @@
 """What a diagnosis says; how it is found is in `diagnose`."""
 
-import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from compensator.lab.diagnosis.note import Note
-from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.picture import BinnedMean
 
-SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
-SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
+NoteCode = Literal[
+    "also-missing",
+    "at-rest",
+    "bends-along",
+    "differs-by-run",
+    "structure-remains",
+    "swings",
+    "too-few-starts",
+    "unexplained-remains",
+    "varies-by-stretch",
+    "wanders",
+]
+"""
+also-missing: another family of effects has something missing, too.
+at-rest: the joint at rest contradicts the model.
+bends-along: what is left varies with where the joint has turned back.
+differs-by-run: a constant differs from run to run.
+structure-remains: with the effect named, structure over a variable remains.
+swings: with it, what is left swings at one frequency.
+too-few-starts: starts from rest are too few to name anything.
+unexplained-remains: with it, more than noise is left, over no variable that is measured.
+varies-by-stretch: with it, something constant differs from one stretch to the next.
+wanders: with it, something constant differs for seconds at a time.
+"""
 
+Value = float | str | bool
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A finding beside the answer: a code for programs, its numbers, and one sentence for people.
+
+    Attributes:
+        code: of what was found.
+        text: the same in one sentence.
+        values: its numbers and names, the unit in the key.
+    """
+
+    code: NoteCode
+    text: str
+    values: Mapping[str, Value] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return self.text
 
 
 @dataclass(frozen=True)
@@ -96,30 +135,3 @@ class Diagnosis:
     left_out: dict[str, str] = field(default_factory=dict)
     too_short: bool = False
     remains: bool = False
-
-    def slight_one(self, explained: float) -> Candidate | None:
-        """What is named, where it is next to nothing beside what was added; None where it is not slight.
-
-        A formula leaves what it is not right to. With enough rows that is surely there, and some other effect follows
-        it best; it is no reason to add that one.
-
-        Args:
-            explained: by effects that were added to the first model, root mean square as a share of the effort, held
-                out; with 0 nothing is slight.
-        """
-        if self.verdict != "missing" or not self.classes:
-            return None
-        one = next((each for each in self.candidates if each.effect.name == self.classes[0][0]), None)
-        if one is None or one.gain.high >= SLIGHT_GAIN or _opens_others(one.effect):
-            return None
-        return one if explained_part(one.before, one.after) < SLIGHT_PART * explained else None
-
-
-def _opens_others(effect: Effect) -> bool:
-    """Whether it is of the measuring chain, and others cannot be judged before it is in the model, as a filter."""
-    return effect.pipeline and any(effect.name in other.after for other in catalogue().values())
-
-
-def explained_part(before: float, after: float) -> float:
-    """What took an error from one to the other, root mean square, in their unit; 0 where it rose."""
-    return math.sqrt(max(0.0, before**2 - after**2))

@@ -6,10 +6,11 @@ import numpy as np
 
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
-from compensator.lab.diagnosis.families import Answer, answer_of
+from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import widened

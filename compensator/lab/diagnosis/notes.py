@@ -1,15 +1,11 @@
 """What a diagnosis says beside its answer: the words and the numbers of every note."""
 
 from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words
-from compensator.lab.diagnosis.note import Note, Value
+from compensator.lab.diagnosis.diagnosis import Note, Value
 from compensator.lab.diagnosis.run_to_run import ByRun, by_run_in_words
-from compensator.lab.diagnosis.wording import (
-    LOOK_AT_HOSES,
-    changing_in_words,
-    swinging_in_words,
-)
-from compensator.lab.left_over.constancy import Change
-from compensator.lab.left_over.swinging import Swing
+from compensator.lab.diagnosis.wording import LOOK_AT_HOSES
+from compensator.lab.left_over.constancy import Change, changing_in_words
+from compensator.lab.left_over.swinging import Swing, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering
 
 

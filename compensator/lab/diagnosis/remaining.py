@@ -2,15 +2,14 @@
 
 import numpy as np
 
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis import notes
 from compensator.lab.diagnosis.bending import still_bending
-from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.note import Note
-from compensator.lab.diagnosis.wording import bursts_in_words, unexplained_in_words, wandering_in_words
-from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
-from compensator.lab.left_over.clear_rows import left_for_sure
-from compensator.lab.left_over.left_over import LeftOver, left_over
+from compensator.lab.diagnosis.diagnosis import Note
+from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
+from compensator.lab.left_over.left_over import LeftOver, left_for_sure, left_over, unexplained_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
+from compensator.lab.left_over.wandering import wandering_in_words
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS

@@ -14,8 +14,8 @@ from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.discrepancy import model_columns
-from compensator.lab.screening.evidence import Base, Block
 from compensator.lab.screening.generic import HYSTERESIS_DRIVER, DriverBlock, driver_blocks, hysteresis_columns
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns

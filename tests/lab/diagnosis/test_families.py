@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis import families
-from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened

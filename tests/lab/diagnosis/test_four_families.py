@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from compensator.lab.diagnosis import four_families
-from compensator.lab.diagnosis.families import Answer
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.four_families import FourFamilies, _evidence_beside
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model, widened
