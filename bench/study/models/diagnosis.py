@@ -6,7 +6,7 @@ from pydantic import Field
 
 from bench.json_types import Number, Numbers
 from bench.study.models.base import LEAST_P, StudyModel
-from compensator.lab.diagnosis.diagnosis import NoteCode
+from compensator.lab.diagnosis.note import NoteCode
 
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
 ConclusionCode = Literal[

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.diagnosis.diagnosis import Candidate, Note, Verdict
+from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.evidence import Evidence
 

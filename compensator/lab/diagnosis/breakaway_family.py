@@ -17,8 +17,9 @@ from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed
-from compensator.lab.diagnosis.diagnosis import Candidate, Note, Verdict
+from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.diagnosis.wording import named_in_words
 from compensator.lab.effects.catalogue import candidates

@@ -1,58 +1,14 @@
 """What a diagnosis says; how it is found is in `diagnose`."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.picture import BinnedMean
 
-NoteCode = Literal[
-    "also-missing",
-    "at-rest",
-    "bends-along",
-    "differs-by-run",
-    "structure-remains",
-    "swings",
-    "too-few-starts",
-    "unexplained-remains",
-    "varies-by-stretch",
-    "wanders",
-]
-"""
-also-missing: another family of effects has something missing, too.
-at-rest: the joint at rest contradicts the model.
-bends-along: what is left varies with where the joint has turned back.
-differs-by-run: a constant differs from run to run.
-structure-remains: with the effect named, structure over a variable remains.
-swings: with it, what is left swings at one frequency.
-too-few-starts: starts from rest are too few to name anything.
-unexplained-remains: with it, more than noise is left, over no variable that is measured.
-varies-by-stretch: with it, something constant differs from one stretch to the next.
-wanders: with it, something constant differs for seconds at a time.
-"""
-
-Value = float | str | bool
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
-
-
-@dataclass(frozen=True, slots=True)
-class Note:
-    """A finding beside the answer: a code for programs, its numbers, and one sentence for people.
-
-    Attributes:
-        code: of what was found.
-        text: the same in one sentence.
-        values: its numbers and names, the unit in the key.
-    """
-
-    code: NoteCode
-    text: str
-    values: Mapping[str, Value] = field(default_factory=dict)
-
-    def __str__(self) -> str:
-        return self.text
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
+from compensator.lab.screening.base import HYSTERESIS_DRIVER as HYSTERESIS
 from compensator.lab.screening.evidence import least_p_value
-from compensator.lab.screening.generic import HYSTERESIS_DRIVER as HYSTERESIS
 
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 

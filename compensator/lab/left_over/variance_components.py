@@ -133,3 +133,19 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
         weighed.append(left)
     value = -0.5 * (volume + float(np.sum(np.log(powers[solid]))) + fits)
     return Likelihood(value, gradient, weighed)
+
+
+@dataclass(frozen=True)
+class CellsOfTrial:
+    """Cells of a trial, each the mean of its rows, of unit noise.
+
+    Attributes:
+        index: of the trial; time_s: of each cell, shape (c,).
+        size: what wanders has of each, shape (c,).
+        part: of the residuals, its components those of the null and, last, what wanders.
+    """
+
+    index: int
+    time_s: FloatArray
+    size: FloatArray
+    part: Part

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from compensator.lab.left_over.cells import CellsOfTrial, cells_of, most_changed
+from compensator.lab.left_over.cells import cells_of, most_changed
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.jumps import jumps_of
-from compensator.lab.left_over.variance_components import likeliest
+from compensator.lab.left_over.variance_components import CellsOfTrial, likeliest
 from compensator.lab.model.held_out_error import rms
 
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own

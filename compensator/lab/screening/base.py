@@ -7,6 +7,8 @@ import numpy as np
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
 
+HYSTERESIS_DRIVER = "since_reversal"
+
 
 @dataclass(frozen=True)
 class Block:
@@ -46,3 +48,20 @@ class Base:
         added = orthonormal(rest - self.basis @ (self.basis.T @ rest))  # twice is enough (Kahan, Parlett)
         residual = self.residual - added @ (added.T @ self.residual)
         return Base(np.column_stack([self.basis, added]), residual)
+
+
+@dataclass(frozen=True)
+class DriverBlock:
+    """One driver's spline over all rows.
+
+    Attributes:
+        driver: key of `DRIVERS`.
+        against_motion: multiplied by the direction of motion (friction-like), or plain (force-like).
+        columns: filtered like the effort, shape (N, k).
+        knots: of the spline, in the driver's unit, shape (k,).
+    """
+
+    driver: str
+    against_motion: bool
+    columns: FloatArray
+    knots: FloatArray

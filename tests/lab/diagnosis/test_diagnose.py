@@ -12,7 +12,8 @@ from compensator.lab.diagnosis import diagnose as diagnose_module
 from compensator.lab.diagnosis import four_families
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.diagnosis import Diagnosis, Note
+from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.catalogue import catalogue, default_effects
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_model
