@@ -17,7 +17,8 @@ from bench.control.joint import ControlledJoint
 from bench.control.joint_group import SingleJoint
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
-from bench.control.pair import JointPair, PairAction
+from bench.control.pair import JointPair
+from bench.control.pair_cycle import PairAction
 from bench.control.servo import CurrentServo
 from drivers.contract import Command, Mode
 from tests.control.fake_drive import RIG, FakeDrive, ListSink

@@ -11,7 +11,7 @@ from bench.control.clock import WallClock
 from bench.control.cycle import OFF, Action
 from bench.control.drive_faults import read_drives
 from bench.control.ending import StopRequest
-from bench.control.pair import PairAction
+from bench.control.pair_cycle import PairAction
 from bench.control.station import make_station
 from bench.errors import ConfigurationError
 from drivers.contract import Command, Mode

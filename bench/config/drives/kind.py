@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Generic, Literal, TypeVar
 
+from bench.config.drives.beside_arm import BesideArm
 from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
@@ -94,6 +95,7 @@ class DriveKind(Generic[SettingsT]):
             `ConfigurationError`. None: each has a line of its own.
         follow: looks at one that another program moves: of the section, the rig, the name of the port that it offers,
             and the time from one look to the next [s]. None: that cannot be done.
+        beside_arm: makes the operator's hand on the arm of a drive, and what that arm meets. None: a person does it.
     """
 
     title: str
@@ -105,6 +107,7 @@ class DriveKind(Generic[SettingsT]):
     scan_can: CanScan | None = None
     share: Callable[[Sequence[Any]], None] | None = None
     follow: Callable[[SettingsT, Rig, Path, float], Follower] | None = None
+    beside_arm: BesideArm | None = None
 
     @property
     def name(self) -> str:

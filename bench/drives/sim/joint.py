@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from drivers.contract import Drive
 
 if TYPE_CHECKING:
+    from sim_backend.drive.simulated_drive import SimulatedDrive
     from sim_backend.environment.surroundings import Hand, Surroundings
 
 
@@ -16,17 +17,8 @@ def wall_torque_n_m(drive: Drive) -> float:
     return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan
 
 
-def make_hand(drive: Drive) -> "Hand | None":
-    """The operator's hand on the arm of a simulated drive; None at a real one, where a person stands."""
-    from sim_backend.drive.simulated_drive import SimulatedDrive
-    from sim_backend.environment.surroundings import Hand
+def beside_arm(drive: "SimulatedDrive") -> "tuple[Hand, Surroundings]":
+    """The operator's hand on the arm of a simulated drive, and what that arm meets."""
+    from sim_backend.environment.surroundings import Hand, Surroundings
 
-    return Hand(drive.plant) if isinstance(drive, SimulatedDrive) else None
-
-
-def make_environment(drive: Drive) -> "Surroundings | None":
-    """What the arm of a simulated drive meets; None at a real one."""
-    from sim_backend.drive.simulated_drive import SimulatedDrive
-    from sim_backend.environment.surroundings import Surroundings
-
-    return Surroundings(drive.plant) if isinstance(drive, SimulatedDrive) else None
+    return Hand(drive.plant), Surroundings(drive.plant)

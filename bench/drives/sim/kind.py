@@ -7,6 +7,7 @@ from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.rig import Rig
 from bench.drives.sim import faults as settings_of
 from bench.drives.sim.faults import FaultSettings
+from bench.drives.sim.joint import beside_arm
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
@@ -65,6 +66,7 @@ KIND = DriveKind(
     title="simulated drive",
     settings=SimulatedDriveSettings,
     make=make,
+    beside_arm=beside_arm,
     conformance=(
         ConformanceBench("sim", settings={"plant": {"current_sensor": {"present": True}, "heat": {"present": True}}}),
     ),

@@ -27,7 +27,7 @@ from compensator.lab.errors import LabError
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.gathering import gather
 
 OTHER_LAWS = "other-laws"
 
