@@ -4,9 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 from bench.config.channels import PAIR_CHANNELS, PAIR_RECORDED
-from bench.control.cycle import OFF, VALUES, Action, Row, row_reader, values_of
+from bench.control.cycle import OFF, VALUES, Action, PairAction, PairReading, Reach, Row, Truth, row_reader, values_of
 from bench.control.joint import ControlledJoint
-from bench.control.pair_cycle import PairAction, PairReading, Reach, Truth
 
 PAIR_VALUES = (
     *VALUES,

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from math import nan
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.drives.beside_arm import Environment, Hand
+from bench.config.drives.kind import Environment, Hand
 from bench.config.drives.registry import drive_kind
+from bench.control.cycle import Reach, Truth
 from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody, share_lines
-from bench.control.pair_cycle import Reach, Truth
 from bench.errors import ExperimentError
 from drivers.contract import Drive
 

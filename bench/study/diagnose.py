@@ -9,7 +9,7 @@ from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
-from compensator.lab.diagnosis.slight import explained_part, slight_one
+from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit

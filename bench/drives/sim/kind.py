@@ -1,18 +1,20 @@
 """The simulated drive as a kind."""
 
 from collections.abc import Callable
+from math import nan
 from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.rig import Rig
 from bench.drives.sim import faults as settings_of
 from bench.drives.sim.faults import FaultSettings
-from bench.drives.sim.joint import beside_arm
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
 
 if TYPE_CHECKING:
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+    from sim_backend.environment.surroundings import Hand, Surroundings
     from sim_backend.faults.script import Fault
 
 
@@ -60,6 +62,20 @@ def _script(settings: SimulatedDriveSettings) -> "list[Fault]":
         )
         for fault in settings.faults
     ]
+
+
+def wall_torque_n_m(drive: Drive) -> float:
+    """Torque [N m] with which a wall or an end stop pushes the arm of a simulated joint; NaN of a real one."""
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+
+    return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan
+
+
+def beside_arm(drive: "SimulatedDrive") -> "tuple[Hand, Surroundings]":
+    """The operator's hand on the arm of a simulated drive, and what that arm meets."""
+    from sim_backend.environment.surroundings import Hand, Surroundings
+
+    return Hand(drive.plant), Surroundings(drive.plant)
 
 
 KIND = DriveKind(

@@ -6,8 +6,7 @@ from typing import Literal, NamedTuple, TypeVar
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import torque_n_m_a
-from bench.control.cycle import OFF, Action
-from bench.control.pair_cycle import PairAction, PairReading, Reach
+from bench.control.cycle import OFF, Action, PairAction, PairReading, Reach
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower
 from bench.experiments.parts.reflected import Conveyed, reflection_of

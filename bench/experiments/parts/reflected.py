@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.pair_cycle import PairReading
+from bench.control.cycle import PairReading
 from compensator.reflection.reflection import Reflection
 
 

@@ -19,9 +19,8 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, among_all, score_of, screen_against_noise
-from compensator.lab.screening.gathering import gather_curves
+from compensator.lab.screening.gathering import gather_curves, with_noise
 
 STRONG = 6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 

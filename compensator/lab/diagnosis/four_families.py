@@ -17,9 +17,8 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import Screening, kept_evidence, screen, screen_against_noise
-from compensator.lab.screening.gathering import gather
+from compensator.lab.screening.gathering import gather, with_noise
 from compensator.lab.screening.own_load import on_own_load
 
 FEWEST_REVERSAL_ROWS = 40

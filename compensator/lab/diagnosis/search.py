@@ -14,9 +14,9 @@ from typing import Literal
 
 from compensator.lab import progress
 from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.diagnosis.slight import explained_part, slight_one
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit

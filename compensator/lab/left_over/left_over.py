@@ -25,9 +25,8 @@ from compensator.lab.recordings.recording import BoolArray
 from compensator.lab.recordings.regimes import Regime, within_spread
 from compensator.lab.rows.dataset import BLOCK_S, Dataset
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import least_p_value
-from compensator.lab.screening.gathering import gather_curves
+from compensator.lab.screening.gathering import gather_curves, with_noise
 
 LEFT_SHARE = 0.8  # of the rows, at least: at a low cut-off the spread is most of a stroke, and few rows tell little
 

@@ -71,7 +71,7 @@ class Candidates:
         named: blocks of catalogue effects, all shapes.
         curves: of every driver, free.
         left_out: effect name -> why it cannot be judged on these trials.
-        noise: that a complete model would leave on these rows; None where it was not learnt (see `clearing`).
+        noise: that a complete model would leave on these rows; None where it was not learnt (see `with_noise`).
     """
 
     fit: Fit

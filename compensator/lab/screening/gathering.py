@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 
 from compensator.lab.effects import catalogue
+from compensator.lab.effects.catalogue import chain_effects
 from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
@@ -13,10 +14,13 @@ from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.base import Base, Block
-from compensator.lab.screening.candidates import Candidates, Curves
+from compensator.lab.screening.candidates import Candidates, Curves, noise_of
 from compensator.lab.screening.discrepancy import model_columns
+from compensator.lab.screening.evidence import most_likely, score_of
 from compensator.lab.screening.generic import driver_blocks, hysteresis_columns
 from compensator.lab.screening.nuisance import nuisance_columns
+
+CLEARED = 2  # blocks, or free curves, that are taken off at most: what is missing must not count as noise
 
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
@@ -104,3 +108,23 @@ def _hidden(effect: Effect, hiding: list[str]) -> str:
         f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
         f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
     )
+
+
+def with_noise(gathered: Candidates) -> Candidates:
+    """The same candidates, evened by the noise of what is left once the likeliest blocks are in the model.
+
+    Of the joint's blocks alone: what the measuring chain does badly is noise to whoever asks what the joint lacks.
+    A block is taken off only where it pays against the noise as it is known so far, with its colour: held against white
+    noise, slow blocks seem to pay wherever noise is slow.
+    """
+    left, noise = gathered, noise_of(gathered, gathered)
+    joint = [block for block in gathered.named if block.name not in chain_effects()]
+    for _ in range(CLEARED):
+        block = most_likely(left.bases, [*joint, *left.curves.blocks])
+        if block is None:
+            break
+        if score_of(left.bases, block, noise) <= 0.0:
+            break
+        left = left.with_block(block)
+        noise = noise_of(gathered, left)
+    return gathered.evened(noise)

@@ -10,9 +10,9 @@ import pytest
 
 from bench.study.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
+from compensator.lab.diagnosis.confirmation import slight_one
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import Search, search
-from compensator.lab.diagnosis.slight import slight_one
 from compensator.lab.diagnosis.wording import answer_in_words
 from compensator.lab.effects.catalogue import candidates, default_effects, effect_named
 from compensator.lab.model.fit import fit_model

@@ -12,8 +12,7 @@ from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.regimes import within_spread
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.gathering import gather_curves
+from compensator.lab.screening.gathering import gather_curves, with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 

@@ -12,8 +12,7 @@ from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.gathering import gather
+from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import FACTS
 

@@ -10,8 +10,7 @@ from compensator.lab.left_over.left_over import left_over, unexplained_in_words
 from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
-from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.gathering import gather
+from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import FACTS
 

@@ -15,9 +15,8 @@ from compensator.lab.model.weights import BENDS, RowWeights, determination, row_
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import screen_against_noise
-from compensator.lab.screening.gathering import gather, gather_curves
+from compensator.lab.screening.gathering import gather, gather_curves, with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, recordings
 
 LOST, NO_CURRENT, WAVE = 0.15, 0.03, 0.004
