@@ -6,8 +6,8 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: help demo paper serve test test-services test-drivers test-virtual test-others steady check format docs report \
-        screenshots pictures benchmark kills fuzz test-vm dist dist-test audit sbom hashes clean
+.PHONY: help demo paper serve test test-services test-drivers test-virtual test-others collect steady check format docs \
+        report screenshots pictures benchmark kills fuzz test-vm dist dist-test audit sbom hashes clean
 
 help:            ## this list
 	@awk -F ':.*## *' '/^[a-z-]+:.*##/ { printf "%-13s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -48,6 +48,10 @@ test-virtual: $(STAMP)  ## drivers and simulated devices in one process, in virt
 
 test-others: $(STAMP)  ## the tests that only compute, on all cores
 	$(BIN)/pytest --numprocesses auto --timeout=600 -m 'not wall_clock and not virtual_time'
+
+collect: $(STAMP) ## find every test and run none: what the runs after it import is compiled then
+	@mkdir -p out
+	$(BIN)/pytest --collect-only -qq >out/collected.txt || { cat out/collected.txt; exit 1; }
 
 steady: $(STAMP) ## the tests that the wall clock times, 20 times in a row: which of them fails when
 	$(BIN)/python -m tests.steady 20

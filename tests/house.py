@@ -140,7 +140,8 @@ def calls_by_name(tree: Tree) -> Figure:
     """Functions that are looked up by a name which is not a literal, and called on the spot or handed on."""
     found = []
     for name in tree.python():
-        for node in ast.walk(ast.parse(tree.text(name))):
+        text = tree.text(name)
+        for node in ast.walk(ast.parse(text)) if "getattr(" in text else ():
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Call) and _is_getattr(node.func):
                 found.append(f"{name}:{node.lineno}")
     return Figure("calls by name through getattr", len(found), 0, tuple(found))

@@ -1,6 +1,8 @@
 """How functions of the plant are compiled: without checks for division by zero, which the physics excludes."""
 
+import zlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 from numba import njit
@@ -10,9 +12,30 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile at the first call.
+    """Compile at the first call, into what calls it."""
+    return _made(function, kept=False)
 
-    Nothing is kept on disk: numba notices that a file has changed, but not one of which its functions are called.
+
+def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile at the first call and keep the machine code on disk for later starts.
+
+    Numba notices that a file has changed, but not one of which its functions are called. The value of a closure's
+    variable is part of its key, though: name `SOURCES` there.
     """
-    made: Callable[P, R] = njit(error_model="numpy", fastmath={"contract", "arcp"})(function)
+    return _made(function, kept=True)
+
+
+def _made(function: Callable[P, R], kept: bool) -> Callable[P, R]:
+    made: Callable[P, R] = njit(cache=kept, error_model="numpy", fastmath={"contract", "arcp"})(function)
     return made
+
+
+def _fingerprint() -> int:
+    digest = 0
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest = zlib.crc32(path.read_bytes(), digest)
+    return digest
+
+
+SOURCES = _fingerprint()
+"""A number that changes with any source file of this plant."""
