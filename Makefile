@@ -93,8 +93,9 @@ kills: $(STAMP)  ## 200 runs ended at random moments in every way, by itself, an
 	$(BIN)/python -m tests.stopping.kills --kills 200
 	$(BIN)/python -m tests.stopping.kills --kills 200 --lab --server
 
-fuzz: $(STAMP)   ## what is drawn at random, for long: requests, files and bytes on every wire; says how many
+fuzz: $(STAMP)   ## what is drawn at random, for long: requests, files, bytes on every wire; goes on where it was ended
 	FUZZ_TIMES=40 $(BIN)/pytest --numprocesses auto --timeout=7200 tests/fuzz
+	rm -f out/fuzz/passed.txt
 
 test-vm: $(STAMP) ## the CANopen driver on the kernel's own CAN, in a guest; tests/vm/README.md says what it needs
 	PYTHON=$(BIN)/python tests/vm/run.sh $(VM_KERNEL)

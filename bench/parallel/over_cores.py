@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from multiprocessing import get_context
+from multiprocessing.forkserver import ensure_running
 from typing import Any, TypeVar
 
 from bench.parallel.cluster import cluster_executor
@@ -15,6 +16,8 @@ from bench.parallel.cluster import cluster_executor
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
+# not forks of this process: threads do not survive a fork
+_FORKS = get_context("forkserver")
 IN_HAND = 3  # items under way or waiting, for each core: so many are in memory, however many there are
 
 
@@ -29,8 +32,7 @@ def over_cores(
     Args:
         work: a function of a module, so that another process finds it by its name.
         items: picklable; taken as they are needed.
-        workers: processes, each of which takes a second or two to start; one for each core where left out. 1 works in
-            this process.
+        workers: processes; one for each core where left out. 0 and 1 work in this process.
         cluster: address of a Dask scheduler, whose workers are used instead.
 
     Raises:
@@ -54,10 +56,30 @@ def as_they_end(
         yield future.result()
 
 
+def start_early(module: str, workers: int | None = None, cluster: str | None = None) -> None:
+    """Have another process import what the work needs, while this one reads the first items.
+
+    Workers are forks of it, so that all of them together import once. `over_cores` does so by itself, but later.
+
+    Args:
+        module: of the work; this process need not have imported it yet.
+        workers: as `over_cores` will get them.
+        cluster: likewise.
+    """
+    if cluster is None and _count(workers) > 1:
+        _FORKS.set_forkserver_preload([module])
+        ensure_running()
+
+
+def _count(workers: int | None) -> int:
+    return (os.cpu_count() or 1) if workers is None else max(1, workers)
+
+
 def _ended(
     work: Callable[[Item], Result], items: Iterable[Item], workers: int | None, cluster: str | None
 ) -> Iterator[tuple[int, Future[Result]]]:
     numbered = enumerate(items)
+    start_early(work.__module__, workers, cluster)
     with _executor(workers, cluster) as (executor, cores):
         open_items: dict[Future[Result], int] = {}
         for index, item in numbered:
@@ -81,12 +103,11 @@ def _executor(workers: int | None, cluster: str | None) -> Iterator[tuple[Execut
         with cluster_executor(cluster) as found:
             yield found
         return
-    count = workers or os.cpu_count() or 1
+    count = _count(workers)
     if count == 1:
         yield _Here(), 1
         return
-    # started afresh, not forked: threads and compiled code do not survive a fork
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(count, mp_context=_FORKS)
     try:
         yield pool, count
     finally:

@@ -45,6 +45,7 @@ PLAUSIBLE: dict[str, Plausible] = {
     "position_m": Plausible(-100.0, 100.0, "mm"),
 }
 LOWEST_HZ, HIGHEST_HZ = 4.0, 2e5
+LARGEST = 1e100  # of any channel in any unit; the powers of more are no numbers
 
 
 def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping) -> None:
@@ -57,7 +58,7 @@ def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping
     """
     judged = [one for one in recordings if len(one) >= FEWEST_ROWS]
     for recording in judged:
-        if problem := _rate(recording, mapping) or _outside(recording, mapping):
+        if problem := _endless(recording) or _rate(recording, mapping) or _outside(recording, mapping):
             raise RecordingSetError(f"trial '{recording.name}'", problem)
     if judged:
         facts = Facts(joint=rig.joint, horizontal=rig.horizontal, effort=rig.effort.quantity if rig.effort else None)
@@ -95,6 +96,14 @@ def back_and_forth(position: FloatArray) -> bool:
     levels = np.unique(np.round(known[:: max(1, len(known) // 2000)] / (LARGE_PART * span)), return_inverse=True)[1]
     turns = np.diff(np.sign(np.diff(levels[np.append(True, np.diff(levels) != 0)])))
     return int(np.count_nonzero(turns)) >= THERE_AND_BACK
+
+
+def _endless(recording: Recording) -> str:
+    for channel, values in recording.channels.items():
+        if len(rows := np.flatnonzero(np.abs(values) > LARGEST)):
+            found = f"{channel} is {values[rows[0]]:.4g} {CHANNELS[channel].unit} in row {rows[0] + 1}"
+            return f"{found}, beyond anything that is measured (-{LARGEST:g} .. {LARGEST:g}); leave such cells empty"
+    return ""
 
 
 def _rate(recording: Recording, mapping: Mapping) -> str:

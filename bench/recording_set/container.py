@@ -92,7 +92,17 @@ class Zip:
 
     def open(self, file: str) -> IO[bytes]:
         """Open a file that the set has."""
-        return self._archive.open(self._members[file])
+        with _names_decoded():
+            return self._archive.open(self._members[file])
+
+
+@contextmanager
+def _names_decoded() -> Iterator[None]:
+    """A name that is no text damages a zip, as other bytes do; zipfile has no word for it."""
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        raise zipfile.BadZipFile(f"the name of a file is no UTF-8: {error.reason}") from error
 
 
 @contextmanager
@@ -113,7 +123,9 @@ def open_container(*paths: Path) -> Iterator[Container]:
         if path.is_dir():
             yield Folder(path)
         elif path.suffix.lower() == ".zip" and len(paths) == 1:
-            with zipfile.ZipFile(path) as archive:
+            with _names_decoded():
+                archive = zipfile.ZipFile(path)
+            with archive:
                 yield Zip(path, archive)
         else:
             yield Files(paths)

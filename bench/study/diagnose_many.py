@@ -51,8 +51,7 @@ def diagnose_many(
     found = []
     shown(0, len(study_ids))
     questions = _questions(store, study_ids)
-    alone = workers == 0 or len(study_ids) < 2
-    for answer in over_cores(answer_to, questions, 1 if alone else workers, cluster):
+    for answer in over_cores(answer_to, questions, 1 if len(study_ids) < 2 else workers, cluster):
         found.append(answer)
         shown(len(found), len(study_ids))
     return found

@@ -19,8 +19,19 @@ def test_results_come_in_order_and_from_other_processes():
     assert os.getpid() not in {process for _, process in results}
 
 
-def test_one_worker_works_here():
-    assert list(over_cores(_squared, [3], workers=1)) == [(9, os.getpid())]
+@pytest.mark.parametrize("workers", [0, 1])
+def test_one_worker_works_here(workers):
+    assert list(over_cores(_squared, [3], workers=workers)) == [(9, os.getpid())]
+
+
+def _parent(_item):
+    return os.getppid()
+
+
+def test_workers_are_forks_of_a_process_that_has_imported_for_all_of_them():
+    parents = set(over_cores(_parent, range(8), workers=2))
+    assert len(parents) == 1
+    assert parents != {os.getpid()}
 
 
 def test_error_of_an_item_is_told():

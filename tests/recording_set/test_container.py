@@ -106,6 +106,19 @@ def test_a_damaged_zip_is_refused(tmp_path: Path, damage: str) -> None:
         read_recording_set(path)
 
 
+@pytest.mark.parametrize("where", ["file", "directory"])
+def test_a_zip_with_a_name_that_is_no_text_is_refused(tmp_path: Path, where: str) -> None:
+    # not ASCII: its name is flagged as UTF-8
+    files = {name.replace("run", "läufe"): text.replace("run.csv", "läufe.csv") for name, text in FILES.items()}
+    path = write_zip(tmp_path / "a.zip", files)
+    content, name = bytearray(path.read_bytes()), "läufe".encode()
+    at = content.find(name) if where == "file" else content.rfind(name)
+    content[at + 1] = 0x93  # goes on with a character that never began
+    path.write_bytes(content)
+    with pytest.raises(RecordingSetError, match=r"a.zip: is no zip, or a damaged one \(the name of a file is no UTF-8"):
+        read_recording_set(path)
+
+
 def test_an_encrypted_zip_is_refused(tmp_path: Path) -> None:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:

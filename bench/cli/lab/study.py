@@ -142,6 +142,10 @@ def diagnose_many_command(
     as_json: Json = False,
 ) -> None:
     """Diagnose the newest models of many studies, on all cores or on a cluster."""
+    from bench.parallel.over_cores import start_early
+
+    start_early("bench.study.diagnose_many", workers, cluster)
+
     from bench.study.diagnose_many import diagnose_many
 
     with session_of(context).open_store() as store:

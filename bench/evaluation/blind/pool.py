@@ -43,8 +43,7 @@ def run_items(
     done = {} if kept is None else _read(kept)
     open_items = [item for item in items if item.key not in done]
     shown(len(items) - len(open_items), len(items))
-    alone = workers == 0 or len(open_items) < 2
-    for result in as_they_end(ask, open_items, 1 if alone else workers, cluster):
+    for result in as_they_end(ask, open_items, 1 if len(open_items) < 2 else workers, cluster):
         done[result.key] = result
         if kept is not None:
             _append(kept, result)

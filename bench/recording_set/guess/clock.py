@@ -86,8 +86,7 @@ def _of_numbers(name: str, values: FloatArray, assigned: Assigned, clock: Clock)
     if unit is None and len(possible) == 1:
         clock.why[name] = f"in {possible[0]} the sampling is possible"
         return Column(source=name, unit=possible[0])
-    with np.errstate(over="ignore"):  # numbers beyond any clock's: the question says so
-        step = float(np.nanmedian(np.abs(np.diff(values))))
+    step = float(np.nanmedian(np.abs(np.diff(values))))
     options = " or ".join(f"--take '{name}=time[{one}]'" for one in (possible or ["s", "ms"]))
     clock.questions.append(f"'{name}' has steps of {step:.4g}, and its unit is not sure: say {options}")
     return None
@@ -106,7 +105,7 @@ def _seconds(columns: Columns, column: Column | None) -> FloatArray | None:
     total = np.zeros(len(columns[column.sources[0]]))
     for name, scale in zip(column.sources, column.scales(), strict=True):
         values = columns[name]
-        if isinstance(values, list) or np.isinf(values).any():
+        if isinstance(values, list):
             return None
         total += (values - values[0]) * scale * unit.factor
     return total

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
+from bench.recording_set.checks import LARGEST
 from bench.recording_set.container import Container, open_container
 from bench.recording_set.formats.column_table import Columns
 from bench.recording_set.guess.guess import Sheet
@@ -26,10 +29,18 @@ def read_sheets(paths: Sequence[Path]) -> tuple[list[Sheet], dict[str, str | Ren
         for entry in entries_of(container, plain):
             table = table_of(container, entry, plain)
             columns: Columns = read_columns(table) if isinstance(table, Table) else table.columns
-            sheets.append(Sheet(table.place, columns, table.rate_hz))
+            sheets.append(Sheet(table.place, _possible(columns), table.rate_hz))
             if table.told:
                 notes.append(f"{table.place}: {table.told}")
     return sheets, renamed, notes
+
+
+def _possible(columns: Columns) -> Columns:
+    """The same; numbers that are no measurement tell nothing of units."""
+    return {
+        name: values if isinstance(values, list) else np.where(np.abs(values) > LARGEST, np.nan, values)
+        for name, values in columns.items()
+    }
 
 
 def _trials_columns(container: Container) -> dict[str, str | Renamed]:

@@ -95,7 +95,8 @@ def _jumps(time_s: FloatArray, position: FloatArray) -> _Jumps | None:
     size = np.abs(step)
     large = max(JUMP * float(np.nanmax(position) - np.nanmin(position)), QUICK * float(np.nanquantile(size, 0.95)))
     before, jump, after = step[:-2], step[1:-1], step[2:]
-    against = (before * jump < 0.0) & (after * jump < 0.0) & (size[:-2] < large) & (size[2:] < large)
+    sign = -np.sign(jump)
+    against = (before * sign > 0.0) & (after * sign > 0.0) & (size[:-2] < large) & (size[2:] < large)
     jumps = np.flatnonzero((size[1:-1] >= large) & against)
     if not len(jumps):
         return None
