@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.lapack import dpotri
 from scipy.optimize import minimize
 
 from compensator.lab.recordings.recording import FloatArray
@@ -92,10 +93,8 @@ def likeliest_of_moments(moments: Sequence[FloatArray], kernels: Sequence[FloatA
         variances = np.exp(logarithms)
         value, gradient = 0.0, np.zeros(len(variances))
         for moment, kernel in zip(moments, kernels, strict=True):
-            root = np.linalg.cholesky(np.tensordot(variances, kernel, 1))
-            inverse = np.linalg.inv(root)
-            precision = inverse.T @ inverse
-            value += float(np.sum(np.log(np.diag(root)))) + 0.5 * float(np.sum(precision * moment))
+            precision, volume = _inverse_of(np.tensordot(variances, kernel, 1))
+            value += 0.5 * (volume + float(np.sum(precision * moment)))
             gradient += 0.5 * np.tensordot(kernel, precision - precision @ moment @ precision, 2)
         return value, gradient * variances
 
@@ -112,10 +111,9 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
     """Of the residuals, whatever the base's coefficients are, by variances (k,)."""
     precisions, volume = [], 0.0
     for part in parts:
-        root = np.linalg.cholesky(np.tensordot(variances, part.kernels, 1))
-        inverse = np.linalg.inv(root)
-        precisions.append(inverse.T @ inverse)
-        volume += 2.0 * float(np.sum(np.log(np.diag(root))))
+        precision, own = _inverse_of(np.tensordot(variances, part.kernels, 1))
+        precisions.append(precision)
+        volume += own
     sides = [precision @ part.base for precision, part in zip(precisions, parts, strict=True)]
     normal = np.sum([side.T @ part.base for side, part in zip(sides, parts, strict=True)], axis=0)
     moment = np.sum([side.T @ part.residual for side, part in zip(sides, parts, strict=True)], axis=0)
@@ -127,9 +125,34 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
     for precision, side, part in zip(precisions, sides, parts, strict=True):
         left = precision @ (part.residual - part.base @ again)
         shared = side @ half
-        restricted = precision - shared @ shared.T
-        gradient += 0.5 * ((part.kernels @ left) @ left - np.tensordot(part.kernels, restricted, 2))
+        unexplained = np.outer(left, left) - (precision - shared @ shared.T)
+        gradient += 0.5 * (part.kernels.reshape(len(variances), -1) @ unexplained.ravel())
         fits += float(part.residual @ left)
         weighed.append(left)
     value = -0.5 * (volume + float(np.sum(np.log(powers[solid]))) + fits)
     return Likelihood(value, gradient, weighed)
+
+
+@dataclass(frozen=True)
+class CellsOfTrial:
+    """Cells of a trial, each the mean of its rows, of unit noise.
+
+    Attributes:
+        index: of the trial; time_s: of each cell, shape (c,).
+        size: what wanders has of each, shape (c,).
+        part: of the residuals, its components those of the null and, last, what wanders.
+    """
+
+    index: int
+    time_s: FloatArray
+    size: FloatArray
+    part: Part
+
+
+def _inverse_of(covariance: FloatArray) -> tuple[FloatArray, float]:
+    """The inverse (c, c), for a sixth of what that of any matrix would take, and the logarithm of the determinant."""
+    root = np.linalg.cholesky(covariance)
+    upper: FloatArray = dpotri(root.T)[0]  # the other triangle stays 0
+    inverse = upper + upper.T
+    inverse.flat[:: len(root) + 1] *= 0.5
+    return inverse, 2.0 * float(np.sum(np.log(root.diagonal())))

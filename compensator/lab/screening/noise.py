@@ -10,7 +10,9 @@ stop to stop beside that (`stops`).
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -44,10 +46,24 @@ class _Place:
     speed: IntArray
     power: FloatArray
 
-    @property
+    @cached_property
     def length(self) -> int:
         """Even, of a grid on which the rows' products by lag do not meet those from the other end."""
         return 2 * int(next_fast_len(int(self.grid[-1]) + 1, real=True))
+
+
+class _Kind(NamedTuple):
+    """Rows of one trial that have noise of one colour.
+
+    Attributes:
+        inside: which of its rows, shape (n,).
+        grid: on the trial's even grid, of these rows.
+        gain: of the noise from white to its colour, by frequency, shape (length // 2 + 1, 1).
+    """
+
+    inside: BoolArray
+    grid: IntArray
+    gain: FloatArray
 
 
 @dataclass(frozen=True)
@@ -124,18 +140,28 @@ class Noise:
             return values
         return self.strokes.scaled(values, 1.0 / self.evening)
 
+    @cached_property
+    def _kinds(self) -> list[list[_Kind]]:
+        """Of each place: found once for all directions that are asked about."""
+        return [self._kinds_of(place) for place in self.places]
+
+    def _kinds_of(self, place: _Place) -> list[_Kind]:
+        found = []
+        for speed in np.unique(place.speed):
+            inside = place.speed == speed
+            density = place.power[speed] * spectral_density(self.autocovariances[speed], place.length)
+            found.append(_Kind(inside, place.grid[inside], np.sqrt(density)[:, None]))
+        return found
+
     def covariance(self, directions: FloatArray) -> FloatArray:
         """Of what noise puts into each of the directions (n, k) of evened rows: shape (k, k)."""
         directions = self.evened(directions)
         total = np.zeros((directions.shape[1], directions.shape[1]))
-        for place in self.places:
+        for place, kinds in zip(self.places, self._kinds, strict=True):
             own, length = directions[place.rows], place.length
             passed = np.zeros((length // 2 + 1, own.shape[1]), dtype=complex)
-            for speed in np.unique(place.speed):
-                inside = place.speed == speed
-                density = place.power[speed] * spectral_density(self.autocovariances[speed], length)
-                filled = _filled(place.grid[inside], own[inside], length)
-                passed += np.sqrt(density)[:, None] * np.fft.rfft(filled, axis=0)
+            for kind in kinds:
+                passed += kind.gain * np.fft.rfft(_filled(kind.grid, own[kind.inside], length), axis=0)
             passed[1:-1] *= np.sqrt(2.0)  # negative frequencies, too
             total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / length
         if self.strokes is not None and self.from_stop_to_stop > 0.0:
@@ -178,16 +204,12 @@ class Noise:
 
     def _spread(self, place: _Place, values: FloatArray) -> FloatArray:
         """The covariance of one trial's rows, but for what lasts a stroke, times values (n, k)."""
-        length = place.length
+        length, kinds = place.length, self._kinds_of(place)
         found, passed = np.zeros_like(values), np.zeros((length // 2 + 1, values.shape[1]), dtype=complex)
-        kinds = []
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
-            gain = np.sqrt(place.power[speed] * spectral_density(self.autocovariances[speed], length))[:, None]
-            passed += gain * np.fft.rfft(_filled(place.grid[inside], values[inside], length), axis=0)
-            kinds.append((inside, gain))
-        for inside, gain in kinds:
-            found[inside] = np.fft.irfft(gain * passed, length, axis=0)[place.grid[inside]]
+        for kind in kinds:
+            passed += kind.gain * np.fft.rfft(_filled(kind.grid, values[kind.inside], length), axis=0)
+        for kind in kinds:
+            found[kind.inside] = np.fft.irfft(kind.gain * passed, length, axis=0)[kind.grid]
         return found
 
     def _crossed(self, place: _Place, one: FloatArray, other: FloatArray) -> FloatArray:
