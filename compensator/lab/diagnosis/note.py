@@ -13,7 +13,6 @@ NoteCode = Literal[
     "swings",
     "too-few-starts",
     "unexplained-remains",
-    "varies-by-stretch",
     "wanders",
 ]
 """
@@ -25,7 +24,6 @@ structure-remains: with the effect named, structure over a variable remains.
 swings: with it, what is left swings at one frequency.
 too-few-starts: starts from rest are too few to name anything.
 unexplained-remains: with it, more than noise is left, over no variable that is measured.
-varies-by-stretch: with it, something constant differs from one stretch to the next.
 wanders: with it, something constant differs for seconds at a time.
 """
 

@@ -7,7 +7,6 @@ from compensator.lab.diagnosis.bending import still_bending
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.wording import LOOK_AT_HOSES
 from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
-from compensator.lab.left_over.constancy import Change, changing_in_words
 from compensator.lab.left_over.left_over import LeftOver, left_for_sure, left_over, unexplained_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.left_over.swinging import Swing, swinging_in_words
@@ -57,8 +56,6 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
         driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
         against_motion = rest.evidence[0].block.name.endswith("against motion")
         return [_structure_remains(name, driver.title, against_motion)]
-    if left.change is not None:
-        return [_varies_by_stretch(name, left.change)]
     if left.swing is not None:
         return [_swings(name, left.swing)]
     if left.wandering is not None:
@@ -96,12 +93,6 @@ def _structure_remains(name: str, driver: str, against_motion: bool) -> Note:
     how = " against the motion" if against_motion else ""
     text = f"After {name}, structure over {driver}{how} remains; add it and diagnose again."
     return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": against_motion})
-
-
-def _varies_by_stretch(name: str, change: Change) -> Note:
-    """With an effect in the model, something constant differs from one stretch to the next."""
-    text = f"After {name}, {changing_in_words(change)}; repeat a trial to see whether it comes again."
-    return Note("varies-by-stretch", text, {"effect": name, "what": change.what, "share": change.share})
 
 
 def _swings(name: str, swing: Swing) -> Note:

@@ -16,7 +16,6 @@ class ErrorBudget:
     """Chances in noise alone, each over all that its question tries.
 
     Attributes:
-        change: something constant is another one in each stretch.
         wandering: dry friction, or a constant force, wanders in time, or jumps; of each of the three.
         swing: it swings at one frequency, the motor's voltage or none as its carrier.
         ripple: it swings with the voltage, by a matched filter, whose chances hold far into the tail.
@@ -27,7 +26,6 @@ class ErrorBudget:
         varying: a coefficient of friction is another one at another load, temperature or time of the session.
     """
 
-    change: float
     wandering: float
     swing: float
     ripple: float
@@ -44,7 +42,6 @@ class ErrorBudget:
 
 
 PLAIN = ErrorBudget(
-    change=1e-4,
     wandering=5e-4,
     swing=1e-4,
     ripple=1e-3,
@@ -57,7 +54,6 @@ PLAIN = ErrorBudget(
 """Of a model that is what every joint has."""
 
 NAMED = ErrorBudget(
-    change=1e-4,
     wandering=1e-4,
     swing=1e-4,
     ripple=0.0,

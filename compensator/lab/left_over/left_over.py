@@ -6,7 +6,6 @@ import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.left_over.constancy import Change, change_of, changing_in_words
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
@@ -37,16 +36,14 @@ class LeftOver:
 
     Attributes:
         remainder: how much it is, and whether it follows the motion.
-        change: that something constant is another one in each stretch; None where nothing is for sure.
         swing: that it swings at one frequency; None where it does not for sure.
-        wandering: that dry friction is another one for seconds, however little; None where it is not for sure.
+        wandering: that something constant is another one for seconds, however little; None where it is not for sure.
         line: that it comes back with the position; None where it does not for sure, or where it is not asked for.
         following: the variable that it follows; None likewise.
         varying: the coefficient of friction that is another one at another load or temperature; None likewise.
     """
 
     remainder: Remainder
-    change: Change | None
     swing: Swing | None
     wandering: Wandering | None = None
     line: Line | None = None
@@ -56,7 +53,7 @@ class LeftOver:
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        found = (self.change, self.swing, self.wandering, self.line, self.following, self.varying)
+        found = (self.swing, self.wandering, self.line, self.following, self.varying)
         return self.remainder.is_more_than_noise or any(one is not None for one in found)
 
 
@@ -75,21 +72,19 @@ def left_over(gathered: Candidates) -> LeftOver:
     if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:
         swing = None  # so little may be of the motion, whose own frequencies most trials can share
     if not steady:
-        return LeftOver(remainder, None, swing)
-    constants = gather_constants(gathered)
-    change = change_of(constants)
+        return LeftOver(remainder, swing)
     if not _is_plain(gathered.fit):
         # where the formula was found
-        return LeftOver(remainder, change, swing, wandering_of(constants, NAMED.wandering) if change is None else None)
+        return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), NAMED.wandering))
     in_motion = gather_in_motion(gathered.fit)
-    wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering) if change is None else None
+    wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering)
     white = WhiteRows.of(gathered)
     if white is None:
-        return LeftOver(remainder, change, swing, wandering)
+        return LeftOver(remainder, swing, wandering)
     swing = swing or ripple_of(in_motion)
     line = line_of(gathered, white) or growing_line_of(gathered, white, PLAIN.growing)
     varying = varying_of(gathered, white, PLAIN.varying)
-    return LeftOver(remainder, change, swing, wandering, line, following_of(gathered, white), varying)
+    return LeftOver(remainder, swing, wandering, line, following_of(gathered, white), varying)
 
 
 def gather_constants(gathered: Candidates) -> Constants:
@@ -126,9 +121,7 @@ def unexplained_in_words(
     none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
     if least_p_value(stretches) > SIGNIFICANT:
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
-    if left.change is not None:
-        how = changing_in_words(left.change)
-    elif left.line is not None and (left.following is None or left.line.chance <= left.following.chance):
+    if left.line is not None and (left.following is None or left.line.chance <= left.following.chance):
         how = f"it {recurring_in_words(left.line, facts)}"
     elif left.swing is not None:
         how = f"it {swinging_in_words(left.swing)}"

@@ -59,6 +59,6 @@ def test_what_holds_without_these_rows_is_told():
     fit = fitted(14.0, lambda x: 0.02 * np.sign(x.time_s - 3.0) * np.sign(x.v))
     left = left_for_sure(fit, with_noise(gather_curves(fit)))
     assert left is not None
-    assert left.change is not None
+    assert left.wandering is not None
     nothing = fitted(14.0)
     assert left_for_sure(nothing, with_noise(gather_curves(nothing))) is None

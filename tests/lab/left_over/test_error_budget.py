@@ -6,7 +6,7 @@ from inspect import signature
 import numpy as np
 import pytest
 
-from compensator.lab.left_over import constancy, left_over, ripple, swinging
+from compensator.lab.left_over import left_over, ripple, swinging
 from compensator.lab.left_over.error_budget import MOST, NAMED, PLAIN
 from compensator.lab.left_over.following import following_of
 from compensator.lab.left_over.orders import growing_line_of, line_of
@@ -40,7 +40,7 @@ def test_a_complete_model_is_not_alarmed_about_more_often_than_the_budget_says()
 
 
 def test_each_question_has_its_own_part():
-    assert (PLAIN.change, PLAIN.swing, PLAIN.ripple) == (constancy.CHANCE, swinging.CHANCE, ripple.CHANCE)
+    assert (PLAIN.swing, PLAIN.ripple) == (swinging.CHANCE, ripple.CHANCE)
     for question, part in ((line_of, PLAIN.line), (following_of, PLAIN.following), (wandering_of, PLAIN.wandering)):
         assert signature(question).parameters["most"].default == part
 
