@@ -21,9 +21,6 @@ class ErrorBudget:
         ripple: it swings with the voltage, by a matched filter, whose chances hold far into the tail.
         line: it comes back with the position.
         growing: it does so, and grows with the square of the speed, which nothing in a joint that lacks nothing does.
-        following: it follows a variable that is measured, however little it is.
-        following_far: it does so by more than any joint's own friction.
-        varying: a coefficient of friction is another one at another load, temperature or time of the session.
     """
 
     wandering: float
@@ -31,9 +28,6 @@ class ErrorBudget:
     ripple: float
     line: float
     growing: float
-    following: float
-    following_far: float
-    varying: float
 
     @property
     def whole(self) -> float:
@@ -47,21 +41,8 @@ PLAIN = ErrorBudget(
     ripple=1e-3,
     line=1e-6,
     growing=1e-4,
-    following=1e-6,
-    following_far=1e-5,
-    varying=1e-4,
 )
 """Of a model that is what every joint has."""
 
-NAMED = ErrorBudget(
-    wandering=1e-4,
-    swing=1e-4,
-    ripple=0.0,
-    line=1e-6,
-    growing=1e-4,
-    following=1e-4,
-    following_far=1e-4,
-    varying=1e-4,
-)
-"""Of one with a further formula: though nearly right, it leaves some of friction. Lines and curves must be much beside
-the name as well, which those of complete joints never are; ripples are not asked for."""
+WANDERING_BESIDE_A_NAME = 1e-4
+"""A further formula, though nearly right, leaves some of friction; nothing else is asked for there in small."""

@@ -7,13 +7,11 @@ import numpy as np
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
-from compensator.lab.left_over.error_budget import NAMED, PLAIN
-from compensator.lab.left_over.following import Following, following_of
+from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
 from compensator.lab.left_over.orders import Line, growing_line_of, line_of, recurring_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.left_over.ripple import ripple_of
 from compensator.lab.left_over.swinging import Swing, swing_of, swinging_in_words
-from compensator.lab.left_over.varying import Varying, varying_in_words, varying_of
 from compensator.lab.left_over.wandering import Wandering, wandering_of
 from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fit import fit_model, widened
@@ -39,21 +37,17 @@ class LeftOver:
         swing: that it swings at one frequency; None where it does not for sure.
         wandering: that something constant is another one for seconds, however little; None where it is not for sure.
         line: that it comes back with the position; None where it does not for sure, or where it is not asked for.
-        following: the variable that it follows; None likewise.
-        varying: the coefficient of friction that is another one at another load or temperature; None likewise.
     """
 
     remainder: Remainder
     swing: Swing | None
     wandering: Wandering | None = None
     line: Line | None = None
-    following: Following | None = None
-    varying: Varying | None = None
 
     @property
     def is_more_than_noise(self) -> bool:
         """Whether something is left to be explained."""
-        found = (self.swing, self.wandering, self.line, self.following, self.varying)
+        found = (self.swing, self.wandering, self.line)
         return self.remainder.is_more_than_noise or any(one is not None for one in found)
 
 
@@ -75,7 +69,7 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, swing)
     if not _is_plain(gathered.fit):
         # where the formula was found
-        return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), NAMED.wandering))
+        return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), WANDERING_BESIDE_A_NAME))
     in_motion = gather_in_motion(gathered.fit)
     wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering)
     white = WhiteRows.of(gathered)
@@ -83,8 +77,7 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, swing, wandering)
     swing = swing or ripple_of(in_motion)
     line = line_of(gathered, white) or growing_line_of(gathered, white, PLAIN.growing)
-    varying = varying_of(gathered, white, PLAIN.varying)
-    return LeftOver(remainder, swing, wandering, line, following_of(gathered, white), varying)
+    return LeftOver(remainder, swing, wandering, line)
 
 
 def gather_constants(gathered: Candidates) -> Constants:
@@ -121,17 +114,14 @@ def unexplained_in_words(
     none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
     if least_p_value(stretches) > SIGNIFICANT:
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
-    if left.line is not None and (left.following is None or left.line.chance <= left.following.chance):
+    if left.line is not None:
         how = f"it {recurring_in_words(left.line, facts)}"
     elif left.swing is not None:
         how = f"it {swinging_in_words(left.swing)}"
     elif wanders:
         how = wanders
-    elif left.varying is not None and left.following is None:
-        how = f"it {varying_in_words(left.varying)}"
-    elif driver is not None or left.following is not None:
-        named = driver if left.following is None else left.following.driver
-        how = f"it varies with {named}, most of all that is measured"
+    elif driver is not None:
+        how = f"it varies with {driver}, most of all that is measured"
     else:
         how = "it varies with nothing that is measured"
     return (

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.model.held_out_error import rms
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.weights import NORMAL
 from compensator.lab.recordings.recording import FloatArray, IntArray
@@ -16,8 +15,6 @@ FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of 
 LOOK_AGAIN = 0.01  # chance in noise that is learnt with what may be there, and so hides it
 ENDS = 3  # rows at the ends of strokes, each a kind of its own
 OUTLYING = 2.5  # standard deviations: one row in eighty of noise
-LEAST_OF_FRICTION = 0.005  # root mean square: less may be the joint's own
-NEW = 0.05  # of a column's norm beside the model: of less, little can be told from the model itself
 NEGLIGIBLE = 1e-8  # share of a direction in what columns explain
 
 
@@ -120,16 +117,3 @@ class WhiteRows:
         evidence = 2.0 * np.sum(others * scores, axis=1) - np.einsum("si,sij,sj->s", others, normal, others)
         coefficients: FloatArray = np.linalg.pinv(whole, rcond=NEGLIGIBLE) @ sums
         return coefficients, float(evidence.sum() - evidence.max())
-
-    def new(self, columns: FloatArray) -> FloatArray:
-        """Orthonormal basis of what weighted columns (n, k) add to the model, whitened."""
-        before = np.linalg.norm(self.whitening.whitened(columns), axis=0)
-        left = self.beside(columns)
-        return orthonormal(left[:, np.linalg.norm(left, axis=0) > NEW * before])
-
-    def is_large(self, gathered: Candidates, columns: FloatArray) -> bool:
-        """Whether what a curve of weighted columns (n, k) adds to the model is more than the joint's own."""
-        coefficients, _ = self.foretold(self.beside(columns))
-        own, basis = columns @ coefficients, gathered.as_measured(WITH_CHAIN).basis
-        size = rms((own - basis @ (basis.T @ own)) / gathered.weights)
-        return 0.0 < LEAST_OF_FRICTION * gathered.fit.dry_friction < size

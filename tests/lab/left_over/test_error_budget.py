@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.left_over import left_over, ripple, swinging
-from compensator.lab.left_over.error_budget import MOST, NAMED, PLAIN
-from compensator.lab.left_over.following import following_of
+from compensator.lab.left_over.error_budget import MOST, PLAIN, WANDERING_BESIDE_A_NAME
 from compensator.lab.left_over.orders import growing_line_of, line_of
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
@@ -41,18 +40,18 @@ def test_a_complete_model_is_not_alarmed_about_more_often_than_the_budget_says()
 
 def test_each_question_has_its_own_part():
     assert (PLAIN.swing, PLAIN.ripple) == (swinging.CHANCE, ripple.CHANCE)
-    for question, part in ((line_of, PLAIN.line), (following_of, PLAIN.following), (wandering_of, PLAIN.wandering)):
+    for question, part in ((line_of, PLAIN.line), (wandering_of, PLAIN.wandering)):
         assert signature(question).parameters["most"].default == part
 
 
-@pytest.mark.parametrize(("more", "budget"), [([], PLAIN), (["spring"], NAMED)])
-def test_what_a_further_formula_leaves_must_wander_more_surely(more, budget, monkeypatch):
+@pytest.mark.parametrize(("more", "chance"), [([], PLAIN.wandering), (["spring"], WANDERING_BESIDE_A_NAME)])
+def test_what_a_further_formula_leaves_must_wander_more_surely(more, chance, monkeypatch):
     asked = []
     monkeypatch.setattr(left_over, "wandering_of", lambda *given: asked.append(given[1]))
     fit = fitted()
     left_over.left_over(gather(fit_model(fit.dataset, [*fit.names, *more])))
-    assert asked == [budget.wandering]
-    assert NAMED.wandering < PLAIN.wandering
+    assert asked == [chance]
+    assert PLAIN.wandering > WANDERING_BESIDE_A_NAME
 
 
 @pytest.mark.parametrize("seed", [5, 7])
@@ -62,5 +61,4 @@ def test_a_surface_that_is_a_little_rough_is_no_alarm(seed):
     white = white_rows_of(gathered)
     assert line_of(gathered, white) is None
     assert growing_line_of(gathered, white, PLAIN.growing) is None
-    assert following_of(gathered, white) is None
     assert line_of(gathered, white, most=1e-3) is not None  # else this test shows nothing
