@@ -5,8 +5,9 @@ from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from compensator.motion.kinetic_friction import FloatArray
+FloatArray = NDArray[np.float64]
 
 CONFIDENCE = 0.95
 

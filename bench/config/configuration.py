@@ -14,8 +14,8 @@ from bench.config.rig import Rig, Section
 from bench.config.sections import (
     ControlSettings,
     Limits,
-    MasterSettings,
     MotionSettings,
+    ReflectionSettings,
     RestSettings,
     SearchSettings,
     ServoSettings,
@@ -27,6 +27,15 @@ from bench.errors import ConfigurationError
 
 PRESETS = resources.files("bench.config") / "presets"
 DEFAULT_PRESET = "paper"
+
+
+class MasterSettings(Section):
+    """A second joint, with the operator's hand on its arm. Its motor makes torque; the hand makes the motion."""
+
+    rig: Rig | None = Field(default=None, description="The master's joint; that of the slave where left out")
+    drive: AnyDriveSettings = Field(description="The master's drive, as in [drive]")
+    limits: Limits = Limits()
+    reflection: ReflectionSettings = ReflectionSettings()
 
 
 class BenchConfiguration(Section):

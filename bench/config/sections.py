@@ -4,9 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from bench.config.drives.registry import AnyDriveSettings
 from bench.config.quantities import quantity
-from bench.config.rig import Rig, Section
+from bench.config.rig import Section
 from compensator.rest.rest_calibration import RestCalibration
 
 Rate = Annotated[float, Field(gt=0)]
@@ -158,12 +157,3 @@ class ReflectionSettings(Section):
     damping_n_m_s_rad: float = quantity(
         0.0, "N m s/rad", "Torque against the master's speed, beside what is reflected", ge=0
     )
-
-
-class MasterSettings(Section):
-    """A second joint, with the operator's hand on its arm. Its motor makes torque; the hand makes the motion."""
-
-    rig: Rig | None = Field(default=None, description="The master's joint; that of the slave where left out")
-    drive: AnyDriveSettings = Field(description="The master's drive, as in [drive]")
-    limits: Limits = Limits()
-    reflection: ReflectionSettings = ReflectionSettings()

@@ -1,4 +1,4 @@
-"""What one control cycle of a joint is made of: the procedure's action, the reading that answers it, the row."""
+"""What one control cycle of a joint or a pair is made of: a procedure's action, the reading that answers, the row."""
 
 from collections.abc import Callable, Generator, Sequence
 from math import nan
@@ -92,3 +92,54 @@ _row: Callable[[tuple[Any, ...]], Row] = row_reader(JOINT_CHANNELS, VALUES)
 def row_of(action: Action, reading: Reading) -> Row:
     """The row of a cycle, in the order of `bench.config.channels.RECORDED`."""
     return _row(values_of(action, reading))
+
+
+class Reach(NamedTuple):
+    """What the operator at a simulated master is to do from now on; a person is free.
+
+    Attributes:
+        angle_rad: where the arm is to be in the end.
+        duration_s: that he takes for it.
+    """
+
+    angle_rad: float
+    duration_s: float
+
+
+class Truth(NamedTuple):
+    """What acts on the arms of a simulated pair; NaN of a real one.
+
+    Attributes:
+        interaction_n_m: torque that holds up the slave's load and presses its arm against a wall.
+        hand_n_m: torque of the operator's hand on the master's arm.
+    """
+
+    interaction_n_m: float = nan
+    hand_n_m: float = nan
+
+
+class PairAction(NamedTuple):
+    """What a procedure yields each cycle.
+
+    Attributes:
+        slave, master: of each joint; events are the slave's.
+        reflected_n_m: load that is reflected to the operator, recorded.
+        reach: what the operator does from this cycle on.
+    """
+
+    slave: Action
+    master: Action
+    reflected_n_m: float = nan
+    reach: Reach | None = None
+
+
+class PairReading(NamedTuple):
+    """What a procedure receives each cycle."""
+
+    slave: Reading
+    master: Reading
+    truth: Truth
+
+
+PairProcedure = Generator[PairAction, PairReading, dict[str, Value]]
+"""As `Procedure`, of both joints."""

@@ -136,12 +136,13 @@ class ControlledJoint:
             return Command(_TORQUE, command[1] * self._torque_constant_n_m_a)
         if servo is None:
             return command
-        _, previous, velocity_rad_s, _, _ = self.reading
+        previous, velocity_rad_s = self.reading[1:3]
         return Command(_DUTY, servo.duty(command[1], previous, velocity_rad_s))
 
     def take(self, sample: Sample) -> None:
         """Make the reading of a sample."""
-        time_s, _, _, velocity_rad_s, _, current_a, _, _, _, _, _, torque_n_m, _ = sample
+        time_s, _, _, velocity_rad_s, _, current_a = sample[:6]
+        torque_n_m = sample[11]
         servo = self._current_servo
         if velocity_rad_s != velocity_rad_s:  # NaN
             velocity_rad_s = self._derived_velocity(sample)
@@ -160,7 +161,7 @@ class ControlledJoint:
             LimitTrip, DriveStateError: naming the joint, where it has a name.
             DriveFault: what the drive says of its fault.
         """
-        _, sample, velocity_rad_s, current_a, _ = self.reading
+        sample, velocity_rad_s, current_a = self.reading[1:4]
         try:
             self._guard.check(sample, velocity_rad_s, current_a, target_rad)
         except LimitTrip as trip:
@@ -216,7 +217,7 @@ class ControlledJoint:
 
     def _derived_velocity(self, sample: Sample) -> float:
         """By the sample before; as it was where no time has passed, and 0 at the first."""
-        _, previous, velocity_rad_s, _, _ = self.reading
+        previous, velocity_rad_s = self.reading[1:3]
         elapsed_s = sample.time_s - previous.time_s
         if not elapsed_s > 0.0:  # NaN, too
             return velocity_rad_s

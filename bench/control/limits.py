@@ -56,7 +56,8 @@ class Guard:
             LimitTrip: naming the quantity, its value, the limit and the unit.
         """
         low, high, speed, current, temperature, error, age, slow_age = self._bounds
-        _, age_s, position_rad, _, _, _, _, temperature_c, _, ages, _, _, _ = sample
+        age_s, position_rad = sample[1:3]
+        temperature_c, _, ages = sample[7:10]
         # written so that NaN passes, except for the position and the age
         if (
             low <= position_rad <= high

@@ -1,64 +1,11 @@
 """A master and a slave in the control loop: action, reading and row of a cycle, by those of the two joints."""
 
-from collections.abc import Callable, Generator
-from math import nan
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import Any
 
 from bench.config.channels import PAIR_CHANNELS, PAIR_RECORDED
-from bench.control.cycle import OFF, VALUES, Action, Reading, Row, row_reader, values_of
+from bench.control.cycle import OFF, VALUES, Action, PairAction, PairReading, Reach, Row, Truth, row_reader, values_of
 from bench.control.joint import ControlledJoint
-from bench.json_types import Value
-
-
-class Reach(NamedTuple):
-    """What the operator at a simulated master is to do from now on; a person is free.
-
-    Attributes:
-        angle_rad: where the arm is to be in the end.
-        duration_s: that he takes for it.
-    """
-
-    angle_rad: float
-    duration_s: float
-
-
-class Truth(NamedTuple):
-    """What acts on the arms of a simulated pair; NaN of a real one.
-
-    Attributes:
-        interaction_n_m: torque that holds up the slave's load and presses its arm against a wall.
-        hand_n_m: torque of the operator's hand on the master's arm.
-    """
-
-    interaction_n_m: float = nan
-    hand_n_m: float = nan
-
-
-class PairAction(NamedTuple):
-    """What a procedure yields each cycle.
-
-    Attributes:
-        slave, master: of each joint; events are the slave's.
-        reflected_n_m: load that is reflected to the operator, recorded.
-        reach: what the operator does from this cycle on.
-    """
-
-    slave: Action
-    master: Action
-    reflected_n_m: float = nan
-    reach: Reach | None = None
-
-
-class PairReading(NamedTuple):
-    """What a procedure receives each cycle."""
-
-    slave: Reading
-    master: Reading
-    truth: Truth
-
-
-PairProcedure = Generator[PairAction, PairReading, dict[str, Value]]
-"""Yields actions, receives readings, returns the trial's results: JSON-able, units in the names."""
 
 PAIR_VALUES = (
     *VALUES,

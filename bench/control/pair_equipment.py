@@ -3,41 +3,19 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
-from typing import Protocol
 
 from bench.config.configuration import BenchConfiguration
+from bench.config.drives.kind import Environment, Hand
+from bench.config.drives.registry import drive_kind
+from bench.control.cycle import Reach, Truth
 from bench.control.drive_factory import Ask, Equipment, make_equipment, nobody, share_lines
-from bench.control.pair import Reach, Truth
-from bench.drives.sim.joint import make_environment, make_hand
 from bench.errors import ExperimentError
+from drivers.contract import Drive
 
 HOLD = (
     "Take hold of the master's arm, let it hang straight down, and keep it there. It will pull at your hand, and the "
     "slave will do what it does."
 )
-
-
-class Hand(Protocol):
-    """The operator at the master."""
-
-    def take_hold(self) -> None:
-        """Hold the arm where it is."""
-
-    def reach(self, angle_rad: float, duration_s: float) -> None:
-        """Reach for an angle, beginning now."""
-
-    def torque_n_m(self) -> float:
-        """What the hand does to the arm; NaN where nobody knows."""
-
-
-class Environment(Protocol):
-    """What the slave's arm meets."""
-
-    def put_wall(self, angle_rad: float | None) -> None:
-        """Have a wall at an angle, or none."""
-
-    def interaction_n_m(self) -> float:
-        """Torque that load and wall truly take; NaN where nobody knows."""
 
 
 class PersonHand:
@@ -135,12 +113,19 @@ def make_pair(configuration: BenchConfiguration, ask: Callable[[str], bool] = no
     master_bench = configuration.of_master()
     slave, master = make_equipment(configuration, ask), make_equipment(master_bench, ask)
     share_lines([(configuration, slave.drive), (master_bench, master.drive)])
+    hand, environment = PersonHand(ask), PersonEnvironment(ask)
     return PairEquipment(
         slave,
         master,
-        make_hand(master.drive) or PersonHand(ask),
-        make_environment(slave.drive) or PersonEnvironment(ask),
+        _beside(master_bench, master.drive, (hand, environment))[0],
+        _beside(configuration, slave.drive, (hand, environment))[1],
     )
+
+
+def _beside(bench: BenchConfiguration, drive: Drive, persons: tuple[Hand, Environment]) -> tuple[Hand, Environment]:
+    """Who stands beside an arm: software beside a simulated one, else a person."""
+    beside_arm = drive_kind(bench.drive.kind).beside_arm
+    return persons if beside_arm is None else beside_arm(drive)
 
 
 def _wall(angle_rad: float) -> str:

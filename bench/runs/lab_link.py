@@ -20,7 +20,7 @@ from bench.runs.lab_work import LabWork
 from bench.runs.lease import Lease
 from bench.runs.queue.conductor import Conductor
 from bench.store import Store
-from bench.store.backend import shown
+from bench.store.address import shown
 from bench.store.errors import StoreError, StoreUnreachableError
 from bench.store.tables.benches import BenchWord, SeenBench
 from bench.store.tables.lab_queue import OPEN, LabItem

@@ -18,15 +18,16 @@ from bench.errors import ConfigurationError
 from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
 from bench.runs.bench_process.remote_runner import RemoteRunner
-from bench.service.app import create_app
 from bench.service.auth.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
 from bench.service.auth.tls import Certificate
 from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
-from bench.service.lab import LabProcesses
+from bench.service.lab import Lab, LabProcesses
 from bench.service.welcome import Place, welcome
 from bench.store import Store
 
+MakeApp = Callable[[Store, BenchControl, Access, Lab], FastAPI]
+"""As `bench.service.app.create_app`."""
 LINGER_S = 2  # how long open connections are waited for at the end
 
 
@@ -89,6 +90,7 @@ class BenchServer(uvicorn.Server):
 def serve_bench(
     configuration: BenchConfiguration,
     address: Address,
+    make_app: MakeApp,
     say: Callable[[str], None],
     tls: Certificate | None = None,
 ) -> None:
@@ -97,6 +99,7 @@ def serve_bench(
     Args:
         configuration: of the bench and its store.
         address: where to listen.
+        make_app: makes the application that is served.
         say: shows a line to whoever started it.
         tls: certificate and key; without them the service speaks plain HTTP.
 
@@ -118,7 +121,7 @@ def serve_bench(
                 names = LOOPBACK_NAMES | {address.host, *address.names}
                 with closing(RemoteRunner(configuration, store)) as runner:
                     access = Access(register, is_loopback(address.host), names)
-                    app = create_app(store, runner, access, LabProcesses(url))
+                    app = make_app(store, runner, access, LabProcesses(url))
                     for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
                         say(line)
                     facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}

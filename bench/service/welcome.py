@@ -8,7 +8,7 @@ from bench.service.auth.access import is_loopback
 from bench.service.auth.token_register import Tokens
 from bench.service.auth.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
 from bench.service.http.openapi import PREFIX
-from bench.store.backend import shown
+from bench.store.address import shown
 
 
 class Place(NamedTuple):

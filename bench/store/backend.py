@@ -5,12 +5,8 @@ from contextlib import AbstractContextManager
 from typing import Protocol
 
 from sqlalchemy import Connection, Engine
-from sqlalchemy.engine import URL, make_url
-from sqlalchemy.exc import ArgumentError
 
-from bench.store.errors import StoreError, StoreFileError
-
-EXAMPLES = "sqlite:///bench.sqlite or postgresql://user@host/database"
+from bench.store.errors import StoreError
 
 
 class Claim(Protocol):
@@ -83,34 +79,3 @@ class Backend(Protocol):
 
     def forget(self, token: str | None) -> None:
         """Remove what a dead process left outside the database."""
-
-
-def backend_of(url: str, busy_timeout_s: float) -> Backend:
-    """The database that a URL names; nothing is opened yet.
-
-    Raises:
-        StoreFileError: the URL cannot be read, names no file or folder that is there, or an unknown database.
-    """
-    parsed = _parsed(url)
-    name = parsed.get_backend_name()
-    if name == "sqlite":
-        from bench.store.sqlite import Sqlite
-
-        return Sqlite(parsed, busy_timeout_s)
-    if name == "postgresql":
-        from bench.store.postgresql import Postgresql
-
-        return Postgresql(parsed, busy_timeout_s)
-    raise StoreFileError(f"store: database '{name}' is not supported; write {EXAMPLES}")
-
-
-def shown(url: str) -> str:
-    """A database URL as it may be shown: without its password."""
-    return _parsed(url).render_as_string(hide_password=True)
-
-
-def _parsed(url: str) -> URL:
-    try:
-        return make_url(url)
-    except ArgumentError as error:
-        raise StoreFileError(f"store '{url}' is no database URL; write {EXAMPLES}") from error

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from sqlalchemy import Connection
 from sqlalchemy.exc import StatementError
 
-from bench.store.backend import Claim, backend_of
+from bench.store.backend import Backend, Claim
 from bench.store.errors import StoreFileError, StoreLockedError, StoreValueError
 from bench.store.tables.json_text import NoJsonError
 
@@ -16,17 +16,13 @@ class Database:
     """One engine, usable from several threads. Writers of this process take turns; readers never wait.
 
     Args:
-        url: "sqlite:///bench.sqlite" (relative), "sqlite:////home/lab/bench.sqlite" (absolute), or
-            "postgresql://user@host/database".
+        backend: what it is kept in.
         busy_timeout_s: how long a writer waits for another one [s].
-
-    Raises:
-        StoreFileError: the URL cannot be read, names no file or database, or the folder does not exist.
     """
 
-    def __init__(self, url: str, busy_timeout_s: float) -> None:
+    def __init__(self, backend: Backend, busy_timeout_s: float) -> None:
         self.busy_timeout_s = busy_timeout_s
-        self.backend = backend_of(url, busy_timeout_s)
+        self.backend = backend
         self._writer = threading.Lock()
 
     @property

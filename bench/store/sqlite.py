@@ -17,13 +17,7 @@ from sqlalchemy import Connection, Engine, Pool, create_engine, event
 from sqlalchemy.engine import URL
 from sqlalchemy.pool import ConnectionPoolEntry
 
-from bench.store.errors import (
-    StoreError,
-    StoreFileError,
-    StoreFullError,
-    StoreLockedError,
-    StoreReadOnlyError,
-)
+from bench.store.errors import StoreError, StoreFileError, StoreFullError, StoreLockedError, StoreReadOnlyError
 from bench.store.sqlite_file import SqliteFile
 from bench.store.tables.json_text import to_json
 from bench.store.upkeep import owner

@@ -3,6 +3,7 @@
 from types import TracebackType
 from typing import Self
 
+from bench.store.address import database_of
 from bench.store.database import Database
 from bench.store.experiment_store import ExperimentStore
 from bench.store.migration import migrate
@@ -63,7 +64,7 @@ class Store(ExperimentStore, TrialStore, StudyStore):
             StoreVersionError: made by a newer version.
             StoreLockedError, StoreFullError, StoreReadOnlyError, StoreUnreachableError
         """
-        store = cls(Database(url, busy_timeout_s))
+        store = cls(database_of(url, busy_timeout_s))
         try:
             migrate(store._database)
             if not store._database.backend.is_read_only:

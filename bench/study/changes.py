@@ -11,7 +11,8 @@ from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import held_out_both
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain, held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.validation import held_out
 
 
 @progress.stages(CHANGE)

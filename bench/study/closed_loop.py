@@ -22,7 +22,7 @@ from compensator.lab.closed_loop.control_law import ControlLaw
 from compensator.lab.closed_loop.refinement import Refinement, refine
 from compensator.lab.model.fit import with_coefficients
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import relative_error
+from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Trial
 

@@ -27,8 +27,8 @@ from compensator.lab.comparison import comparison
 from compensator.lab.comparison.null_space import left_open
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
+from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.intervals import ParameterEstimate, estimates
-from compensator.lab.model.validation import HeldOut
 from compensator.lab.rows.drivers import DRIVERS
 
 

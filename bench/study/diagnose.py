@@ -9,7 +9,7 @@ from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
-from compensator.lab.diagnosis.diagnosis import explained_part
+from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
@@ -79,7 +79,7 @@ def outset_of(store: Store, model: ModelRow) -> float:
 
 def _advice(found: diagnosis.Diagnosis, explained: float) -> str:
     """What to make of an effect that is named and slight; empty where it is not slight."""
-    one = found.slight_one(explained)
+    one = slight_one(found, explained)
     if one is None:
         return ""
     share = explained_part(one.before, one.after) / explained

@@ -1,9 +1,8 @@
 """What a diagnosis found, with codes: the one place where the lab's answer becomes codes, numbers and words."""
 
 from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, Value
-from compensator.lab.chance import stated
+from compensator.lab.chance import SIGNIFICANT, stated
 from compensator.lab.diagnosis.diagnosis import Diagnosis
-from compensator.lab.diagnosis.examination import SIGNIFICANT
 
 
 def conclusion_of(found: Diagnosis) -> Conclusion:

@@ -9,7 +9,8 @@ from compensator.lab.at_rest.breakaway_comparison import compare_breakaway
 from compensator.lab.comparison.comparison import repeatability_floor
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import error_interval
-from compensator.lab.model.validation import HeldOut, held_out, relative_error
+from compensator.lab.model.held_out_error import HeldOut, relative_error
+from compensator.lab.model.validation import held_out
 
 
 def keep_model(store: Store, study_id: int, parent_id: int | None, fit: Fit) -> int:

@@ -16,7 +16,7 @@ from compensator.lab import progress
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import relative_error
+from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.units.judgement import Judged, judge
 from compensator.lab.units.quantities import FEWEST_UNITS, UnitFit, quantities_of, shared_shapes, unit_fit_of

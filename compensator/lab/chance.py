@@ -1,5 +1,7 @@
 """How a chance is stated: never smaller than what signs flipped at random can know."""
 
+SIGNIFICANT = 0.01  # p-value up to which a finding is taken for no luck
+
 SIGN_FLIPS = 999
 LEAST_STATED = 1.0 / (1.0 + SIGN_FLIPS)
 """No flip of 999 did as well: the chance is this at most. Tails of F and chi-squared go on."""

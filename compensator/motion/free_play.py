@@ -11,27 +11,9 @@ Torques are motor currents [A]; angles and speeds are the joint's.
 """
 
 from math import copysign
-from typing import NamedTuple
 
 from compensator.motion.joint_model import JointUnderLoad
-
-
-class ArmState(NamedTuple):
-    """The arm after a control cycle.
-
-    Attributes:
-        angle_rad, speed_rad_s: of the arm.
-        motor_rad, motor_rad_s: of the motor's side, as measured.
-        teeth_a: what the teeth passed on to the arm, mean over the cycle [A].
-        side: flank that they touch on: 1 where the motor pushes forwards, -1 backwards, 0 between them.
-    """
-
-    angle_rad: float
-    speed_rad_s: float
-    motor_rad: float
-    motor_rad_s: float
-    teeth_a: float
-    side: float
+from compensator.motion.load_estimate import ArmState
 
 
 def begin(motor_rad: float, gravity_a: float, free_play_rad: float) -> ArmState:

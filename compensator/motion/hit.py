@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from compensator.motion.joint_model import JointUnderLoad
 from compensator.motion.load_estimate import Branch, EstimatorSettings, EstimatorState, Hit, LoadEstimate, Observation
-from compensator.motion.standing_load import about_to_move_a
 
 STOPPED_COUNTS = 4.0  # of its farthest place, within which a joint has arrived
 SEEN_COUNTS = 3.0  # of motion that a current would have made, before its absence tells anything
@@ -130,7 +129,7 @@ def _hit(
 
 def _band_a(joint: JointUnderLoad, current_a: float, way: float) -> tuple[float, float]:
     """Loads of a standing joint that is about to move on, and back [A]."""
-    return about_to_move_a(joint, current_a, way, 1.0), about_to_move_a(joint, current_a, -way, 1.0)
+    return joint.about_to_move_a(current_a, way), joint.about_to_move_a(current_a, -way)
 
 
 def _holds_rad(settings: EstimatorSettings, speed_rad_s: float) -> float:

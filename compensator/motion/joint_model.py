@@ -55,6 +55,10 @@ class JointUnderLoad:
     friction_scatter: float
     studied: MotionFriction | None = None
 
+    def about_to_move_a(self, current_a: float, way: float, margin: float = 1.0) -> float:
+        """I_load [A] of the joint at rest that is just about to move in a direction, with `margin` of the friction."""
+        return self.gear_loss.load_current_a(current_a - margin * self.friction_a(0.0, way), way)
+
     def friction_a(self, joint_speed_rad_s: float, direction: float) -> float:
         """s F(v) [A]: friction of the balanced joint in a direction, at a speed of the joint or next to 0."""
         speed = abs(joint_speed_rad_s) * self.ratio

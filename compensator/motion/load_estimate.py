@@ -5,7 +5,6 @@ from enum import Enum
 from math import inf, nan
 from typing import NamedTuple
 
-from compensator.motion.free_play import ArmState
 from compensator.motion.joint_model import JointUnderLoad
 
 
@@ -120,6 +119,24 @@ class Hit(NamedTuple):
     position_rad: float
     holds_rad: float
     cycles: int = 0
+
+
+class ArmState(NamedTuple):
+    """The arm after a control cycle.
+
+    Attributes:
+        angle_rad, speed_rad_s: of the arm.
+        motor_rad, motor_rad_s: of the motor's side, as measured.
+        teeth_a: what the teeth passed on to the arm, mean over the cycle [A].
+        side: flank that they touch on: 1 where the motor pushes forwards, -1 backwards, 0 between them.
+    """
+
+    angle_rad: float
+    speed_rad_s: float
+    motor_rad: float
+    motor_rad_s: float
+    teeth_a: float
+    side: float
 
 
 class EstimatorState(NamedTuple):

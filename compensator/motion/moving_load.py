@@ -11,10 +11,16 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from compensator.motion.free_play import ArmState
 from compensator.motion.gear_loss import GearLoss
 from compensator.motion.joint_model import JointUnderLoad, MotionFriction
-from compensator.motion.load_estimate import Branch, EstimatorSettings, EstimatorState, LoadEstimate, Observation
+from compensator.motion.load_estimate import (
+    ArmState,
+    Branch,
+    EstimatorSettings,
+    EstimatorState,
+    LoadEstimate,
+    Observation,
+)
 from compensator.motion.local_motion import Window, window
 
 BAND = 1.96  # standard deviations in half of a 95 % interval

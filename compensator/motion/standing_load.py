@@ -28,7 +28,7 @@ def stuck(
     What was known before stands for as long as the band holds it: then friction alone may be what holds the joint.
     """
     way = copysign(1.0, observation.target_rad - observation.position_rad)
-    near_a = about_to_move_a(joint, _stood_a(settings, state), way, 1.0)
+    near_a = joint.about_to_move_a(_stood_a(settings, state), way)
     given = allowed(joint, settings, state, held_a, near_a, Branch.STUCK)
     return given._replace(friction_current_a=joint.friction_a(0.0, way))
 
@@ -37,7 +37,7 @@ def leaving(joint: JointUnderLoad, state: EstimatorState, observation: Observati
     """A push that is let go: what moves the joint back, which is between its weight alone and what it leant with."""
     weight_a = joint.gravity_at(observation.position_rad)
     side = copysign(1.0, state.known_a)
-    pushes_a = side * (about_to_move_a(joint, state.currents_a[-1], state.direction, 1.0) - weight_a)
+    pushes_a = side * (joint.about_to_move_a(state.currents_a[-1], state.direction) - weight_a)
     given_a = weight_a + side * min(max(pushes_a, 0.0), abs(state.known_a))
     return LoadEstimate(given_a, state.estimate.half_width_a, Branch.LEAVING)
 
@@ -52,16 +52,11 @@ def allowed(
 ) -> LoadEstimate:
     """What is known, as far as static friction allows it: eq. (1); something else, or the middle, where nothing is."""
     margin = 1.0 + 3.0 * joint.friction_scatter
-    low_a, high_a = sorted(about_to_move_a(joint, _stood_a(settings, state), way, margin) for way in (1.0, -1.0))
+    low_a, high_a = sorted(joint.about_to_move_a(_stood_a(settings, state), way, margin) for way in (1.0, -1.0))
     if isnan(known_a):
         known_a = (low_a + high_a) / 2.0 if isnan(else_a) else else_a
     given_a = min(max(known_a, low_a), high_a)
     return LoadEstimate(given_a, max(high_a - given_a, given_a - low_a), branch)
-
-
-def about_to_move_a(joint: JointUnderLoad, current_a: float, way: float, margin: float) -> float:
-    """I_load [A] of a joint at rest that is just about to move in a direction."""
-    return joint.gear_loss.load_current_a(current_a - margin * joint.friction_a(0.0, way), way)
 
 
 def creeps(settings: EstimatorSettings, state: EstimatorState) -> bool:

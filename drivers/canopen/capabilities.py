@@ -4,14 +4,7 @@ from dataclasses import dataclass
 from math import nan
 
 from drivers.canopen.cia301.object_table import Need, ObjectTable
-from drivers.canopen.cia301.objects import (
-    RATED_TORQUE,
-    TORQUE,
-    TORQUE_OFFSET,
-    VELOCITY,
-    VELOCITY_OFFSET,
-    DriveObject,
-)
+from drivers.canopen.cia301.objects import RATED_TORQUE, TORQUE, TORQUE_OFFSET, VELOCITY, VELOCITY_OFFSET, DriveObject
 from drivers.canopen.cia402.drive_units import UnitRow, read_units
 from drivers.canopen.cia402.homing import why_not
 from drivers.canopen.cia402.modes import ModeChoice

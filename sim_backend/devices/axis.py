@@ -1,6 +1,7 @@
 """What every simulated device drives: a power stage with a joint on it, advanced in ticks of a millisecond."""
 
 from math import isfinite, isnan, pi
+from threading import RLock
 from typing import NamedTuple, Protocol
 
 from drivers.contract import Sample, Status
@@ -219,3 +220,21 @@ class Axis:
 
 
 __all__ = ["BRAKE", "CURRENT", "OFF", "OPEN", "TICK_S", "VOLTAGE", "Axis", "Demand", "Law", "Power"]
+
+
+class Device(Protocol):
+    """A drive's protocol and real-time half on an axis. It reads no clock; whoever calls says what time it is.
+
+    Attributes:
+        axis: the power stage and the joint.
+        lock: held by every thread while it calls.
+    """
+
+    axis: Axis
+    lock: RLock
+
+    def advance_to(self, time_s: float) -> None:
+        """Let time pass up to a time [s] of the axis."""
+
+    def report(self) -> dict[str, object]:
+        """What the drive is about, for the side channel: its state, its watchdog, its fault."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import Device
 from sim_backend.devices.joint_tables import fault_by_name
 from sim_backend.devices.link.faults import LinkFaults, link_fault
 from sim_backend.devices.wall_time import WallTime

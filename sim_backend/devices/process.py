@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from threading import Event
 from typing import Protocol, Self
 
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import Device
 from sim_backend.devices.hand import Hand
 from sim_backend.devices.link.faults import LinkFaults
 from sim_backend.devices.side_channel import SideChannel

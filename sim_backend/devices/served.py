@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import Device
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.process import Port, RunningDevice, Workplace
 from sim_backend.plant.parameters import PlantParameters

@@ -3,8 +3,7 @@
 import threading
 import time
 
-from sim_backend.devices.axis import TICK_S, Axis
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import TICK_S, Axis, Device
 
 # silence of a host that is gone, not late: time goes on, and a watchdog of 1 s trips in the 1.6 s that it is tried for
 HOST_IS_GONE_S = 0.45

@@ -17,9 +17,8 @@ from sim_backend.mechanisms.joint.sensing import counts, radians_per_count
 from sim_backend.mechanisms.joint.spring import spring_energy
 from sim_backend.mechanisms.motor.cogging import cogging_energy
 from sim_backend.mechanisms.motor.current_sensor import measured_current
-from sim_backend.plant.constants import Constants
 from sim_backend.plant.jit import Records, jitted, jitted_and_cached
-from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.parameters import Constants, PlantParameters
 from sim_backend.plant.state import State
 from sim_backend.plant.step import step
 

@@ -20,12 +20,13 @@ from sim_backend.mechanisms.friction.load_friction import LoadFriction
 from sim_backend.mechanisms.friction.lubricant import Lubricant
 from sim_backend.mechanisms.friction.periodic_friction import PeriodicFriction
 from sim_backend.mechanisms.friction.run_in import RunIn
+from sim_backend.mechanisms.friction.scatter import Scatter
 from sim_backend.mechanisms.friction.viscous_asymmetry import ViscousAsymmetry
 from sim_backend.mechanisms.joint.brake import Brake
 from sim_backend.mechanisms.joint.clutch import Clutch
 from sim_backend.mechanisms.joint.contact import Gear
 from sim_backend.mechanisms.joint.eccentricity import Eccentricity
-from sim_backend.mechanisms.joint.gravity import Arm, CentreOfMass, Load
+from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2, Arm, CentreOfMass, Load
 from sim_backend.mechanisms.joint.sensing import Encoder, Latency
 from sim_backend.mechanisms.joint.shaft import Shaft
 from sim_backend.mechanisms.joint.spring import Spring
@@ -37,7 +38,6 @@ from sim_backend.mechanisms.motor.heat import Heat
 from sim_backend.mechanisms.motor.motor import CurrentLoop, Motor, Supply
 from sim_backend.mechanisms.motor.supply_ripple import SupplyRipple
 from sim_backend.mechanisms.motor.thermal_drift import ThermalDrift
-from sim_backend.plant.randomness import Scatter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,3 +145,39 @@ def _know(values: Mapping[str, Any], known: list[str], where: str) -> None:
             near = difflib.get_close_matches(key, known, 1)
             hint = f"did you mean '{near[0]}'? " if near else ""
             raise ParameterError(f"{where}: unknown key '{key}'; {hint}known are {', '.join(known)}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constants:
+    """Derived quantities of a plant, at the joint.
+
+    Attributes:
+        weight_n: hung on the axis.
+        moment_kg_m: sum of mass times lever of arm and load.
+        arm_kg_m2: inertia of arm and load.
+        rotor_kg_m2: inertia of the rotor.
+        teeth_n_m_rad: stiffness of teeth and shaft in series.
+        teeth_n_m_s_rad: their damping.
+    """
+
+    weight_n: float
+    moment_kg_m: float
+    arm_kg_m2: float
+    rotor_kg_m2: float
+    teeth_n_m_rad: float
+    teeth_n_m_s_rad: float
+
+
+def constants_of(parameters: PlantParameters) -> Constants:
+    """Return what follows from a plant's parameters."""
+    arm, load, gear = parameters.arm, parameters.load, parameters.gear
+    hung_kg_m = 0.0 if load.balanced else load.mass_kg * arm.length_m
+    softening = parameters.shaft.softening(gear.stiffness_n_m_rad)
+    return Constants(
+        weight_n=STANDARD_GRAVITY_M_S2 * load.mass_kg,
+        moment_kg_m=hung_kg_m + arm.mass_kg * arm.centre_of_mass_m,
+        arm_kg_m2=arm.inertia_kg_m2 + load.mass_kg * arm.length_m**2,
+        rotor_kg_m2=gear.ratio * gear.ratio * parameters.motor.rotor_inertia_kg_m2,
+        teeth_n_m_rad=gear.stiffness_n_m_rad / softening,
+        teeth_n_m_s_rad=gear.damping_n_m_s_rad / softening,
+    )

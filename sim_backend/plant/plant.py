@@ -12,10 +12,9 @@ from sim_backend.errors import ParameterError
 from sim_backend.mechanisms.friction.friction import Friction
 from sim_backend.mechanisms.joint.clutch import Clutch
 from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2, Load
-from sim_backend.plant.constants import constants_of
 from sim_backend.plant.jit import pack
 from sim_backend.plant.kernel import Measured, Whole, advance, stored_energy
-from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.parameters import PlantParameters, constants_of
 from sim_backend.plant.state import at_rest
 from sim_backend.plant.stiffness import quickest, stiffest
 

@@ -3,12 +3,12 @@
 from sim_backend.errors import ParameterError
 from sim_backend.mechanisms.friction.friction import Friction
 from sim_backend.mechanisms.friction.load_friction import LoadFriction
+from sim_backend.mechanisms.friction.scatter import Scatter
 from sim_backend.mechanisms.joint.contact import Gear
 from sim_backend.mechanisms.joint.gravity import Arm
 from sim_backend.mechanisms.joint.sensing import Encoder
 from sim_backend.mechanisms.motor.motor import Motor, Supply
 from sim_backend.plant.parameters import PlantParameters
-from sim_backend.plant.randomness import Scatter
 
 
 def paper() -> PlantParameters:

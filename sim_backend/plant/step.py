@@ -13,6 +13,7 @@ from sim_backend.mechanisms.friction.bristle import bend
 from sim_backend.mechanisms.friction.dwell import aged
 from sim_backend.mechanisms.friction.friction_jump import flip
 from sim_backend.mechanisms.friction.hose import Bend, bent, hose_energy, hose_torque
+from sim_backend.mechanisms.friction.scatter import draw_static_factor, wander
 from sim_backend.mechanisms.joint.gravity import gravity_torque
 from sim_backend.mechanisms.joint.spring import spring_torque
 from sim_backend.mechanisms.motor.cogging import cogging_torque
@@ -20,11 +21,9 @@ from sim_backend.mechanisms.motor.heat import warm
 from sim_backend.mechanisms.motor.motor import CurrentLine, current_line, stage_loss, supply_voltage, winding_energy
 from sim_backend.mechanisms.motor.supply_ripple import ripple_scale, turned
 from sim_backend.mechanisms.motor.thermal_drift import Winding, drifted
-from sim_backend.plant.constants import Constants
 from sim_backend.plant.crossing import MOST_TRIES
 from sim_backend.plant.jit import jitted
-from sim_backend.plant.parameters import PlantParameters
-from sim_backend.plant.randomness import draw_static_factor, wander
+from sim_backend.plant.parameters import Constants, PlantParameters
 from sim_backend.plant.resistance import Resistance, arm_side, drive_side
 from sim_backend.plant.state import State
 from sim_backend.plant.stick_slip import Body

@@ -4,10 +4,9 @@ from typing import NamedTuple
 
 from sim_backend.mechanisms.joint.clutch import carried, slipped
 from sim_backend.mechanisms.joint.contact import contact_energy, flank, is_pull, penetration
-from sim_backend.plant.constants import Constants
 from sim_backend.plant.crossing import MOST_TRIES, Crossing, closing_line, is_close, one_after_the_other, opening_line
 from sim_backend.plant.jit import jitted
-from sim_backend.plant.parameters import PlantParameters
+from sim_backend.plant.parameters import Constants, PlantParameters
 from sim_backend.plant.state import State
 from sim_backend.plant.stick_slip import Body, coupled_speeds, free_speeds
 

@@ -5,8 +5,8 @@ from typing import Any, cast
 import numpy as np
 
 from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import Candidates, Curves
-from compensator.lab.screening.evidence import Base, Block
 
 ROWS = 6000
 

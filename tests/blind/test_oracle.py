@@ -5,7 +5,7 @@ from bench.evaluation.blind import judge
 from bench.evaluation.blind.figures import MUST_NAME
 from bench.evaluation.blind.oracle import NEEDED, standing, standing_at_breakaway
 from bench.evaluation.blind.result import Standing
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.gathering import gather
 from tests.blind.columns import ROWS, gathered, independent
 from tests.lab.ramps import STATIC, ramp_fit
 

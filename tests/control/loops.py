@@ -11,13 +11,13 @@ from bench.config.channels import PAIR_RECORDED, RECORDED
 from bench.config.rig import Rig
 from bench.config.sections import Limits
 from bench.control.clock import Clock, VirtualClock
-from bench.control.cycle import OFF, Action, Reading
+from bench.control.cycle import OFF, Action, PairAction, Reading
 from bench.control.ending import Outcome, StopRequest
 from bench.control.joint import ControlledJoint
 from bench.control.joint_group import SingleJoint
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
-from bench.control.pair import JointPair, PairAction
+from bench.control.pair import JointPair
 from bench.control.servo import CurrentServo
 from drivers.contract import Command, Mode
 from tests.control.fake_drive import RIG, FakeDrive, ListSink

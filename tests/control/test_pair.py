@@ -10,12 +10,12 @@ import numpy as np
 from bench.config.channels import PAIR_RECORDED
 from bench.config.sections import Limits
 from bench.control.clock import VirtualClock
-from bench.control.cycle import OFF, Action
+from bench.control.cycle import OFF, Action, PairAction, Reach, Truth
 from bench.control.ending import StopRequest
 from bench.control.joint import ControlledJoint
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
-from bench.control.pair import JointPair, PairAction, Reach, Truth
+from bench.control.pair import JointPair
 from bench.control.servo import CurrentServo
 from drivers.contract import Command, Mode
 from tests.control.fake_drive import RIG, FakeDrive, ListSink

@@ -8,10 +8,9 @@ import pytest
 from bench.config.channels import PAIR_RECORDED
 from bench.config.configuration import default_configuration, parse_configuration
 from bench.control.clock import WallClock
-from bench.control.cycle import OFF, Action
+from bench.control.cycle import OFF, Action, PairAction
 from bench.control.drive_faults import read_drives
 from bench.control.ending import StopRequest
-from bench.control.pair import PairAction
 from bench.control.station import make_station
 from bench.errors import ConfigurationError
 from drivers.contract import Command, Mode

@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compensator.lab.left_over.cells import CellsOfTrial
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.jumps import jumps_of
-from compensator.lab.left_over.variance_components import Part, likeliest
+from compensator.lab.left_over.variance_components import CellsOfTrial, Part, likeliest
 from compensator.lab.left_over.wandering import chance_of
 from tests.lab.line import Line, print_table
 

@@ -12,7 +12,13 @@ from typing import Any
 
 from drivers.contract import Command, Sample
 
-IMPORTED_BEFORE = ("bench.cli", "bench.cli.operation.serve", "bench.cli.operation.run", "bench.service.server")
+IMPORTED_BEFORE = (
+    "bench.cli",
+    "bench.cli.operation.serve",
+    "bench.cli.operation.run",
+    "bench.service.app",
+    "bench.service.server",
+)
 
 
 class RaisingDrive:

@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 from bench.cli.app import app
 from bench.store import Store
-from bench.store.database import Database
+from bench.store.address import database_of
 from bench.store.schema import CHAIN, METADATA, SAMPLE_OVERVIEW
 from bench.store.tables.audit import AuditEntry
 from bench.store.tables.chain import SUBJECTS
@@ -59,7 +59,7 @@ def records(path: Path) -> list[object]:
 
 def values(path: Path) -> list[object]:
     """Every record as the store reads it."""
-    database = Database(f"sqlite:///{path}", 1.0)
+    database = database_of(f"sqlite:///{path}", 1.0)
     with database.reading() as connection:
         found: list[object] = [connection.execute(select(METADATA.tables[name])).all() for name in RECORDS]
     database.close()

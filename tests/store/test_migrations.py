@@ -13,6 +13,7 @@ from sqlalchemy import MetaData, create_engine, insert, select
 from sqlalchemy.pool import StaticPool
 
 from bench.store import Event, Store
+from bench.store.address import database_of
 from bench.store.database import Database
 from bench.store.migration import HEAD, MIGRATIONS, _upgrade
 from tests.store.freeze import PROVENANCE, RELEASED, rows
@@ -27,7 +28,7 @@ def load(url: str, file: Path) -> None:
         with closing(sqlite3.connect(url.removeprefix("sqlite:///"))) as connection:
             connection.executescript(text)
         return
-    database = Database(url, 1.0)
+    database = database_of(url, 1.0)
     with database.writing() as connection:
         _upgrade(connection, url, None, file.stem)
     copy_rows(text, database)
@@ -107,7 +108,7 @@ def test_what_was_kept_is_there_after_the_upgrade(url: str, file: Path) -> None:
 def test_the_facts_of_the_provenance_become_columns(url: str, file: Path) -> None:
     load(url, file)
     Store.open(url).close()
-    database = Database(url, 1.0)
+    database = database_of(url, 1.0)
     query = "SELECT bench, software_version, software_commit, drive, firmware, seed FROM experiment ORDER BY id"
     with database.reading() as connection:
         found = [tuple(row) for row in connection.exec_driver_sql(query)]

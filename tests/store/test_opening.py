@@ -10,7 +10,7 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import inspect, text
 
 from bench.store import Store
-from bench.store.database import Database
+from bench.store.address import database_of
 from bench.store.errors import StoreFileError, StoreStateError, StoreVersionError
 from bench.store.migration import HEAD, MIGRATIONS
 from bench.store.schema import METADATA
@@ -18,7 +18,7 @@ from tests.store.examples import begin
 
 
 def test_the_migrations_make_the_tables_of_the_schema(store_url: str) -> None:
-    database = Database(store_url, 1.0)
+    database = database_of(store_url, 1.0)
     with database.reading() as connection:
         context = MigrationContext.configure(connection, opts={"compare_type": True})
         assert compare_metadata(context, METADATA) == []
@@ -60,7 +60,7 @@ def test_several_may_create_it_at_once(url: str) -> None:
 
 def test_a_database_of_a_newer_version_is_left_alone(url: str) -> None:
     Store.open(url).close()
-    database = Database(url, 1.0)
+    database = database_of(url, 1.0)
     with database.writing() as connection:
         connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
     database.close()
@@ -69,7 +69,7 @@ def test_a_database_of_a_newer_version_is_left_alone(url: str) -> None:
 
 
 def test_a_database_of_another_program_is_left_alone(url: str) -> None:
-    database = Database(url, 1.0)
+    database = database_of(url, 1.0)
     with database.writing() as connection:
         connection.execute(text("CREATE TABLE bookmarks (address TEXT)"))
     with pytest.raises(StoreFileError, match="belongs to another program; name another"):

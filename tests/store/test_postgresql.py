@@ -9,8 +9,7 @@ from sqlalchemy import text
 from sqlalchemy.exc import IntegrityError
 
 from bench.store import Store
-from bench.store.backend import shown
-from bench.store.database import Database
+from bench.store.address import database_of, shown
 from bench.store.errors import (
     StoreFileError,
     StoreLockedError,
@@ -27,7 +26,7 @@ def backend() -> str:
 
 
 def test_a_lock_of_another_program_is_waited_for_and_then_named(store_url: str) -> None:
-    other = Database(store_url, 5.0)
+    other = database_of(store_url, 5.0)
     with Store.open(store_url, busy_timeout_s=0.2) as store:
         experiment_id = begin(store)
         with other.writing():
@@ -39,7 +38,7 @@ def test_a_lock_of_another_program_is_waited_for_and_then_named(store_url: str) 
 
 
 def test_a_transaction_that_reads_sees_one_state(store: Store, store_url: str) -> None:
-    database = Database(store_url, 5.0)
+    database = database_of(store_url, 5.0)
     with database.reading() as connection:
         count = text("SELECT count(*) FROM experiment")
         before = connection.execute(count).scalar()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bench.store import Store
-from bench.store.database import Database
+from bench.store.address import database_of
 from bench.store.errors import StoreFileError, StoreFullError, StoreLockedError, StoreReadOnlyError
 from tests.store.examples import begin, begin_trial, rows
 from tests.store.test_interruption import kill, start_writer
@@ -23,7 +23,7 @@ def file_of(url: str) -> Path:
 
 
 def test_the_database_is_set_up_for_readers_beside_a_writer(store: Store, store_url: str) -> None:
-    database = Database(store_url, 3.0)
+    database = database_of(store_url, 3.0)
     with database.reading() as connection:
         found = {
             name: connection.exec_driver_sql(f"PRAGMA {name}").scalar()

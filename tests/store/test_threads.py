@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from bench.store import Store
-from bench.store.database import Database
+from bench.store.address import database_of
 from tests.store.examples import begin, begin_trial, rows
 
 
@@ -59,7 +59,7 @@ def test_writers_in_several_threads_take_turns(store: Store) -> None:
 
 def test_a_reader_does_not_wait_for_a_writer(store: Store, store_url: str) -> None:
     experiment_id = begin(store)
-    other = Database(store_url, 5.0)
+    other = database_of(store_url, 5.0)
     with other.writing():
         started = time.monotonic()
         assert store.experiment(experiment_id).outcome == "running"

@@ -17,7 +17,7 @@ def figures(
     as_json: Json = False,
 ) -> None:
     """Measure the compensator's figures over many seeds and rigs, on all cores. Minutes; nothing is kept."""
-    from bench.evaluation.figures import measure_figures
+    from bench.evaluation.figures.measure import measure_figures
     from bench.evaluation.figures.table import COLUMNS
 
     configuration = session_of(context).configuration()

@@ -37,13 +37,14 @@ def serve(
     """Serve the page and the REST interface for the bench, until Ctrl-C. Stops the joint when it ends."""
     # what a start imports stays until the end: to look through it for garbage meanwhile takes a tenth of a second
     gc.disable()
+    from bench.service.app import create_app
     from bench.service.auth.tls import certificate
     from bench.service.server import Address, serve_bench
 
     tls = certificate(tls_certificate, tls_key)
     session = session_of(context)
     configuration = session.configuration() if drive is None else _unknown_joint(drive, session)
-    serve_bench(configuration, Address(host, port, tuple(allow_host or ()), plain_http), say, tls)
+    serve_bench(configuration, Address(host, port, tuple(allow_host or ()), plain_http), create_app, say, tls)
 
 
 def _unknown_joint(drive: Path, session: BenchSession) -> "BenchConfiguration":

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Generic, Literal, TypeVar
+from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
@@ -76,6 +76,29 @@ class ConformanceBench:
     tells_firmware: bool = True
 
 
+class Hand(Protocol):
+    """The operator at the master."""
+
+    def take_hold(self) -> None:
+        """Hold the arm where it is."""
+
+    def reach(self, angle_rad: float, duration_s: float) -> None:
+        """Reach for an angle, beginning now."""
+
+    def torque_n_m(self) -> float:
+        """What the hand does to the arm; NaN where nobody knows."""
+
+
+class Environment(Protocol):
+    """What the slave's arm meets."""
+
+    def put_wall(self, angle_rad: float | None) -> None:
+        """Have a wall at an angle, or none."""
+
+    def interaction_n_m(self) -> float:
+        """Torque that load and wall truly take; NaN where nobody knows."""
+
+
 SettingsT = TypeVar("SettingsT", bound=DriveSettings)
 
 
@@ -94,6 +117,7 @@ class DriveKind(Generic[SettingsT]):
             `ConfigurationError`. None: each has a line of its own.
         follow: looks at one that another program moves: of the section, the rig, the name of the port that it offers,
             and the time from one look to the next [s]. None: that cannot be done.
+        beside_arm: makes the operator's hand on the arm of a drive, and what that arm meets. None: a person does it.
     """
 
     title: str
@@ -105,6 +129,7 @@ class DriveKind(Generic[SettingsT]):
     scan_can: CanScan | None = None
     share: Callable[[Sequence[Any]], None] | None = None
     follow: Callable[[SettingsT, Rig, Path, float], Follower] | None = None
+    beside_arm: Callable[[Any], tuple[Hand, Environment]] | None = None
 
     @property
     def name(self) -> str:

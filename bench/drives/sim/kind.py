@@ -1,6 +1,7 @@
 """The simulated drive as a kind."""
 
 from collections.abc import Callable
+from math import nan
 from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
@@ -12,6 +13,8 @@ from bench.errors import ConfigurationError
 from drivers.contract import Drive
 
 if TYPE_CHECKING:
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+    from sim_backend.environment.surroundings import Hand, Surroundings
     from sim_backend.faults.script import Fault
 
 
@@ -61,10 +64,25 @@ def _script(settings: SimulatedDriveSettings) -> "list[Fault]":
     ]
 
 
+def wall_torque_n_m(drive: Drive) -> float:
+    """Torque [N m] with which a wall or an end stop pushes the arm of a simulated joint; NaN of a real one."""
+    from sim_backend.drive.simulated_drive import SimulatedDrive
+
+    return drive.plant.truth().leant_n_m if isinstance(drive, SimulatedDrive) else nan
+
+
+def beside_arm(drive: "SimulatedDrive") -> "tuple[Hand, Surroundings]":
+    """The operator's hand on the arm of a simulated drive, and what that arm meets."""
+    from sim_backend.environment.surroundings import Hand, Surroundings
+
+    return Hand(drive.plant), Surroundings(drive.plant)
+
+
 KIND = DriveKind(
     title="simulated drive",
     settings=SimulatedDriveSettings,
     make=make,
+    beside_arm=beside_arm,
     conformance=(
         ConformanceBench("sim", settings={"plant": {"current_sensor": {"present": True}, "heat": {"present": True}}}),
     ),

@@ -12,8 +12,8 @@ from scipy.stats import f as f_distribution
 from bench.evaluation.blind import sindy
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Block
 
 SIGNIFICANT = 0.05
 MOST = 3  # effects that a stepwise search may add

@@ -18,7 +18,8 @@ from compensator.lab.errors import LabError, NotApplicableError
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.candidates import Candidates, gather
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.gathering import gather
 
 SHOWN = 3  # effects of a ranking that a reader looks at
 

@@ -19,8 +19,8 @@ from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Base, Block
 
 NEEDED = 25.6  # noncentrality that 64 candidates at 1 % need for 90 % power
 

@@ -22,7 +22,7 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import LabError
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import rms
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing

@@ -13,21 +13,13 @@ from bench.evaluation.blind.judge import ask_lab, can_be_seen, left_beside
 from bench.evaluation.blind.oracle import NEEDED
 from bench.evaluation.blind.recorded import base_fit
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
-from bench.evaluation.blind.second_plant import (
-    KNOWN,
-    NAMES,
-    OUTSIDE,
-    SecondJoint,
-    recordings_of,
-    rig_of,
-    second_joint,
-)
+from bench.evaluation.blind.second_plant import KNOWN, NAMES, OUTSIDE, SecondJoint, recordings_of, rig_of, second_joint
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.errors import LabError
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.gathering import gather
 
 OTHER_LAWS = "other-laws"
 

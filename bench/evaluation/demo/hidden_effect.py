@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.evaluation.paper.measurements import run_experiment
+from bench.evaluation.paper.measurements import Measurement, measure, quietly
 from bench.report import Bars, Figure, Line, Points, Section, Table
 from bench.store import Store
 from bench.study.changes import add_effect
@@ -50,8 +50,9 @@ def hidden_effect(configuration: BenchConfiguration, store: Store, seed: int) ->
     """Record, compare, diagnose, add, compare again; then say what was hidden."""
     hidden = draw(seed)
     drive = configuration.drive.model_copy(update={"plant": hidden.plant, "seed": seed})
-    experiment_id = run_experiment(configuration.model_copy(update={"drive": drive}), store, "excitation", {})
-    made = create_study(store, f"hidden effect, seed {seed}", [experiment_id], hold_out=["load_kg=0.05"], base=BASE)
+    bench = configuration.model_copy(update={"drive": drive})
+    experiment = measure(bench, store, Measurement("excitation", {}), quietly, "demo")
+    made = create_study(store, f"hidden effect, seed {seed}", [experiment.id], hold_out=["load_kg=0.05"], base=BASE)
     study_id = made.study_id
     before = compare(store, study_id)
     found = diagnose(store, study_id)

@@ -8,21 +8,21 @@ from bench.config.configuration import BenchConfiguration, default_configuration
 from bench.evaluation.demo.hidden_effect import hidden_effect
 from bench.evaluation.paper import load_sweep as sweep
 from bench.evaluation.paper import repeated_steps as steps
-from bench.evaluation.paper.measurements import grams_per_ma, run_experiment
+from bench.evaluation.paper.measurements import Measurement, grams_per_ma, measure, quietly
 from bench.report import Section, write_html
 from bench.store import Store
 
 
 def repeated_steps(configuration: BenchConfiguration, store: Store) -> Section:
     """25 steps to 90 degrees at 100 g, and the current that holds the joint there (Fig. 4)."""
-    experiment_id = run_experiment(configuration, store, "steps", {})
-    return steps.fig_4(store.experiment(experiment_id), store.trials(experiment_id)).section
+    experiment = measure(configuration, store, Measurement("steps", {}), quietly, "demo")
+    return steps.fig_4(experiment, store.trials(experiment.id)).section
 
 
 def load_sweep(configuration: BenchConfiguration, store: Store) -> Section:
     """0 to 100 g at 0 and 90 degrees (Figs 7, 8, 9 and Table 1)."""
-    experiment_id = run_experiment(configuration, store, "load-sweep", {})
-    experiment, trials = store.experiment(experiment_id), store.trials(experiment_id)
+    experiment = measure(configuration, store, Measurement("load-sweep", {}), quietly, "demo")
+    trials = store.trials(experiment.id)
     table = sweep.table_1(experiment, trials).section
     hanging = sweep.fig_7(experiment, trials, grams_per_ma(configuration)).section
     raised = sweep.fig_9(experiment, trials).section

@@ -14,6 +14,7 @@ from bench.experiments.kinds.steady_speeds import PAPER_SPEEDS_RAD_S
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.json_types import Value, Values
+from bench.runs.bench_control import Pace
 from bench.runs.runner import Runner
 from bench.store import CalibrationRow, Experiment, Store
 from bench.store.errors import NotFoundError
@@ -117,7 +118,9 @@ class Plan:
         }
 
 
-def measure(configuration: BenchConfiguration, store: Store, wanted: Measurement, conduct: Conduct) -> Experiment:
+def measure(
+    configuration: BenchConfiguration, store: Store, wanted: Measurement, conduct: Conduct, operator: str = ""
+) -> Experiment:
     """Run an experiment; on a simulated bench as fast as it goes.
 
     Raises:
@@ -125,7 +128,8 @@ def measure(configuration: BenchConfiguration, store: Store, wanted: Measurement
     """
     runner = Runner(configuration, store)
     try:
-        started = runner.start(wanted.kind, wanted.parameters, pace="fast" if is_simulated(configuration) else None)
+        pace: Pace | None = "fast" if is_simulated(configuration) else None
+        started = runner.start(wanted.kind, wanted.parameters, operator=operator, pace=pace)
         conduct(runner)
         runner.wait()
     finally:
@@ -159,24 +163,6 @@ def calibration_of(store: Store, experiments: list[Experiment]) -> CalibrationRo
         if found.experiment_ids == ids:
             return found
     return store.calibrations.get(calibrate(store, ids, note="friction-bench paper"))
-
-
-def run_experiment(configuration: BenchConfiguration, store: Store, kind: str, parameters: Values) -> int:
-    """Run an experiment as fast as the simulation goes. Returns its id.
-
-    Raises:
-        ExperimentError: it did not complete.
-    """
-    runner = Runner(configuration, store)
-    try:
-        experiment_id = runner.start(kind, parameters, operator="demo", pace="fast")
-        runner.wait()
-    finally:
-        runner.close()
-    experiment = store.experiment(experiment_id)
-    if experiment.outcome != "completed":
-        raise ExperimentError(f"{kind}: {experiment.outcome}: {experiment.reason}")
-    return experiment_id
 
 
 def grams_per_ma(configuration: BenchConfiguration) -> float:

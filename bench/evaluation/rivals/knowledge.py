@@ -6,17 +6,16 @@ from pathlib import Path
 
 from bench.calibration import calibrate, with_friction
 from bench.config.configuration import BenchConfiguration
-from bench.errors import ConfigurationError, ExperimentError
+from bench.errors import ConfigurationError
+from bench.evaluation.paper.measurements import Measurement, measure, quietly
 from bench.experiments.parts.load_follower import estimator_settings, joint_model
-from bench.json_types import Values
-from bench.runs.runner import Runner
 from bench.store import Store
 from compensator.rivals import Knowledge
 
 LOADS_KG = (0.0, 0.05, 0.1)
-SWEEPS: tuple[tuple[str, Values], ...] = (
-    ("speed-sweep", {"loads_kg": LOADS_KG, "strokes": 4}),
-    ("load-sweep", {"loads_kg": LOADS_KG, "angles_rad": (0.0, pi / 2), "searches": 2}),
+SWEEPS = (
+    Measurement("speed-sweep", {"loads_kg": LOADS_KG, "strokes": 4}),
+    Measurement("load-sweep", {"loads_kg": LOADS_KG, "angles_rad": (0.0, pi / 2), "searches": 2}),
 )
 
 
@@ -32,7 +31,7 @@ def calibrated(configuration: BenchConfiguration) -> BenchConfiguration:
         tempfile.TemporaryDirectory(prefix="friction-bench-") as folder,
         Store.open(f"sqlite:///{Path(folder) / 'rivals.sqlite'}") as store,
     ):
-        calibrate(store, [_run(configuration, store, kind, parameters) for kind, parameters in SWEEPS])
+        calibrate(store, [measure(configuration, store, sweep, quietly).id for sweep in SWEEPS])
         return with_friction(store, configuration)
 
 
@@ -56,16 +55,3 @@ def knowledge_of(configuration: BenchConfiguration) -> Knowledge:
         settings=settings,
         model=model,
     )
-
-
-def _run(configuration: BenchConfiguration, store: Store, kind: str, parameters: Values) -> int:
-    runner = Runner(configuration, store)
-    try:
-        started = runner.start(kind, parameters, pace="fast")
-        runner.wait()
-    finally:
-        runner.close()
-    found = store.experiment(started)
-    if found.outcome != "completed":
-        raise ExperimentError(f"{kind}: {found.outcome}: {found.reason}")
-    return started

@@ -13,7 +13,7 @@ from bench.control.ending import StopRequest
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop, joint_loop
 from bench.control.servo import current_servo
-from bench.drives.sim.joint import wall_torque_n_m
+from bench.drives.sim.kind import wall_torque_n_m
 from bench.errors import ExperimentError
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.runs.in_memory import Memory

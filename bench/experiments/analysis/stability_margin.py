@@ -1,7 +1,7 @@
 """The stability margin of a pair at rest: the force scale up to which a nudge dies away."""
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.pair import Reach
+from bench.control.cycle import Reach
 from bench.experiments.analysis.reflection_results import widest_swing
 from bench.experiments.parts.pair_joints import PairJoints, PairPart
 from bench.json_types import Value

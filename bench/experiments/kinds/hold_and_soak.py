@@ -16,13 +16,7 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
-from bench.experiments.parts.refusal import (
-    refuse_angles,
-    refuse_currents,
-    refuse_load,
-    refuse_slow_move,
-    refuse_speed,
-)
+from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, number
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most

@@ -11,13 +11,7 @@ from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
-from bench.experiments.parts.refusal import (
-    refuse_angles,
-    refuse_currents,
-    refuse_load,
-    refuse_slow_move,
-    refuse_speed,
-)
+from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, number
 
 PAPER_LOADS_KG = tuple(round(0.01 * step, 2) for step in range(11))

@@ -12,13 +12,7 @@ from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
 from bench.experiments.parts.followed_motion import Followed, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
-from bench.experiments.parts.refusal import (
-    refuse_angles,
-    refuse_currents,
-    refuse_load,
-    refuse_slow_move,
-    refuse_speed,
-)
+from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, numbers
 
 PAPER_RPM = (100, 200, 400, 600, 800, 1000, 1200)

@@ -10,8 +10,8 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import torque_n_m_a
+from bench.control.cycle import PairProcedure, Reach
 from bench.control.drive_factory import is_simulated
-from bench.control.pair import PairProcedure, Reach
 from bench.errors import ConfigurationError, LimitError, quantity_message
 from bench.experiments.analysis.reflection_results import error_results, rest_results, truth_n_m, widest_swing
 from bench.experiments.analysis.stability_margin import STAGE_S, ladder, margin

@@ -5,16 +5,7 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bench.recording_set.guess.vocabulary import (
-    DERIVED,
-    ERROR,
-    JOINT_SIDE,
-    MEASURED,
-    OTHER_AXIS,
-    SENSOR,
-    TARGET,
-    WORDS,
-)
+from bench.recording_set.guess.vocabulary import DERIVED, ERROR, JOINT_SIDE, MEASURED, OTHER_AXIS, SENSOR, TARGET, WORDS
 from bench.recording_set.units import Unit, unit_named
 from compensator.lab.recordings.recording import CHANNELS
 

@@ -1,15 +1,19 @@
 """/effects: the catalogue of physical effects that a model can be made of."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Depends, Path, Request
 
-from bench.service import later
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_worker
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.study.models.effects import Effect, Example
+
+if TYPE_CHECKING:
+    import bench.study.effects
+else:
+    from bench.service.later import bench
 
 router = APIRouter(prefix="/effects", tags=["effects"], dependencies=[Depends(allow_read)])
 
@@ -23,11 +27,11 @@ class Catalogue(Page):
 @router.get("", summary="The effects of the catalogue", responses=problems(422))
 def catalogue(limit: Limit = 100, offset: Offset = 0) -> Catalogue:
     """Physics, equation, parameters, what excites each effect and what it is confused with."""
-    items, page = cut(later.effects_catalogue()[offset : offset + limit + 1], limit, offset)
+    items, page = cut(bench.study.effects.effects_catalogue()[offset : offset + limit + 1], limit, offset)
     return Catalogue(items=list(items), **page)
 
 
 @router.get("/{name}/example", summary="A small simulated example", responses=problems(404, 422))
 async def example(request: Request, name: Annotated[str, Path(max_length=100, examples=["backlash"])]) -> Example:
     """To be looked at: a joint that is moved with two loads, without the effect, and what the effect adds."""
-    return await in_worker(request, later.effect_example, name)
+    return await in_worker(request, bench.study.effects.effect_example, name)

@@ -1,11 +1,10 @@
 """/studies: make one, change its models, give it trials, hand a model to the bench. GET is in `study_answers`."""
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from bench.service import later
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
@@ -18,6 +17,16 @@ from bench.study.models.change import Changed, Searched
 from bench.study.models.kept import Used
 from bench.study.models.study import Extended, Study, StudyName
 from bench.study.suggestion.suggested import Suggested
+
+if TYPE_CHECKING:
+    import bench.study.changes
+    import bench.study.create
+    import bench.study.extend
+    import bench.study.search
+    import bench.study.suggestion.suggest
+    import bench.study.use
+else:
+    from bench.service.later import bench
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
@@ -115,7 +124,7 @@ async def create(request: Request, response: Response, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
     found = await in_lab(
         request,
-        later.create_study,
+        bench.study.create.create_study,
         body.name,
         body.experiment_ids,
         hold_out=body.hold_out,
@@ -147,7 +156,7 @@ def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
 )
 async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
-    function = later.add_effect if body.action == "add" else later.drop_effect
+    function = bench.study.changes.add_effect if body.action == "add" else bench.study.changes.drop_effect
     found = await in_lab(request, function, study_id, body.effect, body.model_id)
     note(request, f"made model {found.model_id}: {body.action} {body.effect}")
     return found
@@ -162,7 +171,7 @@ async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
 )
 async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    found = await in_lab(request, later.search, study_id, body.model_id, body.most)
+    found = await in_lab(request, bench.study.search.search, study_id, body.model_id, body.most)
     note(request, f"made {len(found.steps)} models, the last of them {found.model_id}")
     return found
 
@@ -175,7 +184,9 @@ async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) 
 )
 async def suggest_trials(request: Request, runner: RunnerOf, study_id: StudyId, body: SuggestFrom) -> Suggested:
     """Nothing moves: start each with POST /experiments, its kind, parameters and the note. Takes seconds."""
-    return await in_lab(request, later.suggest, study_id, runner.configuration, body.model_id, body.trials)
+    return await in_lab(
+        request, bench.study.suggestion.suggest.suggest, study_id, runner.configuration, body.model_id, body.trials
+    )
 
 
 @router.post(
@@ -187,7 +198,7 @@ async def suggest_trials(request: Request, runner: RunnerOf, study_id: StudyId, 
 )
 async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
-    return await in_lab(request, later.extend_study, study_id, body.experiment_ids)
+    return await in_lab(request, bench.study.extend.extend_study, study_id, body.experiment_ids)
 
 
 @router.post(
@@ -199,7 +210,7 @@ async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> E
 )
 async def use_model(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
     """Kept as a calibration, which the bench uses from the next experiment on."""
-    return await in_lab(request, later.use, study_id, runner.configuration, body.model_id)
+    return await in_lab(request, bench.study.use.use, study_id, runner.configuration, body.model_id)
 
 
 @router.delete(

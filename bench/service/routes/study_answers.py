@@ -1,10 +1,9 @@
 """GET of /studies: what is computed from a study. It stays the same until a model is added, and is not sent twice."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
-from bench.service import later
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_lab
 from bench.service.http import conditional
@@ -18,6 +17,20 @@ from bench.study.models.ladder import Ladder
 from bench.study.models.plots import Action, DriversOverTime, ErrorMap, Moments
 from bench.study.models.study import Study
 from bench.study.models.units import UnitComparison
+
+if TYPE_CHECKING:
+    import bench.study.closed_loop
+    import bench.study.compare
+    import bench.study.create
+    import bench.study.diagnose
+    import bench.study.ladder
+    import bench.study.plots.error_map
+    import bench.study.plots.moments
+    import bench.study.plots.series
+    import bench.study.report.report
+    import bench.study.units
+else:
+    from bench.service.later import bench
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
@@ -47,7 +60,7 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
 )
 async def one_study(request: Request, study_id: StudyId) -> Study:
     """Its trials, their roles, and the newest model."""
-    return await in_lab(request, later.describe, study_id)
+    return await in_lab(request, bench.study.create.describe, study_id)
 
 
 @router.get(
@@ -58,7 +71,7 @@ async def one_study(request: Request, study_id: StudyId) -> Study:
 )
 async def compare_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
     """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
-    return await in_lab(request, later.compare, study_id, model_id)
+    return await in_lab(request, bench.study.compare.compare, study_id, model_id)
 
 
 @router.get(
@@ -69,7 +82,7 @@ async def compare_model(request: Request, study_id: StudyId, model_id: ModelId =
 )
 async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return await in_lab(request, later.diagnose, study_id, model_id)
+    return await in_lab(request, bench.study.diagnose.diagnose, study_id, model_id)
 
 
 @router.get(
@@ -80,7 +93,7 @@ async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId 
 )
 async def all_models(request: Request, study_id: StudyId) -> Ladder:
     """Training and held-out error of every model of the study."""
-    return await in_lab(request, later.ladder, study_id)
+    return await in_lab(request, bench.study.ladder.ladder, study_id)
 
 
 @router.get(
@@ -98,7 +111,7 @@ async def all_models(request: Request, study_id: StudyId) -> Ladder:
 )
 async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Response:
     """Trials, ladder, model, pictures, diagnosis, what to record next, provenance. Takes seconds."""
-    page = await in_lab(request, later.report_html, study_id, runner.configuration)
+    page = await in_lab(request, bench.study.report.report.report_html, study_id, runner.configuration)
     headers = {"Content-Disposition": f'attachment; filename="study-{study_id}.html"'}
     return Response(page, media_type="text/html", headers=headers)
 
@@ -113,7 +126,7 @@ async def closed_loop(
     request: Request, study_id: StudyId, model_id: ModelId = None, refine: Refine = False
 ) -> ClosedLoop:
     """Error of the motion beside that of the effort. Takes seconds."""
-    return await in_lab(request, later.simulate, study_id, model_id, refine)
+    return await in_lab(request, bench.study.closed_loop.simulate, study_id, model_id, refine)
 
 
 @router.get("/{study_id}/units", summary="Units of one kind, and which is an outlier", responses=problems(404, 422))
@@ -124,13 +137,13 @@ async def units(
     model_id: ModelId = None,
 ) -> UnitComparison:
     """All are fitted with this study's model: what they have in common, how they scatter. Takes seconds."""
-    return await in_lab(request, later.compare_units, study_id, beside, model_id)
+    return await in_lab(request, bench.study.units.compare_units, study_id, beside, model_id)
 
 
 @router.get("/{study_id}/error-map", summary="Error over speed and load", responses=problems(404, 422))
 async def error_map(request: Request, study_id: StudyId, model_id: ModelId = None) -> ErrorMap:
     """Where the model is wrong. Ask /moments with the edges of a cell to see when that was."""
-    return await in_lab(request, later.error_map, study_id, model_id)
+    return await in_lab(request, bench.study.plots.error_map.error_map, study_id, model_id)
 
 
 @router.get("/{study_id}/moments", summary="When the joint was somewhere", responses=problems(404, 422))
@@ -144,7 +157,7 @@ async def moments(
     model_id: ModelId = None,
 ) -> Moments:
     """Stretches of trials, with the residual's size during each; at most a dozen."""
-    return await in_lab(request, later.moments, study_id, where, model_id)
+    return await in_lab(request, bench.study.plots.moments.moments, study_id, where, model_id)
 
 
 @router.get("/{study_id}/action", summary="Where a missing effect would act", responses=problems(404, 422))
@@ -155,7 +168,7 @@ async def action(
     model_id: ModelId = None,
 ) -> Action:
     """The moments in which it takes most of the residual away, and every trial predicted with it. Nothing is kept."""
-    return await in_lab(request, later.action, study_id, effect, model_id)
+    return await in_lab(request, bench.study.plots.moments.action, study_id, effect, model_id)
 
 
 @router.get(
@@ -168,4 +181,4 @@ async def drivers(
     request: Request, study_id: StudyId, trial_id: Annotated[int, Query(ge=1, description="of the study")]
 ) -> DriversOverTime:
     """Speed, load, position and others of one trial, at the times of its series in /compare."""
-    return await in_lab(request, later.drivers_over_time, study_id, trial_id)
+    return await in_lab(request, bench.study.plots.series.drivers_over_time, study_id, trial_id)

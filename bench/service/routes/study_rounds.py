@@ -1,6 +1,6 @@
 """/studies/N/rounds: what was recorded for a study is picked up, and what it asks for next is queued, in one call."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Depends, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
@@ -8,7 +8,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.errors import BusyError
 from bench.runs.queue.conductor import Conductor
 from bench.runs.queue.items import Order
-from bench.service import later
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench, in_lab
@@ -19,6 +18,11 @@ from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import RUNNING, WAITING
 from bench.study.models.study import note_for
 from bench.study.suggestion.suggested import NextRound
+
+if TYPE_CHECKING:
+    import bench.study.suggestion.next_round
+else:
+    from bench.service.later import bench
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
@@ -56,7 +60,9 @@ async def begin_round(
 ) -> Round:
     """Trials that tripped are kept out. 409 while those of the round before wait or run. Takes seconds."""
     _refuse_while_recording(conductor, study_id)
-    found = await in_lab(request, later.next_round, study_id, runner.configuration, body.trials)
+    found = await in_lab(
+        request, bench.study.suggestion.next_round.next_round, study_id, runner.configuration, body.trials
+    )
 
     def take_in() -> Round:
         _refuse_while_recording(conductor, study_id)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from sqlalchemy import Connection, Table, insert, select, text
 
+from bench.store.address import database_of
 from bench.store.database import Database
 from bench.store.errors import StoreFileError, StoreFullError
 from bench.store.migration import migrate
@@ -51,7 +52,7 @@ def copy_into(database: Database, url: str) -> None:
     Raises:
         StoreFileError: it is not empty.
     """
-    target = Database(url, database.busy_timeout_s)
+    target = database_of(url, database.busy_timeout_s)
     try:
         migrate(target)
         with database.reading() as read, target.writing() as write:

@@ -12,7 +12,7 @@ from zlib import crc32
 from sqlalchemy import JSON, Connection, Table, delete
 from sqlalchemy.engine import make_url
 
-from bench.store.database import Database
+from bench.store.address import database_of
 from bench.store.errors import StoreFileError
 from bench.store.migration import migrate
 from bench.store.schema import CHAIN, METADATA, SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL, PlainText, UtcDateTime
@@ -50,7 +50,7 @@ def repair(source: str, target: Path) -> list[str]:
         raise StoreFileError(f"store '{path}' is not there; name the damaged file with --store")
     if target.exists():
         raise StoreFileError(f"repair: '{target}' is there already; name another file, or remove it")
-    made = Database(f"sqlite:///{target.absolute()}", 10.0)
+    made = database_of(f"sqlite:///{target.absolute()}", 10.0)
     try:
         migrate(made)
         lost = list(_copy(path, target))

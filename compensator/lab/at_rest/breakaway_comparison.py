@@ -10,9 +10,9 @@ from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect, Parameter, shape_parameters
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
 from compensator.lab.model.intervals import CONFIDENCE, ParameterEstimate
 from compensator.lab.model.linear import solve
-from compensator.lab.model.validation import HeldOut, relative_error, rms
 from compensator.lab.recordings.recording import FloatArray
 
 FEWEST_STARTS = 12  # fewer do not carry a regression

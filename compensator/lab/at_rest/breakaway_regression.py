@@ -13,9 +13,10 @@ import numpy as np
 
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
 from compensator.lab.effects.effect import Effect, Parameter, Shape
+from compensator.lab.model.held_out_error import HeldOut, HeldOutKind, relative_error, rms
 from compensator.lab.model.linear import Bounds, solve
 from compensator.lab.model.prediction import whole_inertia
-from compensator.lab.model.validation import FEWEST_TRIALS, HeldOut, HeldOutKind, relative_error, rms
+from compensator.lab.model.validation import FEWEST_TRIALS
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 LAG = "onset_lag"  # what stands for seeing the motion late

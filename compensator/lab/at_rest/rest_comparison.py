@@ -15,7 +15,7 @@ from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.rests import Windows, limits_of, windows_of
 from compensator.lab.chance import chance_in_words
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import relative_error, rms
+from compensator.lab.model.held_out_error import relative_error, rms
 from compensator.lab.recordings.recording import FloatArray
 
 SIGNIFICANT = 0.01

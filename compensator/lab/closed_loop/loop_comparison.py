@@ -8,8 +8,9 @@ import numpy as np
 from compensator.lab.closed_loop.control_law import ControlLaw, LawSource
 from compensator.lab.closed_loop.simulation import Simulated, simulate
 from compensator.lab.model.fitted import Fit, trained_trials, with_terms
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.model.intervals import without_each
-from compensator.lab.model.validation import FEWEST_TRIALS, rms
+from compensator.lab.model.validation import FEWEST_TRIALS
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR

@@ -11,7 +11,8 @@ from compensator.lab.at_rest.breakaway_comparison import BreakawayComparison, co
 from compensator.lab.at_rest.rest_comparison import RestComparison, compare_at_rest
 from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import HeldOut, held_out, relative_error, rms
+from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
+from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import BoolArray, Condition, IntArray
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.dataset import Dataset

@@ -15,8 +15,8 @@ from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.prediction import with_own_prediction
-from compensator.lab.model.validation import relative_error
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 

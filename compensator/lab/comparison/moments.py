@@ -7,7 +7,7 @@ import numpy as np
 
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import rms
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import available

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.linear import solve
-from compensator.lab.model.validation import relative_error
 
 UNEXPLAINED = 0.8  # of the effort: a rigid joint with friction explains more, whatever it lacks
 EXPLAINED = 0.75  # of the error: what an effect may leave of an effort that no mending of the data explains

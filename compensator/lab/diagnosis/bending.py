@@ -9,15 +9,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import LEAST_GAIN, SIGNIFICANT, with_effect
-from compensator.lab.model.fit import with_columns
+from compensator.lab.model.fit import with_columns, with_effect
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out
-from compensator.lab.screening.candidates import Candidates, gather_curves
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.validation import held_out
+from compensator.lab.model.weights import determination
+from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, among_all, score_of, screen_against_noise
+from compensator.lab.screening.gathering import gather_curves, with_noise
 
 STRONG = 6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
@@ -31,7 +34,7 @@ class Bending:
 
     def predicts_best(self, fit: Fit, candidates: Sequence[Candidate]) -> bool:
         """Whether it has a lower held-out error, for sure, than the model with any of the effects that can be it."""
-        known = fit.determination
+        known = determination(fit)
         others = [held_out(with_effect(fit, one.effect.name, one.shape), None, known) for one in _possible(candidates)]
         return all(held_out_gain(other, self.after).low > 0.0 for other in others)
 
@@ -51,7 +54,7 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     if not found or found[0].score <= 0.0 or among_all(found[0].p_value) > SIGNIFICANT:
         return None
     bent = with_columns(fit, found[0].block.name, gathered.curves.hysteresis_columns)
-    before, after = (held_out(model, None, fit.determination) for model in (fit, bent))
+    before, after = (held_out(model, None, determination(fit)) for model in (fit, bent))
     gain = held_out_gain(before, after)
     sure = gain.low > 0.0 or found[0].score >= VERY_STRONG
     return Bending(found[0], after) if sure and gain.value >= LEAST_GAIN else None

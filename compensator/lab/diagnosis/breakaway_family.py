@@ -14,10 +14,11 @@ from compensator.lab.at_rest.breakaway_regression import (
     lag_column,
 )
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
-from compensator.lab.chance import chance_in_words
+from compensator.lab.chance import SIGNIFICANT, chance_in_words
+from compensator.lab.diagnosis.answer import EXAMINED, Answer
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
-from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE, SIGNIFICANT, is_confirmed
-from compensator.lab.diagnosis.families import EXAMINED, Answer
+from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.diagnosis.wording import named_in_words
@@ -26,10 +27,9 @@ from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import chance_not_worse, held_out_gain
-from compensator.lab.model.validation import HeldOut
+from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import (
-    Base,
-    Block,
     Evidence,
     among_all,
     inflation_of,

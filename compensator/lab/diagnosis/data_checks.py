@@ -4,11 +4,11 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from compensator.lab.diagnosis.alien_effort import alien_effort
-from compensator.lab.diagnosis.wording import some_of
+from compensator.lab.left_over.bursts import some_of
 from compensator.lab.left_over.orders import LEAST_OF_EFFORT
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.model.linear import solve, solve_without
-from compensator.lab.model.validation import rms
 from compensator.lab.recordings.processing import SATURATED_DUTY
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.stuck_sensor import stuck_positions

@@ -8,17 +8,16 @@ and shapes), does it help (held-out error, resampled by whole trials).
 from math import nan
 
 from compensator.lab import progress
-from compensator.lab.at_rest.rest_comparison import compare_at_rest
+from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words, compare_at_rest
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.families import Answer
 from compensator.lab.diagnosis.four_families import LEFT, STAGES, judged
-from compensator.lab.diagnosis.note import Note
-from compensator.lab.diagnosis.notes import at_rest, differs_by_run
+from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.remaining import what_remains
-from compensator.lab.diagnosis.run_to_run import differences_by_run
+from compensator.lab.diagnosis.run_to_run import ByRun, by_run_in_words, differences_by_run
 from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
@@ -26,8 +25,9 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.candidates import Candidates, gather
+from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import least_p_value, screen
+from compensator.lab.screening.gathering import gather
 
 
 def diagnose(fit: Fit) -> Diagnosis:
@@ -112,13 +112,13 @@ def _at_rest(fit: Fit) -> list[Note]:
     found = compare_at_rest(fit)
     if found is None or not found.is_evidence:
         return []
-    return [at_rest(found, fit.dataset.effort_definition.unit)]
+    return [_says_at_rest(found, fit.dataset.effort_definition.unit)]
 
 
 def _by_run(fit: Fit) -> list[Note]:
     """What differs from run to run with what is named in the model: a floor, or the work of what is still missing."""
     unit = fit.dataset.effort_definition.unit
-    return [differs_by_run(one, unit) for one in differences_by_run(fit, held_out(fit))]
+    return [_differs_by_run(one, unit) for one in differences_by_run(fit, held_out(fit))]
 
 
 def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[Note]:
@@ -149,3 +149,27 @@ def _classes(candidates: list[Candidate]) -> list[tuple[str, ...]]:
         placed.update(members)
         classes.append(tuple(members))
     return classes
+
+
+def _says_at_rest(found: RestComparison, unit: str) -> Note:
+    """What rests say against the model."""
+    values: dict[str, Value] = {
+        "stretches": found.windows,
+        "outside": found.outside,
+        "largest": found.largest,
+        "unit": unit,
+    }
+    return Note("at-rest", at_rest_in_words(found, unit), values)
+
+
+def _differs_by_run(found: ByRun, unit: str) -> Note:
+    """A constant that differs from run to run."""
+    values: dict[str, Value] = {
+        "what": found.what,
+        "scatter": found.scatter,
+        "unit": unit,
+        "trial": found.trial,
+        "difference": found.difference,
+        "floor": found.floor,
+    }
+    return Note("differs-by-run", by_run_in_words(found, unit), values)

@@ -7,18 +7,22 @@ from functools import partial
 import numpy as np
 
 from compensator.lab import progress
+from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
-from compensator.lab.effects.effect import Effect, EffectRows, MotionRows, Shape
-from compensator.lab.model.fit import fit_model, fit_sliding, with_columns
+from compensator.lab.effects.effect import Effect, MotionRows
+from compensator.lab.model.fit import fit_sliding, with_columns, with_effect
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.validation import held_out
+from compensator.lab.model.weights import determination
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
+from compensator.lab.screening.evidence import Evidence, Screening, kept_evidence, new_directions
 from compensator.lab.screening.nuisance import smoothed_signs
 
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
@@ -52,11 +56,7 @@ def _ties(item: Evidence, best: Evidence) -> bool:
     return alike and item.score >= best.score - TIE
 
 
-SIGNIFICANT = 0.01
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
-LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
-LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
-LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
 NOT_WORSE = 0.10  # one-sided
 MEASURING_CHAIN = "measuring chain"
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -138,61 +138,12 @@ def gain_beside_chain(effect: Effect, fit: Fit, explained: Fit, held_out: Callab
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
     rows = show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
     # near reversals a part of the whole error is asked for, since every chain leaves a little there
-    return held_out(fit, rows, fit.determination if show_in == "sliding" else None)
+    return held_out(fit, rows, determination(fit) if show_in == "sliding" else None)
 
 
 def share_of(show_in: MotionRows) -> float:
     """Of the evidence of the likeliest effect: what explains less is the shadow of something else."""
     return FORMULA_SHARE if show_in == "sliding" else SHARE_NEAR_REVERSALS
-
-
-def is_confirmed(candidate: Candidate) -> bool:
-    """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
-
-    What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
-    else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
-    evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
-    falls at all; near reversals, where every chain leaves a little, if it falls as much as is asked for even without
-    the trial that gains most. There it has to fall beside what the measuring chain leaves, too.
-    """
-    beside = candidate.beside_chain
-    stands = beside is None or _helps(candidate, beside, LEAST_GAIN)
-    return is_sure(candidate) and candidate.physical and stands
-
-
-def is_sure(candidate: Candidate) -> bool:
-    """Whether a candidate is confirmed but for the size and sign that it would need."""
-    strong = candidate.score >= VERY_STRONG
-    no_luck = candidate.p_value <= SIGNIFICANT or strong
-    before, gain = candidate.before, candidate.gain
-    falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
-    least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    return candidate.score > 0.0 and no_luck and falls and _helps(candidate, gain, least)
-
-
-def _helps(candidate: Candidate, gain: Gain, least: float) -> bool:
-    """Whether a gain is large enough, and no luck; trials drawn again need not be sure where the evidence is strong."""
-    strong = candidate.score >= VERY_STRONG
-    return gain.value >= least and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows, least)))
-
-
-def _lasts(gain: Gain, rows: EffectRows, least: float) -> bool:
-    """Whether a gain that trials drawn again are not sure of is nevertheless one of more than a single trial."""
-    if rows == "moving":
-        return gain.without_best >= least
-    return rows == "sliding"
-
-
-def with_effect(fit: Fit, name: str, shape: Shape, sliding: Fit | None = None) -> Fit:
-    """The model and one more effect of a given shape, refitted at the shapes already found.
-
-    Args:
-        fit: of the model.
-        name: of the effect.
-        shape: of it.
-        sliding: the model without it on rows of steady sliding, where it shows in others and that is known.
-    """
-    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: shape}, sliding)
 
 
 def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:

@@ -4,17 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
-from compensator.lab.diagnosis.examination import (
-    SIGNIFICANT,
-    as_in_the_ladder,
-    best_shapes,
-    examine,
-    is_confirmed,
-    is_sure,
-    share_of,
-)
-from compensator.lab.diagnosis.note import Note
+from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.answer import EXAMINED, Answer
+from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.examination import as_in_the_ladder, best_shapes, examine, share_of
 from compensator.lab.diagnosis.physical import is_past_scan, is_too_small, is_within_bounds
 from compensator.lab.diagnosis.remaining import beside_a_name, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
@@ -25,33 +19,8 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all
 
-EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 FEWEST_SHOWN = 2
 LARGE_GAIN = 0.25  # near reversals: five times what is asked for there, since every chain leaves a little
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What one family of effects has to say.
-
-    Attributes:
-        strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
-        remains: more than noise is left that nothing named here explains.
-        explained: the model with the effect that is named, where one of the joint or the chain is.
-        named: evidence for that effect.
-        Others as in `Diagnosis`.
-    """
-
-    verdict: Verdict
-    sentence: str
-    p_value: float
-    candidates: list[Candidate]
-    driver: str | None
-    notes: list[Note]
-    strength: float = 0.0
-    remains: bool = False
-    explained: Fit | None = None
-    named: Evidence | None = None
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:

@@ -6,18 +6,19 @@ import numpy as np
 
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
-from compensator.lab.diagnosis.families import Answer, answer_of
+from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.regimes import Regime
-from compensator.lab.screening.candidates import Candidates, gather
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, kept_evidence, screen, screen_against_noise
+from compensator.lab.screening.gathering import gather, with_noise
 from compensator.lab.screening.own_load import on_own_load
 
 FEWEST_REVERSAL_ROWS = 40

@@ -2,20 +2,22 @@
 
 import numpy as np
 
-from compensator.lab.diagnosis import notes
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.bending import still_bending
-from compensator.lab.diagnosis.examination import SIGNIFICANT
-from compensator.lab.diagnosis.note import Note
-from compensator.lab.diagnosis.wording import bursts_in_words, unexplained_in_words, wandering_in_words
-from compensator.lab.left_over.bursts import Bursts, bursts_of, is_rattle
-from compensator.lab.left_over.clear_rows import left_for_sure
-from compensator.lab.left_over.left_over import LeftOver, left_over
+from compensator.lab.diagnosis.note import Note, Value
+from compensator.lab.diagnosis.wording import LOOK_AT_HOSES
+from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
+from compensator.lab.left_over.constancy import Change, changing_in_words
+from compensator.lab.left_over.left_over import LeftOver, left_for_sure, left_over, unexplained_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
+from compensator.lab.left_over.swinging import Swing, swinging_in_words
+from compensator.lab.left_over.wandering import Wandering, wandering_in_words
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
-from compensator.lab.screening.candidates import Candidates, gather_curves
+from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, screen
+from compensator.lab.screening.gathering import gather_curves
 
 
 def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: float) -> str | None:
@@ -41,7 +43,7 @@ def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence) -> list[
     """What is left of an effect that is named: beside its formula, or of what bends along, which it only imitates."""
     if found := what_remains(explained, gathered, best.block.name):
         return found
-    return [notes.bends_along(best.block.name)] if still_bending(explained, gathered, best) else []
+    return [_bends_along(best.block.name)] if still_bending(explained, gathered, best) else []
 
 
 def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
@@ -54,14 +56,14 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
         against_motion = rest.evidence[0].block.name.endswith("against motion")
-        return [notes.structure_remains(name, driver.title, against_motion)]
+        return [_structure_remains(name, driver.title, against_motion)]
     if left.change is not None:
-        return [notes.varies_by_stretch(name, left.change)]
+        return [_varies_by_stretch(name, left.change)]
     if left.swing is not None:
-        return [notes.swings(name, left.swing)]
+        return [_swings(name, left.swing)]
     if left.wandering is not None:
-        return [notes.wanders(name, left.wandering, _wanders(fit, left))]
-    return [notes.unexplained_remains(name, left.remainder.share)]
+        return [_says_wanders(name, left.wandering, _wanders(fit, left))]
+    return [_unexplained_remains(name, left.remainder.share)]
 
 
 def _bursts(gathered: Candidates) -> Bursts | None:
@@ -87,3 +89,53 @@ def _nearest_driver(generic: Screening) -> str | None:
     """The variable whose free curve the evidence pays for, though it may not hold on other rows; None without one."""
     best = generic.evidence[0] if generic.evidence else None
     return best.block.name if best is not None and best.score > 0.0 else None
+
+
+def _structure_remains(name: str, driver: str, against_motion: bool) -> Note:
+    """With an effect in the model, structure over a variable is left."""
+    how = " against the motion" if against_motion else ""
+    text = f"After {name}, structure over {driver}{how} remains; add it and diagnose again."
+    return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": against_motion})
+
+
+def _varies_by_stretch(name: str, change: Change) -> Note:
+    """With an effect in the model, something constant differs from one stretch to the next."""
+    text = f"After {name}, {changing_in_words(change)}; repeat a trial to see whether it comes again."
+    return Note("varies-by-stretch", text, {"effect": name, "what": change.what, "share": change.share})
+
+
+def _swings(name: str, swing: Swing) -> Note:
+    """With an effect in the model, what is left swings at one frequency."""
+    text = f"After {name}, what is left {swinging_in_words(swing)}."
+    values: dict[str, Value] = {"effect": name, "frequency_hz": swing.frequency_hz, "of_voltage": swing.of_voltage}
+    return Note("swings", text, values)
+
+
+def _says_wanders(name: str, wandering: Wandering, words: str) -> Note:
+    """With an effect in the model, something constant differs for seconds at a time; `words` say what."""
+    text = f"After {name}, {words}; repeat a trial to see whether it comes again."
+    values: dict[str, Value] = {
+        "effect": name,
+        "what": wandering.what,
+        "share": wandering.share,
+        "jumps": wandering.jumps,
+    }
+    return Note("wanders", text, values)
+
+
+def _unexplained_remains(name: str, share: float) -> Note:
+    """With an effect in the model, more than noise is left, and over no variable."""
+    text = (
+        f"After {name}, what is left is still more than noise, {share:.1%} of the effort, and "
+        "has structure over no variable that is measured; add it and diagnose again."
+    )
+    return Note("unexplained-remains", text, {"effect": name, "share": share})
+
+
+def _bends_along(name: str) -> Note:
+    """What an effect that is named imitates in part."""
+    text = (
+        f"{name} describes it in part: beside it, what is left varies with where the joint has turned back, as what "
+        f"bends along and slides does. {LOOK_AT_HOSES}"
+    )
+    return Note("bends-along", text, {"effect": name})

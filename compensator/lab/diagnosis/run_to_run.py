@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import HeldOut, relative_error
+from compensator.lab.model.held_out_error import HeldOut, relative_error
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.evidence import inflation_of
 

@@ -13,14 +13,17 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from compensator.lab import progress
+from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, explained_part
-from compensator.lab.diagnosis.examination import SIGNIFICANT
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain
-from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.validation import held_out
+from compensator.lab.model.weights import determination
 from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
@@ -129,7 +132,7 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search
 
 
 def _is_to_add(diagnosis: Diagnosis, explained: float) -> bool:
-    return diagnosis.verdict == "missing" and diagnosis.slight_one(explained) is None
+    return diagnosis.verdict == "missing" and slight_one(diagnosis, explained) is None
 
 
 def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Search | None:
@@ -179,7 +182,7 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
             swapped = fit_effects(
                 fit.dataset, [better if other == name else other for other in fit.names], fit.training
             )
-            known = without.determination
+            known = determination(without)
             if held_out(swapped, weight=known).rms < held_out(fit, weight=known).rms:
                 fit = swapped
                 steps.append(_step("swap", str(better), name, fit))
@@ -200,7 +203,7 @@ def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
         without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
-        known = without.determination
+        known = determination(without)
         if held_out_gain(held_out(alike, rows, known), held_out(fit, rows, known)).low <= 0.0:
             fit = without
             steps.append(_step("drop", name, None, fit))

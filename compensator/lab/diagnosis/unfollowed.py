@@ -10,9 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.bending import bending
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
-from compensator.lab.diagnosis.examination import FORMULA_SHARE, SIGNIFICANT, is_confirmed
+from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect
 from compensator.lab.effects.free_curve import AGAINST_MOTION, name_of
@@ -21,6 +23,7 @@ from compensator.lab.model.fit import fit_effects, widened, with_columns
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.validation import held_out
+from compensator.lab.model.weights import determination
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
 from compensator.lab.screening.candidates import Candidates
@@ -76,7 +79,7 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | Non
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
-    known = fit.determination
+    known = determination(fit)
     return best if held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known)).low > 0.0 else None
 
 

@@ -1,25 +1,13 @@
 """What a diagnosis says in words."""
 
-from collections.abc import Sequence
-
-from compensator.lab.chance import chance_in_words
+from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
-from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.left_over.bursts import Bursts
-from compensator.lab.left_over.constancy import Change
-from compensator.lab.left_over.constants import DRY_FRICTION
-from compensator.lab.left_over.left_over import LeftOver
-from compensator.lab.left_over.orders import Line
-from compensator.lab.left_over.swinging import Swing
-from compensator.lab.left_over.varying import Varying
-from compensator.lab.left_over.wandering import Wandering
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
+from compensator.lab.screening.base import HYSTERESIS_DRIVER as HYSTERESIS
 from compensator.lab.screening.evidence import least_p_value
-from compensator.lab.screening.generic import HYSTERESIS_DRIVER as HYSTERESIS
 
-MOST_NAMES = 3
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 
@@ -93,81 +81,6 @@ def _nothing(p_value: float) -> str:
     )
 
 
-def unexplained_in_words(
-    left: LeftOver, driver: str | None, p_value: float, stretches: int, facts: Facts, wanders: str = ""
-) -> str:
-    """The answer where something is left that no effect and no curve explains.
-
-    Args:
-        left: what it is.
-        driver: that it varies with most; None where it varies with none.
-        p_value: as in a diagnosis.
-        stretches: independent stretches of BLOCK_S that it rests on.
-        facts: of the joint.
-        wanders: what is another one for seconds, in words; empty where nothing is.
-    """
-    none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
-    if least_p_value(stretches) > SIGNIFICANT:
-        none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
-    if left.change is not None:
-        how = changing_in_words(left.change)
-    elif left.line is not None and (left.following is None or left.line.chance <= left.following.chance):
-        how = f"it {recurring_in_words(left.line, facts)}"
-    elif left.swing is not None:
-        how = f"it {swinging_in_words(left.swing)}"
-    elif wanders:
-        how = wanders
-    elif left.varying is not None and left.following is None:
-        how = f"it {varying_in_words(left.varying)}"
-    elif driver is not None or left.following is not None:
-        named = driver if left.following is None else left.following.driver
-        how = f"it varies with {named}, most of all that is measured"
-    else:
-        how = "it varies with nothing that is measured"
-    return (
-        f"{none}, yet what is left, {left.remainder.share:.1%} of the effort, is more than noise; {how}. "
-        "Repeat a trial: what comes again is the joint's, what does not has changed since."
-    )
-
-
-def recurring_in_words(line: Line, facts: Facts) -> str:
-    """What comes back with the position, how often, and where to look."""
-    per = "a turn of the joint" if facts.joint == "rotary" else f"per {facts.position_unit}"
-    way = ", against the motion" if line.against_motion else ", and grows with the speed" if line.growing else ""
-    return f"comes back with the position about {line.order:.3g} times {per}{way}: look at what goes round so often"
-
-
-def varying_in_words(varying: Varying) -> str:
-    """Whose coefficient is another one, and at what."""
-    return f"has the form of {varying.effect.lower()} that varies with {varying.condition}"
-
-
-def swinging_in_words(swing: Swing) -> str:
-    """What most trials share, and where to look."""
-    where = "with the voltage: look at the supply" if swing.of_voltage else "in most trials: look at what turns"
-    return f"swings at about {swing.frequency_hz:.2g} Hz {where}"
-
-
-def changing_in_words(change: Change) -> str:
-    """What is not as constant as the model takes it for."""
-    return f"{change.what} changes from one stretch of {BLOCK_S:g} s to the next, by {change.share:.1%} of the effort"
-
-
-def wandering_in_words(wandering: Wandering, trials: Sequence[str], unit: str) -> str:
-    """What is another one for seconds, by how much, and where to look for that."""
-    moments = " and ".join(f"{trials[index]} at {at_s:.1f} s" for index, at_s in wandering.changes)
-    of = "it" if wandering.what == DRY_FRICTION else "the effort"
-    if wandering.jumps:
-        return (
-            f"{wandering.what} jumps between two values, {wandering.size:.2g} {unit} apart, {wandering.share:.1%} of "
-            f"{of}; most of all in {moments}"
-        )
-    return (
-        f"{wandering.what} is another one for seconds at a time, by {wandering.size:.2g} {unit}, {wandering.share:.1%} "
-        f"of {of}; it changes most in {moments}"
-    )
-
-
 def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: float) -> str:
     """The answer where something comes up over a distance after a reversal that is not the friction itself."""
     least = " or more" if too_far else ""
@@ -177,21 +90,4 @@ def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: flo
         f"over some {bends.shape[0]:.2g} {facts.position_unit}{least}, and {why} for "
         f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
         f"fall from {bends.before:.2%} to {bends.after:.2%}). {LOOK_AT_HOSES}"
-    )
-
-
-def some_of(names: Sequence[str]) -> str:
-    """The first few of them, and how many more there are."""
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(names[:MOST_NAMES]) + more
-
-
-def bursts_in_words(bursts: Bursts, trials: Sequence[str], p_value: float) -> str:
-    """The answer where a few stretches leave far more than the others."""
-    return (
-        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
-        f"{bursts.of_effort:.1%} of the effort, comes in bursts: {bursts.stretches} of {bursts.of} stretches of "
-        f"{BLOCK_S:g} s scatter up to {bursts.largest:.1f} times as much as the others, in {some_of(trials)}. "
-        "Something slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these "
-        "trials with less load."
     )

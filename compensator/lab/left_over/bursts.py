@@ -4,14 +4,18 @@ What is missing from a model comes back with the motion that drives it. A clutch
 cable that catches does not: it leaves most stretches alone, and others not. No column over a driver can hold that.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.chance import chance_in_words
 from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.recording import BoolArray, FloatArray
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import BLOCK_S, Dataset
+
+MOST_NAMES = 3
 
 FEWEST_ROWS = 8  # of a stretch, each as far as the model determines its effort
 FEWEST_STRETCHES = 10
@@ -93,3 +97,20 @@ def is_rattle(bursts: Bursts, dataset: Dataset, residual: FloatArray, rows: Bool
     """
     theirs = np.isin(dataset.trial_index, bursts.trials)
     return remainder_of(dataset, residual[theirs[rows]], rows & theirs).denser < 1.0
+
+
+def some_of(names: Sequence[str]) -> str:
+    """The first few of them, and how many more there are."""
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more
+
+
+def bursts_in_words(bursts: Bursts, trials: Sequence[str], p_value: float) -> str:
+    """The answer where a few stretches leave far more than the others."""
+    return (
+        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
+        f"{bursts.of_effort:.1%} of the effort, comes in bursts: {bursts.stretches} of {bursts.of} stretches of "
+        f"{BLOCK_S:g} s scatter up to {bursts.largest:.1f} times as much as the others, in {some_of(trials)}. "
+        "Something slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these "
+        "trials with less load."
+    )

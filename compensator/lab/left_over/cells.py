@@ -7,12 +7,11 @@ reversals there are and the quicker, as in a chirp, so that each trial has its o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from compensator.lab.left_over.constants import Constants
-from compensator.lab.left_over.variance_components import Part
+from compensator.lab.left_over.variance_components import CellsOfTrial, Part
 from compensator.lab.recordings.recording import FloatArray, IntArray
 
 LASTS_S = 3.0  # what it has become
@@ -24,22 +23,6 @@ MOST_TRIALS = 60  # spread over all
 FEWEST_ROWS = 4  # of a stroke: fewer are all near its reversals
 NAMED = 2  # trials
 TINY = float(np.finfo(float).tiny)
-
-
-@dataclass(frozen=True)
-class CellsOfTrial:
-    """Cells of a trial, each the mean of its rows, of unit noise.
-
-    Attributes:
-        index: of the trial; time_s: of each cell, shape (c,).
-        size: what wanders has of each, shape (c,).
-        part: of the residuals, its components those of the null and, last, what wanders.
-    """
-
-    index: int
-    time_s: FloatArray
-    size: FloatArray
-    part: Part
 
 
 def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:

@@ -14,9 +14,11 @@ import numpy as np
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.drift import Moments, chance_of_drift, moments_of
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.model.validation import rms
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.recordings.recording import FloatArray, IntArray
-from compensator.lab.screening.evidence import Base, inflation_of
+from compensator.lab.rows.dataset import BLOCK_S
+from compensator.lab.screening.base import Base
+from compensator.lab.screening.evidence import inflation_of
 
 FEWEST_ROWS = 8  # of a stretch
 CHANCE = PLAIN.change  # of so much change in noise alone
@@ -131,3 +133,8 @@ def _change(
     explained = float(base.residual @ base.residual) - rest
     chance = chance_of_drift(moments, base, column, noise)
     return Change(what, chance, float(np.sqrt(max(explained - rank * noise, 0.0) / power)))
+
+
+def changing_in_words(change: Change) -> str:
+    """What is not as constant as the model takes it for."""
+    return f"{change.what} changes from one stretch of {BLOCK_S:g} s to the next, by {change.share:.1%} of the effort"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening.evidence import Base
+from compensator.lab.screening.base import Base
 
 DRY_FRICTION, OFFSET = "dry friction", "a constant force or the zero of the angle"
 

@@ -16,7 +16,7 @@ from scipy.stats import gamma
 
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening.evidence import Base
+from compensator.lab.screening.base import Base
 
 MEMORY_S = 2.0  # as long as a stretch
 MOMENT_S = 0.5  # what is shorter is noise

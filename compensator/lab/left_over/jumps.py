@@ -16,8 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.left_over.cells import CellsOfTrial
-from compensator.lab.left_over.variance_components import likeliest_of_moments
+from compensator.lab.left_over.variance_components import CellsOfTrial, likeliest_of_moments
 from compensator.lab.recordings.recording import FloatArray
 
 MEAN_S = 4.0  # between jumps: some seconds

@@ -2,23 +2,33 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.left_over.constancy import Change, change_of
+from compensator.lab.left_over.constancy import Change, change_of, changing_in_words
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import NAMED, PLAIN
 from compensator.lab.left_over.following import Following, following_of
-from compensator.lab.left_over.orders import Line, growing_line_of, line_of
+from compensator.lab.left_over.orders import Line, growing_line_of, line_of, recurring_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
 from compensator.lab.left_over.ripple import ripple_of
-from compensator.lab.left_over.swinging import Swing, swing_of
-from compensator.lab.left_over.varying import Varying, varying_of
+from compensator.lab.left_over.swinging import Swing, swing_of, swinging_in_words
+from compensator.lab.left_over.varying import Varying, varying_in_words, varying_of
 from compensator.lab.left_over.wandering import Wandering, wandering_of
 from compensator.lab.left_over.white_rows import WhiteRows
-from compensator.lab.model.fit import widened
+from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import RowWeights
-from compensator.lab.recordings.regimes import Regime
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, gather_curves
+from compensator.lab.recordings.facts import Facts
+from compensator.lab.recordings.recording import BoolArray
+from compensator.lab.recordings.regimes import Regime, within_spread
+from compensator.lab.rows.dataset import BLOCK_S, Dataset
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.evidence import least_p_value
+from compensator.lab.screening.gathering import gather_curves, with_noise
+
+LEFT_SHARE = 0.8  # of the rows, at least: at a low cut-off the spread is most of a stroke, and few rows tell little
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,3 +108,71 @@ def _is_plain(fit: Fit) -> bool:
     """Whether a model is what every joint has: a further formula that is nearly right leaves lines and curves, too."""
     plain = default_effects(fit.dataset.facts)
     return all(effect.name in plain or effect.pipeline for effect in fit.effects)
+
+
+def unexplained_in_words(
+    left: LeftOver, driver: str | None, p_value: float, stretches: int, facts: Facts, wanders: str = ""
+) -> str:
+    """The answer where something is left that no effect and no curve explains.
+
+    Args:
+        left: what it is.
+        driver: that it varies with most; None where it varies with none.
+        p_value: as in a diagnosis.
+        stretches: independent stretches of BLOCK_S that it rests on.
+        facts: of the joint.
+        wanders: what is another one for seconds, in words; empty where nothing is.
+    """
+    none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
+    if least_p_value(stretches) > SIGNIFICANT:
+        none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
+    if left.change is not None:
+        how = changing_in_words(left.change)
+    elif left.line is not None and (left.following is None or left.line.chance <= left.following.chance):
+        how = f"it {recurring_in_words(left.line, facts)}"
+    elif left.swing is not None:
+        how = f"it {swinging_in_words(left.swing)}"
+    elif wanders:
+        how = wanders
+    elif left.varying is not None and left.following is None:
+        how = f"it {varying_in_words(left.varying)}"
+    elif driver is not None or left.following is not None:
+        named = driver if left.following is None else left.following.driver
+        how = f"it varies with {named}, most of all that is measured"
+    else:
+        how = "it varies with nothing that is measured"
+    return (
+        f"{none}, yet what is left, {left.remainder.share:.1%} of the effort, is more than noise; {how}. "
+        "Repeat a trial: what comes again is the joint's, what does not has changed since."
+    )
+
+
+def left_for_sure(fit: Fit, gathered: Candidates) -> LeftOver | None:
+    """What a model leaves on the rows that are judged; None where it is no more than noise, or of reversals alone.
+
+    The final filter spreads what happens at a reversal to both sides, in the same way in every trial of one motion.
+    What reaches rows that slide so is small beside any effect, but follows speed, load or temperature, as reversals do,
+    and is no noise. To name an effect these rows are worth more than they mislead; that something is left, be it so
+    small, must hold without them.
+
+    Args:
+        fit: the model.
+        gathered: what it may be missing.
+    """
+    left = left_over(gathered)
+    if not left.is_more_than_noise:
+        return None
+    clear = fit.training & ~_reached(fit.dataset)
+    if gathered.show_in != "sliding" or clear.sum() < LEFT_SHARE * fit.training.sum():
+        return left
+    again = with_noise(gather_curves(fit_model(fit.dataset, fit.names, clear, fit.shapes)))
+    return left if left_over(again).is_more_than_noise else None
+
+
+def _reached(dataset: Dataset) -> BoolArray:
+    """Rows that something of a reversal reaches through the filter, shape (N,)."""
+    reached = []
+    for trial in dataset.trials:
+        signals = trial.signals
+        reached.append(within_spread(signals.velocity, dataset.scales.slow, signals.rate_hz, dataset.cutoff_hz))
+    return np.concatenate([own[trial.picked] for own, trial in zip(reached, dataset.trials, strict=True)])

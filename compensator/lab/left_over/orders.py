@@ -20,8 +20,9 @@ from compensator.lab.effects.effect import Motion
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.waves import Waves
 from compensator.lab.left_over.white_rows import FORETOLD, LOOK_AGAIN, WhiteRows
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.model.linear import orthonormal
-from compensator.lab.model.validation import rms
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
@@ -203,3 +204,10 @@ def _sizes_of(white: WhiteRows, columns: FloatArray) -> FloatArray:
     """Of cosines and sines (n, 2m); 0 where they cannot be told from the model, or from each other."""
     waves = Waves.of(white.whitening.whitened(columns), white.basis, white.residual)
     return waves.where(np.all(waves.left > NEW * waves.whole, axis=0))
+
+
+def recurring_in_words(line: Line, facts: Facts) -> str:
+    """What comes back with the position, how often, and where to look."""
+    per = "a turn of the joint" if facts.joint == "rotary" else f"per {facts.position_unit}"
+    way = ", against the motion" if line.against_motion else ", and grows with the speed" if line.growing else ""
+    return f"comes back with the position about {line.order:.3g} times {per}{way}: look at what goes round so often"

@@ -33,8 +33,8 @@ from compensator.lab.left_over.swinging import (
 )
 from compensator.lab.left_over.waves import Waves
 from compensator.lab.recordings.recording import FloatArray, IntArray
+from compensator.lab.screening.base import Base
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-from compensator.lab.screening.evidence import Base
 
 CARRIERS = 2  # the other is none, of `swinging.py`
 CHANCE = PLAIN.ripple  # of such a line in noise alone, with any carrier

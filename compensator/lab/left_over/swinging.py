@@ -173,3 +173,9 @@ def _noise_at(centre_hz: float, every_hz: FloatArray, powers: FloatArray, width_
     chosen = [(np.abs(apart) <= AROUND_HZ) & (every_hz >= LEAST_HZ)]
     chosen += [(way * apart >= BESIDE[0] * width_hz) & (way * apart <= BESIDE[1] * width_hz) for way in (-1, 1)]
     return max(float(np.median(powers[:, some])) for some in chosen if some.any())
+
+
+def swinging_in_words(swing: Swing) -> str:
+    """What most trials share, and where to look."""
+    where = "with the voltage: look at the supply" if swing.of_voltage else "in most trials: look at what turns"
+    return f"swings at about {swing.frequency_hz:.2g} Hz {where}"

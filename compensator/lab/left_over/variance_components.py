@@ -133,6 +133,22 @@ def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:
     return Likelihood(value, gradient, weighed)
 
 
+@dataclass(frozen=True)
+class CellsOfTrial:
+    """Cells of a trial, each the mean of its rows, of unit noise.
+
+    Attributes:
+        index: of the trial; time_s: of each cell, shape (c,).
+        size: what wanders has of each, shape (c,).
+        part: of the residuals, its components those of the null and, last, what wanders.
+    """
+
+    index: int
+    time_s: FloatArray
+    size: FloatArray
+    part: Part
+
+
 def _inverse_of(covariance: FloatArray) -> tuple[FloatArray, float]:
     """The inverse (c, c), for a sixth of what that of any matrix would take, and the logarithm of the determinant."""
     root = np.linalg.cholesky(covariance)

@@ -102,3 +102,8 @@ def _conditions(fit: Fit, rows: "np.ndarray[tuple[int], np.dtype[np.bool_]]") ->
         if np.isfinite(values).all() and np.ptp(own) > SAME * (1.0 + np.abs(own).max()):
             found[name] = (values - own.mean()) / own.std()
     return found
+
+
+def varying_in_words(varying: Varying) -> str:
+    """Whose coefficient is another one, and at what."""
+    return f"has the form of {varying.effect.lower()} that varies with {varying.condition}"

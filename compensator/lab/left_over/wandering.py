@@ -12,17 +12,18 @@ chi-squared of one degree of freedom in the others (Self, Liang 1987).
 What jumps between two values may be told by these where its variance is not sure (`jumps.py`).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import chi2
 
-from compensator.lab.left_over.cells import CellsOfTrial, cells_of, most_changed
+from compensator.lab.left_over.cells import cells_of, most_changed
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.jumps import jumps_of
-from compensator.lab.left_over.variance_components import likeliest
-from compensator.lab.model.validation import rms
+from compensator.lab.left_over.variance_components import CellsOfTrial, likeliest
+from compensator.lab.model.held_out_error import rms
 
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
 LEAST_OF_EFFORT = 0.001  # the same of a constant force
@@ -95,3 +96,18 @@ def _wandering(what: str, size: float, trials: list[CellsOfTrial], most: float) 
 def chance_of(gained: float) -> float:
     """Of so much more likelihood, as twice its logarithm, by a component that is not there."""
     return 0.5 * float(chi2.sf(gained, 1)) if gained > 0.0 else 1.0
+
+
+def wandering_in_words(wandering: Wandering, trials: Sequence[str], unit: str) -> str:
+    """What is another one for seconds, by how much, and where to look for that."""
+    moments = " and ".join(f"{trials[index]} at {at_s:.1f} s" for index, at_s in wandering.changes)
+    of = "it" if wandering.what == DRY_FRICTION else "the effort"
+    if wandering.jumps:
+        return (
+            f"{wandering.what} jumps between two values, {wandering.size:.2g} {unit} apart, {wandering.share:.1%} of "
+            f"{of}; most of all in {moments}"
+        )
+    return (
+        f"{wandering.what} is another one for seconds at a time, by {wandering.size:.2g} {unit}, {wandering.share:.1%} "
+        f"of {of}; it changes most in {moments}"
+    )

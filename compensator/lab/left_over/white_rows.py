@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.model.linear import orthonormal
-from compensator.lab.model.validation import rms
 from compensator.lab.model.weights import NORMAL
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates, noise_of

@@ -2,13 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.model.linear import Bounds, Term
-from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
 
@@ -80,18 +78,6 @@ class Fit:
         """Weighted columns (n, K) and target (n,) of the training rows."""
         weight = self.weight[self.training]
         return weight[:, None] * self.columns[self.training], weight * self.target[self.training]
-
-    @cached_property
-    def determination(self) -> FloatArray:
-        """How well the model determines the effort of every row, at most 1, shape (N,): less where it bends.
-
-        Models are held against each other by what they know: beside a dead time, rows without current say nothing.
-        """
-        dataset = self.dataset
-        if not dataset.is_bent:
-            return np.ones(len(dataset.effort))
-        every = np.ones(len(dataset.effort), dtype=bool)
-        return RowWeights.learnt(dataset, self.residual, self.training).determined(dataset, every)
 
     @property
     def predicted(self) -> FloatArray:

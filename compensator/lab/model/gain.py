@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.model.validation import HeldOut, on_even_terms
+from compensator.lab.model.held_out_error import HeldOut, on_even_terms
 from compensator.lab.recordings.recording import FloatArray
 
 RESAMPLES = 999

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.dataset import Dataset
@@ -63,6 +64,18 @@ class RowWeights:
         """How well the model determines the effort of each chosen row, at most 1, its steadiness included."""
         found: FloatArray = dataset.steadiness[rows] * self.bent[_bends(dataset, rows)]
         return found
+
+
+def determination(fit: Fit) -> FloatArray:
+    """How well a model determines the effort of every row, at most 1, shape (N,): less where it bends.
+
+    Models are held against each other by what they know: beside a dead time, rows without current say nothing.
+    """
+    dataset = fit.dataset
+    if not dataset.is_bent:
+        return np.ones(len(dataset.effort))
+    every = np.ones(len(dataset.effort), dtype=bool)
+    return RowWeights.learnt(dataset, fit.residual, fit.training).determined(dataset, every)
 
 
 def row_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> FloatArray:

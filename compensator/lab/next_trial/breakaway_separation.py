@@ -20,7 +20,7 @@ from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening.evidence import Base
+from compensator.lab.screening.base import Base
 
 
 class BreakawaySeparation(Rivalry):

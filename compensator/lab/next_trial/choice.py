@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from scipy.special import ndtr
 
-from compensator.lab.model.validation import rms
+from compensator.lab.model.held_out_error import rms
 from compensator.lab.next_trial.rivalry import Equations, Rivalry
 from compensator.lab.next_trial.suggestion import Option, Pair, Pick, Suggestion
 from compensator.lab.recordings.recording import FloatArray

@@ -13,9 +13,10 @@ from compensator.lab.model.weights import RowWeights
 from compensator.lab.next_trial.rivalry import Equations, Rival, Rivalry, rows_per_independent_row
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.discrepancy import model_columns
-from compensator.lab.screening.evidence import Block, inflation_of
+from compensator.lab.screening.evidence import inflation_of
 from compensator.lab.screening.nuisance import nuisance_columns
 
 

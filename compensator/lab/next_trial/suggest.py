@@ -14,7 +14,7 @@ from compensator.lab.next_trial.confounded import rivals_of, several
 from compensator.lab.next_trial.rivalry import Rivalry
 from compensator.lab.next_trial.separation import Separation
 from compensator.lab.next_trial.suggestion import Option, Suggestion
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.gathering import gather
 
 SURE = 7.0  # d' from which a name is right every time; from 6 on nearly every time
 

@@ -1,4 +1,4 @@
-"""Every effect and driver spline that could be missing from a fitted model, as blocks to be screened."""
+"""What a fitted model may be missing: blocks to be screened, and what they are judged on top of."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -6,19 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
-from compensator.lab.effects import catalogue
-from compensator.lab.effects.effect import Effect, MotionRows, Shape
-from compensator.lab.errors import NotApplicableError
+from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fitted import STATIC, Fit
-from compensator.lab.model.prediction import with_own_prediction
-from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
-from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening.discrepancy import model_columns
-from compensator.lab.screening.evidence import Base, Block
-from compensator.lab.screening.generic import HYSTERESIS_DRIVER, DriverBlock, driver_blocks, hysteresis_columns
+from compensator.lab.screening.base import HYSTERESIS_DRIVER, Base, Block, DriverBlock
 from compensator.lab.screening.noise import Noise
-from compensator.lab.screening.nuisance import nuisance_columns
 from compensator.lab.screening.stops import StopToStop
 
 WITH_CHAIN = 0  # base with all columns that the measuring chain can produce; others lack what an effect stands in for
@@ -28,22 +20,27 @@ class Curves:
     """Driver splines, made when they are first asked for: effects with memory are judged without them.
 
     Args:
-        dataset: of the rows.
+        splines: makes those of all drivers.
+        hysteresis: makes the columns of a free hysteresis of position, over all rows, shape (N, k).
         weighted: picks and weights the tested rows of columns (N, k).
     """
 
-    def __init__(self, dataset: Dataset, weighted: Callable[[FloatArray], FloatArray]) -> None:
-        self._dataset, self._weighted = dataset, weighted
+    def __init__(
+        self,
+        splines: Callable[[], list[DriverBlock]],
+        hysteresis: Callable[[], FloatArray],
+        weighted: Callable[[FloatArray], FloatArray],
+    ) -> None:
+        self._splines, self._hysteresis, self._weighted = splines, hysteresis, weighted
 
     def evened(self, noise: Noise) -> "Curves":
         """The same, their blocks evened."""
-        return Curves(self._dataset, lambda columns: noise.evened(self._weighted(columns)))
+        return Curves(self._splines, self._hysteresis, lambda columns: noise.evened(self._weighted(columns)))
 
     @cached_property
     def splines(self) -> dict[str, DriverBlock]:
         """By block name."""
-        found = driver_blocks(self._dataset)
-        return {f"{one.driver}{' against motion' if one.against_motion else ''}": one for one in found}
+        return {f"{one.driver}{' against motion' if one.against_motion else ''}": one for one in self._splines()}
 
     @cached_property
     def blocks(self) -> list[Block]:
@@ -53,7 +50,7 @@ class Curves:
     @cached_property
     def hysteresis_columns(self) -> FloatArray:
         """Of a free hysteresis of position, over all rows, shape (N, k)."""
-        return hysteresis_columns(self._dataset)
+        return self._hysteresis()
 
     @cached_property
     def hysteresis(self) -> Block:
@@ -74,7 +71,7 @@ class Candidates:
         named: blocks of catalogue effects, all shapes.
         curves: of every driver, free.
         left_out: effect name -> why it cannot be judged on these trials.
-        noise: that a complete model would leave on these rows; None where it was not learnt (see `clearing`).
+        noise: that a complete model would leave on these rows; None where it was not learnt (see `with_noise`).
     """
 
     fit: Fit
@@ -119,92 +116,6 @@ class Candidates:
         if self.noise is None:
             return base
         return Base.of(self.noise.as_measured(base.basis), self.noise.as_measured(base.residual[:, None])[:, 0])
-
-
-def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
-    """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.
-
-    Args:
-        fit: of the model.
-        show_in: the rows that are tested, and the effects that show in them.
-    """
-    ground, builder = _ground(fit, show_in)
-    named, left_out = builder.named()
-    return replace(ground, bases=builder.bases, named=named, left_out=left_out)
-
-
-def gather_curves(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
-    """The same without the effects of the catalogue: what the model leaves, and free curves. Arguments as `gather`."""
-    return _ground(fit, show_in)[0]
-
-
-def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
-    dataset = with_own_prediction(fit.dataset, fit.terms)
-    fit = replace(fit, dataset=dataset)
-    rows = fit.training & dataset.in_regimes(show_in)
-    weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
-    weights = weights * bounded_influence(fit.residual[rows], weights)
-    builder = _Builder(fit, show_in, rows, weights)
-    return Candidates(fit, show_in, rows, weights, builder.bases, [], Curves(dataset, builder.weighted), {}), builder
-
-
-class _Builder:
-    def __init__(self, fit: Fit, show_in: MotionRows, rows: BoolArray, weights: FloatArray) -> None:
-        self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
-        self._nuisance = nuisance_columns(fit.dataset, show_in)
-        self._model = model_columns(fit)
-        self._index: dict[frozenset[str], int] = {}
-        self.bases: list[Base] = []
-        self._base_without(frozenset())
-
-    def weighted(self, columns: FloatArray) -> FloatArray:
-        return columns[self._rows] * self._weights[:, None]
-
-    def named(self) -> tuple[list[Block], dict[str, str]]:
-        """Blocks of all effects that can be judged, and why the others cannot."""
-        dataset = self._fit.dataset
-        wanted, left_out = self._judged()
-        made = dataset.columns_of_effects([(effect, shapes) for effect, shapes in wanted])
-        blocks = [
-            Block(effect.name, self.weighted(columns), self._base_without(effect.standing_in), len(shapes), shape)
-            for (effect, shapes), found in zip(wanted, made, strict=True)
-            for shape, columns in zip(shapes, found, strict=True)
-        ]
-        return blocks, left_out
-
-    def _judged(self) -> tuple[list[tuple[Effect, list[Shape]]], dict[str, str]]:
-        dataset = self._fit.dataset
-        wanted, left_out = [], {}
-        for effect in catalogue.candidates(self._fit.names, dataset.facts):
-            if effect.rows != self._show_in:
-                continue
-            hiding = [name for name in effect.hidden_by if name in self._fit.names]
-            if hiding:
-                left_out[effect.name] = _hidden(effect, hiding)
-                continue
-            try:
-                dataset.check_applicable(effect)
-            except NotApplicableError as reason:
-                left_out[effect.name] = str(reason)
-                continue
-            wanted.append((effect, effect.shapes(dataset.trials[0].motion)))
-        return wanted, left_out
-
-    def _base_without(self, nuisances: frozenset[str]) -> int:
-        if nuisances not in self._index:
-            kept = [column for name, column in self._nuisance.items() if name not in nuisances]
-            columns = np.column_stack([self._model, *kept])
-            self._index[nuisances] = len(self.bases)
-            effort = self._weights * self._fit.target[self._rows]
-            self.bases.append(Base.of(self.weighted(columns), effort))
-        return self._index[nuisances]
-
-
-def _hidden(effect: Effect, hiding: list[str]) -> str:
-    return (
-        f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
-        f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
-    )
 
 
 def noise_of(gathered: Candidates, left: Candidates) -> Noise:

@@ -21,7 +21,7 @@ import numpy as np
 from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import Term
-from compensator.lab.model.reading import at_position
+from compensator.lab.model.prediction import at_position
 from compensator.lab.recordings.recording import FloatArray
 
 OFFSET = "offset"

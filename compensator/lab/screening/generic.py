@@ -5,7 +5,6 @@ Ljung's sense. It names the variable, not the mechanism.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,27 +12,11 @@ from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.reversals import slider
 from compensator.lab.rows.dataset import Dataset, Trial
 from compensator.lab.rows.drivers import DRIVERS, available
+from compensator.lab.screening.base import DriverBlock
 
 KNOTS = 7
 KNOT_SHARES = np.linspace(0.0, 1.0, KNOTS)
 SPLINED = ("position", "velocity", "acceleration", "load", "load_kg", "temperature", "time")
-
-
-@dataclass(frozen=True)
-class DriverBlock:
-    """One driver's spline over all rows.
-
-    Attributes:
-        driver: key of `DRIVERS`.
-        against_motion: multiplied by the direction of motion (friction-like), or plain (force-like).
-        columns: filtered like the effort, shape (N, k).
-        knots: of the spline, in the driver's unit, shape (k,).
-    """
-
-    driver: str
-    against_motion: bool
-    columns: FloatArray
-    knots: FloatArray
 
 
 def driver_blocks(dataset: Dataset) -> list[DriverBlock]:
@@ -60,7 +43,6 @@ def _hats(values: FloatArray, knots: FloatArray) -> FloatArray:
     return np.array([np.interp(values, knots, unit) for unit in np.eye(len(knots))])
 
 
-HYSTERESIS_DRIVER = "since_reversal"
 SHARES = (0.06, 0.2, 0.6)  # of the travel: from beyond what surfaces give to what hardly slides
 
 

@@ -16,8 +16,9 @@ from compensator.lab.model.fit import fit_model, fit_sliding
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.shape_search import REFINEMENTS, between, power_within
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Block, score_of
+from compensator.lab.screening.evidence import score_of
 
 
 def on_own_load(gathered: Candidates) -> Candidates:

@@ -6,12 +6,7 @@ from time import perf_counter
 from typing import Final
 
 from drivers.canopen.cia301.object_access import ObjectRefusedError
-from drivers.canopen.cia301.objects import (
-    MODE,
-    MODE_DISPLAY,
-    TARGET_TORQUE,
-    TARGET_VELOCITY,
-)
+from drivers.canopen.cia301.objects import MODE, MODE_DISPLAY, TARGET_TORQUE, TARGET_VELOCITY
 from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE
 from drivers.canopen.session import Session
 from drivers.canopen.slow_poll import SlowPoll

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import Device
 
 
 class Frame(NamedTuple):

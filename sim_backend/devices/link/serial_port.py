@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import Device
 from sim_backend.devices.link.faults import Direction
 from sim_backend.devices.link.line import Line, pause_until
 from sim_backend.devices.link.port import LOOK_UP_S, PortThread

@@ -10,7 +10,7 @@ from pymodbus.constants import ExcCodes
 from pymodbus.server import ModbusSerialServer, ModbusTcpServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
-from sim_backend.devices.device import Device
+from sim_backend.devices.axis import Device
 from sim_backend.devices.modbus.register_file import Refused, Unanswered
 from sim_backend.devices.wall_time import WallTime
 

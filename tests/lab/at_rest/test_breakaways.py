@@ -15,7 +15,8 @@ from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.processing import make_signals
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import Base, Block, least_p_value, screen_events
+from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.evidence import least_p_value, screen_events
 from tests.lab.ramps import COUNT_RAD, HORIZONTAL, MODEL, STATIC, constant, ramp_fit, ramp_recordings, ramp_trial
 
 

@@ -16,9 +16,9 @@ from compensator.lab.model.gain import Gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import Candidates, gather
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, screen_against_noise
+from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.diagnosis.test_slow_turns import fitted as turns_one_way
 from tests.lab.synthetic import FACTS, Joint, Law, recordings
 

@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN, is_confirmed
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import LEAST_GAIN, gain_beside_chain, is_confirmed
+from compensator.lab.diagnosis.examination import gain_beside_chain
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
-from compensator.lab.model.validation import HeldOut, held_out
+from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.nuisance import nuisance_columns, smoothed_signs

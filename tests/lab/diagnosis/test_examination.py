@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import is_confirmed
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
 
@@ -51,13 +51,14 @@ def test_where_one_trial_holds_most_of_a_gain_near_reversals_the_others_must_gai
 def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypatch, rows, weighted):
     asked: list[Any] = []
     known = np.ones(3)
-    fit: Any = SimpleNamespace(dataset=SimpleNamespace(rows="sliding"), determination=known)
+    fit: Any = SimpleNamespace(dataset=SimpleNamespace(rows="sliding"))
 
     def held_out(model, chosen, weights):
         asked.append((chosen, weights))
         return SimpleNamespace(relative=0.05)
 
     monkeypatch.setattr(examination, "held_out", held_out)
+    monkeypatch.setattr(examination, "determination", lambda _: known)
     monkeypatch.setattr(examination, "held_out_gain", lambda *_: Gain(0.5, 0.4, 0.6))
     monkeypatch.setattr(examination, "gain_beside_chain", lambda *_: None)
     one = Candidate(

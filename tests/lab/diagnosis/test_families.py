@@ -5,17 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis import families
-from compensator.lab.diagnosis.examination import SIGNIFICANT
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
-from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import among_all, screen, screen_against_noise
+from compensator.lab.screening.gathering import gather, with_noise
 from compensator.lab.screening.own_load import on_own_load
 from tests.lab.diagnosis.test_diagnose import SHAKEN, bristles
 from tests.lab.far_side import ARM_KG_M2, twisting

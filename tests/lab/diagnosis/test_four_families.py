@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 from compensator.lab.diagnosis import four_families
-from compensator.lab.diagnosis.families import Answer
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.four_families import FourFamilies, _evidence_beside
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.evidence import kept_evidence
+from compensator.lab.screening.gathering import gather
 from tests.lab.diagnosis.test_diagnose import bristles
 from tests.lab.synthetic import FACTS, Joint, recordings
 

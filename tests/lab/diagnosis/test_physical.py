@@ -8,7 +8,8 @@ import pytest
 
 from compensator.lab.diagnosis.physical import is_past_scan, is_possible, is_within_bounds
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.screening.evidence import Base, Block, Evidence
+from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.evidence import Evidence
 
 
 @pytest.mark.parametrize(

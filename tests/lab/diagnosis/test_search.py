@@ -10,6 +10,7 @@ import pytest
 
 from bench.study.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
+from compensator.lab.diagnosis.confirmation import slight_one
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import Search, search
 from compensator.lab.diagnosis.wording import answer_in_words
@@ -69,7 +70,7 @@ def test_what_has_to_be_in_the_model_before_a_fault_of_the_chain_is_judged_is_ne
     gain = Gain(0.03, 0.01, 0.06)
     one = replace(found.candidates[0], effect=effect_named(name), before=0.0106, after=0.0103, gain=gain)
     named = replace(found, verdict="missing", classes=((name,),), candidates=[one])
-    assert (named.slight_one(explained=0.1) is not None) == slight
+    assert (slight_one(named, explained=0.1) is not None) == slight
 
 
 @pytest.mark.parametrize("there", [False, True])

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import unfollowed
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import is_confirmed
 from compensator.lab.diagnosis.search import search
 from compensator.lab.diagnosis.unfollowed import _leaves_nothing
 from compensator.lab.effects.catalogue import default_effects, effect_named
@@ -18,7 +18,8 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import Block, Evidence
+from compensator.lab.screening.base import Block
+from compensator.lab.screening.evidence import Evidence
 from tests.lab.diagnosis.test_diagnose import load_n_m
 from tests.lab.synthetic import FACTS, Joint, Law, Truth, recordings
 

@@ -7,7 +7,8 @@ from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import Candidates, gather
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.gathering import gather
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 

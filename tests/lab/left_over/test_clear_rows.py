@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.left_over import clear_rows
-from compensator.lab.left_over.clear_rows import left_for_sure
+from compensator.lab.left_over import left_over as module
+from compensator.lab.left_over.left_over import left_for_sure
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.regimes import within_spread
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather_curves
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.gathering import gather_curves, with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 
@@ -38,7 +37,7 @@ def told_near_reversals(monkeypatch):
         looks.append(gathered.rows)
         return SimpleNamespace(is_more_than_noise=bool((gathered.rows & reached(gathered.fit.dataset)).any()))
 
-    monkeypatch.setattr(clear_rows, "left_over", left_over)
+    monkeypatch.setattr(module, "left_over", left_over)
     return looks
 
 

@@ -10,7 +10,7 @@ from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import Base
+from compensator.lab.screening.base import Base
 from tests.lab.left_over.judged import constants_of
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 

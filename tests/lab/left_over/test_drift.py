@@ -11,7 +11,7 @@ from compensator.lab.left_over.drift import MEMORY_S, MOMENT_S, chance_of_drift,
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import Base
+from compensator.lab.screening.base import Base
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 TRIALS, MOMENTS, ROWS = 8, 12, 10  # rows in a moment

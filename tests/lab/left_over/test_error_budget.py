@@ -12,8 +12,7 @@ from compensator.lab.left_over.following import following_of
 from compensator.lab.left_over.orders import growing_line_of, line_of
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
-from compensator.lab.screening.candidates import gather
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import Joint, Law
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from compensator.lab.left_over.cells import CellsOfTrial
 from compensator.lab.left_over.jumps import jumps_of
-from compensator.lab.left_over.variance_components import Part, likeliest
+from compensator.lab.left_over.variance_components import CellsOfTrial, Part, likeliest
 
 CELLS, CELL_S = 20, 0.25
 SCATTER = (0.6, 0.3)  # white, and alike for half a second

@@ -11,8 +11,8 @@ from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.orders import Line, growing_line_of, line_of
 from compensator.lab.model.fitted import Fit
-from compensator.lab.screening.candidates import Candidates, gather
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of
 
 ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known

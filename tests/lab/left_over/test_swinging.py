@@ -18,8 +18,7 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather_curves
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.gathering import gather_curves, with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)

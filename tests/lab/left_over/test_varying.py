@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.wording import unexplained_in_words
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.left_over import varying, white_rows
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.left_over.left_over import left_over
+from compensator.lab.left_over.left_over import left_over, unexplained_in_words
 from compensator.lab.left_over.varying import Varying, varying_of
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
-from compensator.lab.screening.candidates import gather
-from compensator.lab.screening.clearing import with_noise
+from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.left_over.judged import fitted, white_rows_of
 from tests.lab.synthetic import FACTS
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binom
 
 from compensator.lab.model.gain import RESAMPLES, Gain, chance_not_worse, error_interval, held_out_gain
-from compensator.lab.model.validation import HeldOut, relative_error, rms
+from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
 
 PER_UNIT = 30
 

@@ -8,7 +8,7 @@ import pytest
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_effects, fit_model, with_coefficients
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.reading import at_true_position
+from compensator.lab.model.prediction import at_true_position
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset, more_trials

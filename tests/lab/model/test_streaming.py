@@ -9,8 +9,9 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model import streaming
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.streaming import fit_streamed, pieces
-from compensator.lab.model.validation import held_out, relative_error
+from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, record, recordings

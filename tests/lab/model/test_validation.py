@@ -8,14 +8,8 @@ import pytest
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.validation import (
-    HeldOut,
-    held_out,
-    independent_units,
-    on_even_terms,
-    relative_error,
-    rms,
-)
+from compensator.lab.model.held_out_error import HeldOut, on_even_terms, relative_error, rms
+from compensator.lab.model.validation import held_out, independent_units
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Joint, plans, recordings

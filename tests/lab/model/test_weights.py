@@ -11,13 +11,12 @@ from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.weights import BENDS, RowWeights, row_weights
+from compensator.lab.model.weights import BENDS, RowWeights, determination, row_weights
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather, gather_curves
-from compensator.lab.screening.clearing import with_noise
 from compensator.lab.screening.evidence import screen_against_noise
+from compensator.lab.screening.gathering import gather, gather_curves, with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, recordings
 
 LOST, NO_CURRENT, WAVE = 0.15, 0.03, 0.004
@@ -92,7 +91,7 @@ def test_models_are_held_against_each_other_by_rows_that_they_determine(straight
     found = screen_against_noise(gathered.bases, gathered.named, gathered.noise).evidence
     wave = examine(fit, gathered, [one for one in found if one.block.name == "position_periodic_friction"][:1])[0]
     assert wave.gain.low > 0.15
-    assert (straight.determination == 1.0).all()
+    assert (determination(straight) == 1.0).all()
 
 
 def test_where_nothing_bends_residuals_of_each_kind_have_like_variance(straight):

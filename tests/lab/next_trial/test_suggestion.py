@@ -16,7 +16,7 @@ from compensator.lab.next_trial.suggest import SURE, suggest
 from compensator.lab.next_trial.suggestion import Option
 from compensator.lab.rows.assembly import make_dataset, more_trials
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import gather
+from compensator.lab.screening.gathering import gather
 from tests.lab.at_rest.test_breakaways import falling
 from tests.lab.ramps import HORIZONTAL, MODEL, ramp_trial, swing
 from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, plans, recordings

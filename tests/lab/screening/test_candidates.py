@@ -7,7 +7,8 @@ from compensator.lab.effects.catalogue import candidates, catalogue, default_eff
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import Candidates, gather
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.gathering import gather
 from compensator.lab.screening.nuisance import NAMES, nuisance_columns
 from tests.lab.synthetic import FACTS, recordings
 

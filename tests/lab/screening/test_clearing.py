@@ -4,9 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import noise_of
-from compensator.lab.screening.clearing import with_noise
-from compensator.lab.screening.evidence import Base, Block, most_likely
+from compensator.lab.screening.evidence import most_likely
+from compensator.lab.screening.gathering import with_noise
 from compensator.lab.screening.noise import Noise
 from tests.lab.screening.test_noise import ALL, NOTHING, ROWS, STEADY, TRIALS, coloured, dataset
 

@@ -5,7 +5,8 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import binom
 
-from compensator.lab.screening.evidence import Base, Block, kept_evidence, screen
+from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.evidence import kept_evidence, screen
 
 ROWS, STRETCHES = 600, 60
 STRETCH = np.repeat(np.arange(STRETCHES), ROWS // STRETCHES)

@@ -8,7 +8,8 @@ import pytest
 from scipy.signal import lfilter
 
 from compensator.lab.left_over.bursts import bursts_of
-from compensator.lab.screening.evidence import Base, Block, screen, screen_against_noise
+from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.evidence import screen, screen_against_noise
 from compensator.lab.screening.noise import Noise, spectral_density
 from compensator.lab.screening.stops import StopToStop
 

@@ -10,8 +10,8 @@ from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening import own_load
-from compensator.lab.screening.candidates import gather
 from compensator.lab.screening.evidence import score_of
+from compensator.lab.screening.gathering import gather
 from compensator.lab.screening.own_load import on_own_load
 from tests.lab.diagnosis.test_diagnose import SHAKEN
 from tests.lab.far_side import ARM_KG_M2, missing_torque, twisting

@@ -1,0 +1,83 @@
+"""Whether a candidate is confirmed: what its evidence and its gain on held-out rows have to be."""
+
+import math
+
+from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.effects.effect import Effect, EffectRows
+from compensator.lab.model.gain import Gain
+from compensator.lab.screening.evidence import VERY_STRONG
+
+SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
+SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
+
+LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
+LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
+LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
+
+
+def is_confirmed(candidate: Candidate) -> bool:
+    """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
+
+    What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
+    else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
+    evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
+    falls at all; near reversals, where every chain leaves a little, if it falls as much as is asked for even without
+    the trial that gains most. There it has to fall beside what the measuring chain leaves, too.
+    """
+    beside = candidate.beside_chain
+    stands = beside is None or _helps(candidate, beside, LEAST_GAIN)
+    return is_sure(candidate) and candidate.physical and stands
+
+
+def is_sure(candidate: Candidate) -> bool:
+    """Whether a candidate is confirmed but for the size and sign that it would need."""
+    strong = candidate.score >= VERY_STRONG
+    no_luck = candidate.p_value <= SIGNIFICANT or strong
+    before, gain = candidate.before, candidate.gain
+    falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
+    least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
+    return candidate.score > 0.0 and no_luck and falls and _helps(candidate, gain, least)
+
+
+def _helps(candidate: Candidate, gain: Gain, least: float) -> bool:
+    """Whether a gain is large enough, and no luck; trials drawn again need not be sure where the evidence is strong."""
+    strong = candidate.score >= VERY_STRONG
+    return gain.value >= least and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows, least)))
+
+
+def _lasts(gain: Gain, rows: EffectRows, least: float) -> bool:
+    """Whether a gain that trials drawn again are not sure of is nevertheless one of more than a single trial."""
+    if rows == "moving":
+        return gain.without_best >= least
+    return rows == "sliding"
+
+
+def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:
+    """What is named, where it is next to nothing beside what was added; None where it is not slight.
+
+    A formula leaves what it is not right to. With enough rows that is surely there, and some other effect follows
+    it best; it is no reason to add that one.
+
+    Args:
+        diagnosis: that names it.
+        explained: by effects that were added to the first model, root mean square as a share of the effort, held
+            out; with 0 nothing is slight.
+    """
+    if diagnosis.verdict != "missing" or not diagnosis.classes:
+        return None
+    one = next((each for each in diagnosis.candidates if each.effect.name == diagnosis.classes[0][0]), None)
+    if one is None or one.gain.high >= SLIGHT_GAIN or _opens_others(one.effect):
+        return None
+    return one if explained_part(one.before, one.after) < SLIGHT_PART * explained else None
+
+
+def _opens_others(effect: Effect) -> bool:
+    """Whether it is of the measuring chain, and others cannot be judged before it is in the model, as a filter."""
+    return effect.pipeline and any(effect.name in other.after for other in catalogue().values())
+
+
+def explained_part(before: float, after: float) -> float:
+    """What took an error from one to the other, root mean square, in their unit; 0 where it rose."""
+    return math.sqrt(max(0.0, before**2 - after**2))

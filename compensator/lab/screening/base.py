@@ -1,0 +1,67 @@
+"""Candidate columns, and what they are judged on top of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensator.lab.model.linear import orthonormal
+from compensator.lab.recordings.recording import FloatArray
+
+HYSTERESIS_DRIVER = "since_reversal"
+
+
+@dataclass(frozen=True)
+class Block:
+    """Candidate columns and what they stand for.
+
+    Attributes:
+        name: of the effect.
+        columns: over the rows tested, shape (n, k).
+        base: index of the base it is judged against (see `Base`).
+        scanned: how many shapes of the effect are scanned.
+        key: the shape, or whatever tells blocks of one name apart.
+    """
+
+    name: str
+    columns: FloatArray
+    base: int
+    scanned: int
+    key: object = None
+
+
+@dataclass(frozen=True)
+class Base:
+    """What every candidate is judged on top of: an orthonormal basis (n, b) and the weighted residual (n,)."""
+
+    basis: FloatArray
+    residual: FloatArray
+
+    @classmethod
+    def of(cls, columns: FloatArray, effort: FloatArray) -> "Base":
+        """Project effort (n,) out of columns (n, k)."""
+        basis = orthonormal(columns)
+        return cls(basis, effort - basis @ (basis.T @ effort))
+
+    def extended(self, columns: FloatArray) -> "Base":
+        """The base with columns (n, k) beside its own."""
+        rest = columns - self.basis @ (self.basis.T @ columns)
+        added = orthonormal(rest - self.basis @ (self.basis.T @ rest))  # twice is enough (Kahan, Parlett)
+        residual = self.residual - added @ (added.T @ self.residual)
+        return Base(np.column_stack([self.basis, added]), residual)
+
+
+@dataclass(frozen=True)
+class DriverBlock:
+    """One driver's spline over all rows.
+
+    Attributes:
+        driver: key of `DRIVERS`.
+        against_motion: multiplied by the direction of motion (friction-like), or plain (force-like).
+        columns: filtered like the effort, shape (N, k).
+        knots: of the spline, in the driver's unit, shape (k,).
+    """
+
+    driver: str
+    against_motion: bool
+    columns: FloatArray
+    knots: FloatArray

@@ -1,0 +1,130 @@
+"""Collects every effect and driver spline that could be missing from a fitted model, as blocks to be screened."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from compensator.lab.effects import catalogue
+from compensator.lab.effects.catalogue import chain_effects
+from compensator.lab.effects.effect import Effect, MotionRows, Shape
+from compensator.lab.errors import NotApplicableError
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.prediction import with_own_prediction
+from compensator.lab.model.weights import bounded_influence, row_weights
+from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.candidates import Candidates, Curves, noise_of
+from compensator.lab.screening.discrepancy import model_columns
+from compensator.lab.screening.evidence import most_likely, score_of
+from compensator.lab.screening.generic import driver_blocks, hysteresis_columns
+from compensator.lab.screening.nuisance import nuisance_columns
+
+CLEARED = 2  # blocks, or free curves, that are taken off at most: what is missing must not count as noise
+
+
+def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
+    """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.
+
+    Args:
+        fit: of the model.
+        show_in: the rows that are tested, and the effects that show in them.
+    """
+    ground, builder = _ground(fit, show_in)
+    named, left_out = builder.named()
+    return replace(ground, bases=builder.bases, named=named, left_out=left_out)
+
+
+def gather_curves(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
+    """The same without the effects of the catalogue: what the model leaves, and free curves. Arguments as `gather`."""
+    return _ground(fit, show_in)[0]
+
+
+def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
+    dataset = with_own_prediction(fit.dataset, fit.terms)
+    fit = replace(fit, dataset=dataset)
+    rows = fit.training & dataset.in_regimes(show_in)
+    weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
+    weights = weights * bounded_influence(fit.residual[rows], weights)
+    builder = _Builder(fit, show_in, rows, weights)
+    curves = Curves(partial(driver_blocks, dataset), partial(hysteresis_columns, dataset), builder.weighted)
+    return Candidates(fit, show_in, rows, weights, builder.bases, [], curves, {}), builder
+
+
+class _Builder:
+    def __init__(self, fit: Fit, show_in: MotionRows, rows: BoolArray, weights: FloatArray) -> None:
+        self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
+        self._nuisance = nuisance_columns(fit.dataset, show_in)
+        self._model = model_columns(fit)
+        self._index: dict[frozenset[str], int] = {}
+        self.bases: list[Base] = []
+        self._base_without(frozenset())
+
+    def weighted(self, columns: FloatArray) -> FloatArray:
+        return columns[self._rows] * self._weights[:, None]
+
+    def named(self) -> tuple[list[Block], dict[str, str]]:
+        """Blocks of all effects that can be judged, and why the others cannot."""
+        dataset = self._fit.dataset
+        wanted, left_out = self._judged()
+        made = dataset.columns_of_effects([(effect, shapes) for effect, shapes in wanted])
+        blocks = [
+            Block(effect.name, self.weighted(columns), self._base_without(effect.standing_in), len(shapes), shape)
+            for (effect, shapes), found in zip(wanted, made, strict=True)
+            for shape, columns in zip(shapes, found, strict=True)
+        ]
+        return blocks, left_out
+
+    def _judged(self) -> tuple[list[tuple[Effect, list[Shape]]], dict[str, str]]:
+        dataset = self._fit.dataset
+        wanted, left_out = [], {}
+        for effect in catalogue.candidates(self._fit.names, dataset.facts):
+            if effect.rows != self._show_in:
+                continue
+            hiding = [name for name in effect.hidden_by if name in self._fit.names]
+            if hiding:
+                left_out[effect.name] = _hidden(effect, hiding)
+                continue
+            try:
+                dataset.check_applicable(effect)
+            except NotApplicableError as reason:
+                left_out[effect.name] = str(reason)
+                continue
+            wanted.append((effect, effect.shapes(dataset.trials[0].motion)))
+        return wanted, left_out
+
+    def _base_without(self, nuisances: frozenset[str]) -> int:
+        if nuisances not in self._index:
+            kept = [column for name, column in self._nuisance.items() if name not in nuisances]
+            columns = np.column_stack([self._model, *kept])
+            self._index[nuisances] = len(self.bases)
+            effort = self._weights * self._fit.target[self._rows]
+            self.bases.append(Base.of(self.weighted(columns), effort))
+        return self._index[nuisances]
+
+
+def _hidden(effect: Effect, hiding: list[str]) -> str:
+    return (
+        f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
+        f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
+    )
+
+
+def with_noise(gathered: Candidates) -> Candidates:
+    """The same candidates, evened by the noise of what is left once the likeliest blocks are in the model.
+
+    Of the joint's blocks alone: what the measuring chain does badly is noise to whoever asks what the joint lacks.
+    A block is taken off only where it pays against the noise as it is known so far, with its colour: held against white
+    noise, slow blocks seem to pay wherever noise is slow.
+    """
+    left, noise = gathered, noise_of(gathered, gathered)
+    joint = [block for block in gathered.named if block.name not in chain_effects()]
+    for _ in range(CLEARED):
+        block = most_likely(left.bases, [*joint, *left.curves.blocks])
+        if block is None:
+            break
+        if score_of(left.bases, block, noise) <= 0.0:
+            break
+        left = left.with_block(block)
+        noise = noise_of(gathered, left)
+    return gathered.evened(noise)
