@@ -64,7 +64,7 @@ def test_every_schema_before_this_one_is_tested() -> None:
 
 
 def test_a_new_file_is_what_the_migrations_make(tmp_path: Path) -> None:
-    database = Database(f"sqlite:///{tmp_path}/migrated.sqlite", 1.0)
+    database = database_of(f"sqlite:///{tmp_path}/migrated.sqlite", 1.0)
     with database.writing() as connection:
         _upgrade(connection, database.where, None)
     database.close()
