@@ -53,7 +53,7 @@ collect: $(STAMP) ## find every test and run none: what the runs after it import
 	@mkdir -p out
 	$(BIN)/pytest --collect-only -qq >out/collected.txt || { cat out/collected.txt; exit 1; }
 
-steady: $(STAMP) ## the tests that the wall clock times, 20 times in a row: which of them fails when
+steady: $(STAMP) ## the tests that hang on seconds, 20 times in a row: which of them fails when
 	$(BIN)/python -m tests.steady 20
 
 check: $(STAMP)  ## style, types and walls; .pre-commit-config.yaml runs the same

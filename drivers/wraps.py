@@ -4,23 +4,30 @@
 class DriveClock:
     """The drive's own clock, followed through its wraps.
 
+    Readings within one step of it rise, too: each lies half-way from the one before to the step's end. A late cycle is
+    followed by the next at once, and a record whose time stands still is none.
+
     Args:
         step_s: one step of its register [s].
         bits: of its register.
     """
 
     def __init__(self, step_s: float, bits: int) -> None:
-        self._turn_s = step_s * 2.0**bits
+        self._step_s, self._turn_s = step_s, step_s * 2.0**bits
         self._last_s: float | None = None
         self._time_s = 0.0
+        self._rest = 1.0  # of the step, behind the last reading
 
     def follow(self, reading_s: float) -> float:
         """The next reading [s]. Returns the time without wraps [s]."""
+        if reading_s == self._last_s:
+            self._rest *= 0.5
+            return self._time_s + self._step_s * (1.0 - self._rest)
         if self._last_s is None:
             self._time_s = reading_s
         else:
             self._time_s += (reading_s - self._last_s) % self._turn_s
-        self._last_s = reading_s
+        self._last_s, self._rest = reading_s, 1.0
         return self._time_s
 
 

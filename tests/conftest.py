@@ -28,7 +28,25 @@ WALL_CLOCK = (
     "control/test_clock.py",
     "runs/test_bench_process.py",
 )
-OTHERS, TIMED = "not wall_clock and not virtual_time", "wall_clock"  # as the Makefile asks with -m
+# of these, and of the drivers on real ports: what hangs on seconds, such as stops, leases and times to answer within;
+# of the others, services compute and pages are waited for. Ends of runs have `make kills`
+BY_SECONDS = (
+    "browser/test_stop.py",
+    "control/test_clock.py",
+    "devices",
+    "drivers",
+    "runs/test_bench_process.py",
+    "service/test_busy_stop.py",
+    "service/test_experiments.py",
+    "service/test_lateness.py",
+    "service/test_lease.py",
+    "service/test_limits.py",
+    "service/test_live.py",
+    "service/test_live_process.py",
+    "service/test_tokens.py",
+)
+# as the Makefile and tests/steady.py ask with -m
+OTHERS, TIMED, SECONDS = "not wall_clock and not virtual_time", "wall_clock", "by_seconds"
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -40,6 +58,8 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
         return True
     if asked == TIMED and collection_path.is_file() and not path.startswith(WALL_CLOCK):
         return b"mark.wall_clock" not in collection_path.read_bytes()
+    if asked == SECONDS and collection_path.is_file() and not path.startswith(BY_SECONDS):
+        return True
     return None
 
 
@@ -53,6 +73,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.get_closest_marker("virtual_time") is None or _is_on_a_real_wire(item)
         ):
             item.add_marker(pytest.mark.wall_clock)
+            if path.startswith(BY_SECONDS):
+                item.add_marker(pytest.mark.by_seconds)
 
 
 def _is_on_a_real_wire(item: pytest.Item) -> bool:

@@ -1,10 +1,10 @@
-"""`python -m tests.steady [RUNS]`: the tests that the wall clock times, many times in a row; which of them fails when.
+"""`python -m tests.steady [RUNS]`: the tests that hang on seconds, many times in a row; which of them fails when.
 
-Printed is a row for each run of a part, and at the end how often each test has failed; what it said is in out/steady. A
-race shows in one run of many: it is mended, no test is tried twice.
+They are those of `make test-services` and `make test-drivers` that tests/conftest.py marks so. Printed is a row for a
+run of a part, and at the end how often each test has failed; what it said is in out/steady. A race shows in one run of
+many: it is mended, no test is tried twice.
 """
 
-import os
 import subprocess
 import sys
 import time
@@ -16,7 +16,7 @@ from tests.paths import ROOT
 
 RUNS = 20
 OUT = ROOT / "out" / "steady"
-PARTS = ("services", "drivers")  # `make test-services`, `make test-drivers`
+PARTS = {"services": "--ignore=tests/drivers", "drivers": "tests/drivers"}  # one after the other, as in `make test`
 
 
 def failed_of(report: Path) -> tuple[int, list[str]]:
@@ -34,12 +34,19 @@ def run(part: str, number: int) -> list[str]:
     name = f"{part}-{number:02}"
     report = OUT / f"{name}.xml"
     report.unlink(missing_ok=True)
-    words, options = ["make", f"test-{part}"], {"PYTEST_ADDOPTS": f"--junitxml={report}"}
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "--numprocesses=2",
+        "-m",
+        "by_seconds",
+        PARTS[part],
+        f"--junitxml={report}",
+    ]
     began_s = time.monotonic()
     with (OUT / f"{name}.log").open("w", encoding="utf-8") as log:
-        status = subprocess.run(
-            words, cwd=ROOT, env=os.environ | options, stdout=log, stderr=subprocess.STDOUT, check=False
-        ).returncode
+        status = subprocess.run(words, cwd=ROOT, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
     count, failed = failed_of(report) if report.exists() else (0, [f"no report of {name}"])
     if status and not failed:
         failed = [f"pytest ended with {status} in {name}"]

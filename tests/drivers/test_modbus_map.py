@@ -129,6 +129,14 @@ def test_the_clock_is_followed_through_its_wraps():
     )
 
 
+def test_readings_within_a_step_of_the_clock_rise_and_stay_in_it():
+    clock = DriveClock(1e-3, 32)
+    readings_s = (0.010, 0.011, 0.011, 0.011, 0.012)
+    assert [clock.follow(reading_s) for reading_s in readings_s] == pytest.approx(
+        [0.010, 0.011, 0.0115, 0.01175, 0.012], abs=1e-9
+    )
+
+
 def test_the_published_map_of_roboteq():
     found = load_map("roboteq")
     assert found.modes == {Mode.DUTY}

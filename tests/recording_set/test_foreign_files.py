@@ -110,3 +110,14 @@ def test_numbers_beyond_any_quantity_do_not_tell_a_unit(tmp_path: Path, size: fl
     path.write_text("\n".join(["time_s,position,speed,current_a", *rows]))
     with pytest.raises(RecordingSetError, match=r"large.*position_rad is 1.* rad in row 4, beyond"):
         read_unknown([path], None, Known({}))
+
+
+@pytest.mark.parametrize(("kind", "bits"), [("f8", 0x7FF0000000000001), ("f4", 0x7F800001)])
+def test_a_nan_that_signals_is_a_value_that_is_not_known(tmp_path: Path, kind: str, bits: int) -> None:
+    """As a flipped bit spells one; a warning at the first sum would fail here."""
+    time_s = 0.01 * np.arange(200)
+    position = np.sin(time_s).astype(kind)
+    position.view(kind.replace("f", "u"))[7] = bits
+    np.savez(tmp_path / "signals.npz", time_s=time_s, position_rad=position, current_a=0.1 * np.cos(time_s))
+    (recording,) = read_unknown([tmp_path / "signals.npz"], None, Known({}))[0].recordings
+    assert np.flatnonzero(np.isnan(recording.channels["position_rad"])).tolist() == [7]

@@ -176,7 +176,8 @@ def _wrong_in_record(way: Way, trial: Trial, time_s: np.ndarray, seen: int) -> I
     if trial.results.get("overruns") == 0 and len(time_s) > 1 and np.diff(time_s).max() > 3.0 * PERIOD_S:
         yield f"the rows have a gap of {np.diff(time_s).max():.3f} s"
     if len(time_s) > 1 and np.diff(time_s).min() <= 0.0:
-        yield "the rows are not in order"
+        row = int(np.diff(time_s).argmin())
+        yield f"the rows are not in order: {time_s[row + 1]:.6f} s comes after {time_s[row]:.6f} s"
 
 
 def plan(ways: list[Way], on_server: bool) -> Iterator[tuple[Way, bool]]:

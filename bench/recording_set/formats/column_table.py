@@ -106,7 +106,9 @@ def _columns(name: str, values: NDArray[np.generic]) -> Columns:
         return {name: (squeezed - squeezed[0]) / np.timedelta64(1, "ns") * 1e-9} if squeezed.ndim == 1 else {}
     if squeezed.dtype.kind not in "biuf":
         return {}
-    numbers = squeezed.astype(float)
+    with np.errstate(invalid="ignore"):  # a NaN that signals, as damaged bytes may spell one
+        numbers = squeezed.astype(float)
+    numbers[np.isnan(numbers)] = np.nan  # it would go on signalling: numpy warns at the first sum
     if numbers.ndim == 1:
         return {name: numbers}
     if numbers.ndim != 2 or min(numbers.shape) > MOST_COLUMNS:
