@@ -17,7 +17,16 @@ def gathered(effort: FloatArray, blocks: dict[str, FloatArray]) -> Candidates:
     base = Base.of(np.ones((len(effort), 1)), effort)
     named = [Block(name, columns[:, None], 0, 1) for name, columns in blocks.items()]
     fit = cast(Any, _Fit(effort))
-    return Candidates(fit, "sliding", rows, np.ones(len(effort)), [base], named, Curves(fit, np.asarray), {})
+    return Candidates(
+        fit,
+        "sliding",
+        rows,
+        np.ones(len(effort)),
+        [base],
+        named,
+        Curves(list, lambda: np.empty((len(effort), 0)), np.asarray),
+        {},
+    )
 
 
 class _Fit:

@@ -118,7 +118,7 @@ def test_explain_goes_on_beside_a_curve_where_no_formula_follows(store: Store) -
     """A friction that catches at one place, and drag that differs by direction, which shows beside it."""
 
     def law(x: Truth) -> FloatArray:
-        caught = 0.12 * np.exp(-(((x.q - 0.2) / 0.25) ** 2)) * np.sign(x.v)
+        caught = 0.12 * np.exp(-(((x.q - 0.2) / 0.4) ** 2)) * np.sign(x.v)
         return caught + 0.012 * np.abs(x.v)
 
     experiment_id = imported(store, plans(), Joint(extra=law))

@@ -9,7 +9,6 @@ the frequency. Beyond the band where it falls below half of what it was further 
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
-from math import nan
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt, welch
@@ -79,11 +78,12 @@ def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Fact
     edges = np.append(edges[edges < 2.0 ** (-0.5 / BANDS_PER_OCTAVE) * highest_hz], max(highest_hz, LOWEST_HZ))
     for low, high in pairwise(edges.tolist()):
         signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, high)]
-        share = _explained_share(signals, low, high) if signals else nan
+        if not signals:
+            continue
+        share = _explained_share(signals, low, high)
         if share < max(COHERENT * most, LEAST_COHERENCE):
             return known_to_hz
-        if share > 0.0:
-            most, known_to_hz = max(most, share), high
+        most, known_to_hz = max(most, share), high
     return known_to_hz
 
 
@@ -98,19 +98,21 @@ def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[
 def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -> float:
     """Multiple coherence in a band, less what so many columns explain by chance (Bendat, Piersol 2010).
 
-    NaN where the band holds too few independent values to tell.
+    Chance is not taken off where a band holds hardly more independent values than there are columns.
     """
     stacks = [_band(trial, low_hz, high_hz) for trial in trials]
     columns = np.concatenate([stack[:-1] for stack in stacks], axis=1).T
     effort = np.concatenate([stack[-1] for stack in stacks])
-    length_s = sum(stack.shape[1] / trial.rate_hz for stack, trial in zip(stacks, trials, strict=True))
-    free, power = 2.0 * (high_hz - low_hz) * length_s, float(effort @ effort)
-    if free <= 2.0 * columns.shape[1] or power <= 0.0:
-        return nan
+    count, power = columns.shape[1], float(effort @ effort)
+    if len(effort) <= count or power <= 0.0:
+        return 0.0
     scale = np.linalg.norm(columns, axis=0)
     columns = columns / np.where(scale > 0, scale, 1.0)
     rest = effort - columns @ np.linalg.lstsq(columns, effort, rcond=1e-9)[0]
-    return float(1.0 - float(rest @ rest) / power * free / (free - columns.shape[1]))
+    length_s = sum(stack.shape[1] / trial.rate_hz for stack, trial in zip(stacks, trials, strict=True))
+    free = 2.0 * (high_hz - low_hz) * length_s
+    by_chance = free / (free - count) if free > 2.0 * count else 1.0
+    return 1.0 - by_chance * float(rest @ rest) / power
 
 
 def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:
