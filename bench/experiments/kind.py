@@ -98,7 +98,15 @@ class ExperimentKind:
     pair: bool = False
 
 
-def conditions(configuration: BenchConfiguration, **held: Condition) -> dict[str, Condition]:
-    """The conditions of a trial, with what the rig adds to them: the arm's length, where it is known."""
+def trial_plan(
+    configuration: BenchConfiguration,
+    name: str,
+    procedure: Callable[[], AnyProcedure],
+    load_kg: float,
+    balanced: bool = False,
+    **held: Condition,
+) -> TrialPlan:
+    """A trial to come. Its conditions: load, balance, what else is held, and the arm's length where it is known."""
     length_m = configuration.rig.arm.length_m
-    return held if length_m is None else {**held, "arm_m": length_m}
+    known: dict[str, Condition] = {} if length_m is None else {"arm_m": length_m}
+    return TrialPlan(name, {"load_kg": load_kg, "balanced": balanced, **held, **known}, procedure, load_kg, balanced)

@@ -1,8 +1,10 @@
 """Bring a database to the tables of this version. Alembic is only loaded when there is something to do."""
 
+from functools import cache
 from pathlib import Path
 
-from sqlalchemy import Connection, inspect, text
+from sqlalchemy import Connection, create_engine, inspect, text
+from sqlalchemy.pool import StaticPool
 
 from bench import __version__
 from bench.store.database import Database
@@ -26,7 +28,11 @@ def migrate(database: Database) -> None:
         found = _revision(connection)
         if found is None and inspect(connection).get_table_names():
             raise StoreFileError(f"store '{database.where}' belongs to another program; name another")
-        if found != HEAD:
+        if found is None and connection.dialect.name == "sqlite":
+            for statement in _of_a_new_file():
+                connection.exec_driver_sql(statement)
+            connection.execute(text("INSERT INTO alembic_version VALUES (:head)"), {"head": HEAD})
+        elif found != HEAD:
             _upgrade(connection, database.where, found)
 
 
@@ -34,6 +40,19 @@ def _revision(connection: Connection) -> str | None:
     if not inspect(connection).has_table("alembic_version"):
         return None
     return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+
+
+@cache
+def _of_a_new_file() -> tuple[str, ...]:
+    """What the migrations make of an empty SQLite file; a process that makes many stores runs them once."""
+    engine = create_engine("sqlite://", poolclass=StaticPool)
+    with engine.begin() as connection:
+        _upgrade(connection, "memory", None)
+        # tables first: some were made anew after an index of another one
+        query = "SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY type <> 'table', rowid"
+        made = tuple(connection.exec_driver_sql(query).scalars())
+    engine.dispose()
+    return made
 
 
 def _upgrade(connection: Connection, where: str, found: str | None, target: str = "head") -> None:

@@ -63,6 +63,23 @@ def test_every_schema_before_this_one_is_tested() -> None:
     assert {file.stem for file in FILES} == {script.revision for script in scripts.walk_revisions()} - {HEAD}
 
 
+def test_a_new_file_is_what_the_migrations_make(tmp_path: Path) -> None:
+    database = database_of(f"sqlite:///{tmp_path}/migrated.sqlite", 1.0)
+    with database.writing() as connection:
+        _upgrade(connection, database.where, None)
+    database.close()
+    for name in ("first", "second"):
+        Store.open(f"sqlite:///{tmp_path}/{name}.sqlite").close()
+    migrated, first, second = (dump(tmp_path / f"{name}.sqlite") for name in ("migrated", "first", "second"))
+    assert first == second == migrated
+
+
+def dump(path: Path) -> list[str]:
+    """All statements that would make a file anew."""
+    with closing(sqlite3.connect(path)) as connection:
+        return list(connection.iterdump())
+
+
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_what_was_kept_is_there_after_the_upgrade(url: str, file: Path) -> None:
     load(url, file)

@@ -14,7 +14,7 @@ from bench.config.reflected_load import load_current_a
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
@@ -155,15 +155,10 @@ def _rest_current_a(parameters: BreakawayRampsParameters, configuration: BenchCo
 def _plan(parameters: BreakawayRampsParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     rates, dwells = enumerate(parameters.rates_a_s, 1), enumerate(parameters.dwells_s, 1)
     return [
-        TrialPlan(
-            name=f"dwell-{rest:02d}-rate-{number:02d}-{repeat:02d}",
-            conditions=conditions(
-                configuration, load_kg=parameters.load_kg, balanced=parameters.balanced,
-                angle_rad=parameters.angle_rad, rate_a_s=rate_a_s, dwell_s=dwell_s, repeat=repeat,
-            ),
-            procedure=partial(break_away, configuration, parameters, rate_a_s, dwell_s),
-            load_kg=parameters.load_kg,
-            balanced=parameters.balanced,
+        trial_plan(
+            configuration, f"dwell-{rest:02d}-rate-{number:02d}-{repeat:02d}",
+            partial(break_away, configuration, parameters, rate_a_s, dwell_s), parameters.load_kg, parameters.balanced,
+            angle_rad=parameters.angle_rad, rate_a_s=rate_a_s, dwell_s=dwell_s, repeat=repeat,
         )
         for (rest, dwell_s), (number, rate_a_s), repeat in product(dwells, rates, range(1, parameters.repeats + 1))
     ]  # fmt: skip

@@ -14,7 +14,7 @@ from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import OFF, Procedure, Reading
 from bench.experiments.analysis.coast_fit import fit_coast
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.excursion import Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
@@ -140,15 +140,11 @@ def _excursion(configuration: BenchConfiguration, parameters: CoastDownParameter
 def _plan(parameters: CoastDownParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     speeds, repeats = enumerate(parameters.speeds_rad_s, 1), range(1, parameters.repeats + 1)
     return [
-        TrialPlan(
-            name=f"speed-{number:02d}-{direction}-{repeat:02d}",
-            conditions=conditions(
-                configuration, load_kg=parameters.load_kg, balanced=parameters.balanced,
-                released_speed_rad_s=speed_rad_s, released=parameters.released, direction=direction, repeat=repeat,
-            ),
-            procedure=partial(coast_down, configuration, parameters, speed_rad_s, direction),
-            load_kg=parameters.load_kg,
-            balanced=parameters.balanced,
+        trial_plan(
+            configuration, f"speed-{number:02d}-{direction}-{repeat:02d}",
+            partial(coast_down, configuration, parameters, speed_rad_s, direction), parameters.load_kg,
+            parameters.balanced, released_speed_rad_s=speed_rad_s, released=parameters.released, direction=direction,
+            repeat=repeat,
         )
         for (number, speed_rad_s), direction, repeat in product(speeds, DIRECTIONS, repeats)
     ]  # fmt: skip

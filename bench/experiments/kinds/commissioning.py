@@ -9,7 +9,7 @@ from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings, position_findings
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.position_push import push_there_and_back
 from bench.experiments.parts.push import PushSettings, push
@@ -45,14 +45,7 @@ def _adapt(parameters: CommissioningParameters, modes: frozenset[Mode]) -> Commi
 
 
 def _plan(parameters: CommissioningParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
-    return [
-        TrialPlan(
-            name="push",
-            conditions=conditions(configuration, load_kg=0.0, balanced=False),
-            procedure=partial(commission, parameters, configuration),
-            load_kg=0.0,
-        )
-    ]
+    return [trial_plan(configuration, "push", partial(commission, parameters, configuration), 0.0)]
 
 
 def _refuse(parameters: CommissioningParameters, configuration: BenchConfiguration) -> None:

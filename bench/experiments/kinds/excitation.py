@@ -10,7 +10,7 @@ from pydantic import Field, field_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
@@ -70,14 +70,14 @@ def excite(configuration: BenchConfiguration, waveform: str, parameters: Excitat
 def _plan(parameters: ExcitationParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     choices = product(enumerate(parameters.loads_kg, 1), range(1, parameters.repeats + 1), parameters.waveforms)
     return [
-        TrialPlan(
-            name=f"{waveform}-load-{number:02d}-{repeat:02d}",
-            conditions=conditions(
-                configuration, load_kg=load_kg, balanced=parameters.balanced, waveform=waveform, repeat=repeat
-            ),
-            procedure=partial(excite, configuration, waveform, parameters),
-            load_kg=load_kg,
-            balanced=parameters.balanced,
+        trial_plan(
+            configuration,
+            f"{waveform}-load-{number:02d}-{repeat:02d}",
+            partial(excite, configuration, waveform, parameters),
+            load_kg,
+            parameters.balanced,
+            waveform=waveform,
+            repeat=repeat,
         )
         for (number, load_kg), repeat, waveform in choices
     ]

@@ -12,7 +12,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
@@ -140,11 +140,10 @@ def _temperature_c(readings: list[Reading]) -> float | None:
 
 def _plan(parameters: HoldAndSoakParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     def trial(number: int, part: str, procedure: Any) -> TrialPlan:
-        held = conditions(configuration, load_kg=parameters.load_kg, balanced=parameters.balanced, part=part)
-        soaked_s = sum(parameters.soaks_s[: number - 1], 0.0)
-        name = f"{part}-{number:03d}"
-        held |= {"soaked_s": soaked_s}
-        return TrialPlan(name, held, procedure, parameters.load_kg, parameters.balanced)
+        name, load_kg, balanced = f"{part}-{number:03d}", parameters.load_kg, parameters.balanced
+        plan = trial_plan(configuration, name, procedure, load_kg, balanced, part=part)
+        plan.conditions["soaked_s"] = sum(parameters.soaks_s[: number - 1], 0.0)
+        return plan
 
     plans = [trial(1, "probe", partial(probe, configuration, parameters))]
     for index, seconds in enumerate(parameters.soaks_s, 1):

@@ -13,7 +13,7 @@ from bench.config.drives.real import HomingSettings, RealDriveSettings
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Action, Procedure, Reading
 from bench.errors import ConfigurationError, ExperimentError, LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
 from bench.json_types import Value
@@ -200,8 +200,7 @@ def _press(joint: Joint, homing: HomingSettings, configuration: BenchConfigurati
 def _plan(_parameters: HomingParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     by_drive = settings_of(configuration).method == "drive"
     procedure = partial(home_by_drive if by_drive else home_at_end_stop, configuration)
-    held = conditions(configuration, load_kg=0.0, balanced=False)
-    return [TrialPlan(name="search", conditions=held, procedure=procedure, load_kg=0.0)]
+    return [trial_plan(configuration, "search", procedure, load_kg=0.0)]
 
 
 def _refuse(_parameters: HomingParameters, configuration: BenchConfiguration) -> None:

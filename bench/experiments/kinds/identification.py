@@ -10,7 +10,7 @@ from bench.control.cycle import Procedure
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Push
 from bench.experiments.analysis.identification import Identified, identified
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.push import PushSettings, push
 from bench.experiments.parts.refusal import refuse_angles, refuse_coasting, refuse_currents
@@ -48,14 +48,7 @@ class IdentificationParameters(Parameters):
 
 
 def _plan(parameters: IdentificationParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
-    return [
-        TrialPlan(
-            name="pushes",
-            conditions=conditions(configuration, load_kg=0.0, balanced=False),
-            procedure=partial(push_and_identify, parameters, configuration),
-            load_kg=0.0,
-        )
-    ]
+    return [trial_plan(configuration, "pushes", partial(push_and_identify, parameters, configuration), 0.0)]
 
 
 def _refuse(parameters: IdentificationParameters, configuration: BenchConfiguration) -> None:

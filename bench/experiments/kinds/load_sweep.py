@@ -9,7 +9,7 @@ from pydantic import Field
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, number
@@ -31,11 +31,13 @@ class LoadSweepParameters(Parameters):
 
 def _plan(parameters: LoadSweepParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     return [
-        TrialPlan(
-            name=f"load-{number:02d}-angle-{place}-{repeat:02d}",
-            conditions=conditions(configuration, load_kg=load_kg, balanced=False, angle_rad=angle_rad, repeat=repeat),
-            procedure=partial(measure_at_rest, configuration, angle_rad, parameters.searches),
-            load_kg=load_kg,
+        trial_plan(
+            configuration,
+            f"load-{number:02d}-angle-{place}-{repeat:02d}",
+            partial(measure_at_rest, configuration, angle_rad, parameters.searches),
+            load_kg,
+            angle_rad=angle_rad,
+            repeat=repeat,
         )
         for number, load_kg in enumerate(parameters.loads_kg, 1)
         for place, angle_rad in enumerate(parameters.angles_rad, 1)

@@ -14,7 +14,7 @@ from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
@@ -122,15 +122,10 @@ def _results(parts: list[tuple[list[SetPoint], list[Reading]]]) -> dict[str, Val
 def _plan(parameters: ReversalsParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     repeats = range(1, parameters.repeats + 1)
     return [
-        TrialPlan(
-            name=f"amplitude-{number:02d}-{repeat:02d}",
-            conditions=conditions(
-                configuration, load_kg=parameters.load_kg, balanced=parameters.balanced,
-                angle_rad=parameters.angle_rad, amplitude_rad=amplitude_rad, repeat=repeat,
-            ),
-            procedure=partial(reverse, configuration, parameters, amplitude_rad),
-            load_kg=parameters.load_kg,
-            balanced=parameters.balanced,
+        trial_plan(
+            configuration, f"amplitude-{number:02d}-{repeat:02d}",
+            partial(reverse, configuration, parameters, amplitude_rad), parameters.load_kg, parameters.balanced,
+            angle_rad=parameters.angle_rad, amplitude_rad=amplitude_rad, repeat=repeat,
         )
         for (number, amplitude_rad), repeat in product(enumerate(parameters.amplitudes_rad, 1), repeats)
     ]  # fmt: skip

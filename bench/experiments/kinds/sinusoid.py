@@ -6,7 +6,7 @@ from math import cos, pi, sin
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.followed_motion import FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
@@ -56,18 +56,14 @@ def _point(parameters: SinusoidParameters, time_s: float) -> SetPoint:
 
 def _plan(parameters: SinusoidParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     return [
-        TrialPlan(
-            name=f"sinusoid-{repeat:02d}",
-            conditions=conditions(
-                configuration,
-                load_kg=parameters.load_kg,
-                balanced=False,
-                frequency_hz=parameters.frequency_hz,
-                amplitude_rad=parameters.amplitude_rad,
-                repeat=repeat,
-            ),
-            procedure=partial(follow_sinusoid, configuration, parameters),
-            load_kg=parameters.load_kg,
+        trial_plan(
+            configuration,
+            f"sinusoid-{repeat:02d}",
+            partial(follow_sinusoid, configuration, parameters),
+            parameters.load_kg,
+            frequency_hz=parameters.frequency_hz,
+            amplitude_rad=parameters.amplitude_rad,
+            repeat=repeat,
         )
         for repeat in range(1, parameters.repeats + 1)
     ]

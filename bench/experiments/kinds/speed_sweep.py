@@ -12,7 +12,7 @@ from bench.control.cycle import Procedure
 from bench.errors import LimitError, quantity_message
 from bench.experiments.analysis.saturation import Ending, next_run_up, remaining_rad_s
 from bench.experiments.analysis.steady_speed import steady_speed_results
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.kinds.load_sweep import PAPER_LOADS_KG, Load
 from bench.experiments.parts.refusal import refuse_currents, refuse_duty, refuse_load, refuse_speed
 from bench.experiments.parts.stroke import MARGIN_RAD, OVERSPEED, Held, Strokes, StrokeSettings, Window, refuse_travel
@@ -138,12 +138,14 @@ def _remaining(step: Step, windows: list[Window]) -> float:
 
 def _plan(parameters: SpeedSweepParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     return [
-        TrialPlan(
-            name=f"load-{number:02d}-{step.held.value}-{step.number:02d}-{direction}",
-            conditions=conditions(configuration, load_kg=load_kg, balanced=True, direction=direction, **step.condition),
-            procedure=partial(measure_steady_speed, configuration, parameters, step, direction),
-            load_kg=load_kg,
-            balanced=True,
+        trial_plan(
+            configuration,
+            f"load-{number:02d}-{step.held.value}-{step.number:02d}-{direction}",
+            partial(measure_steady_speed, configuration, parameters, step, direction),
+            load_kg,
+            True,
+            direction=direction,
+            **step.condition,
         )
         for number, load_kg in enumerate(parameters.loads_kg, 1)
         for step in parameters.levels()

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.followed_motion import Followed, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
@@ -119,13 +119,12 @@ def _steady(followed: list[Followed], stroke: list[SetPoint], speed_rad_s: float
 
 def _plan(parameters: SteadySpeedsParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     return [
-        TrialPlan(
-            name=f"speed-{number:02d}",
-            conditions=conditions(
-                configuration, load_kg=parameters.load_kg, balanced=False, held_speed_rad_s=speed_rad_s
-            ),
-            procedure=partial(carry_at_speed, configuration, parameters, speed_rad_s),
-            load_kg=parameters.load_kg,
+        trial_plan(
+            configuration,
+            f"speed-{number:02d}",
+            partial(carry_at_speed, configuration, parameters, speed_rad_s),
+            parameters.load_kg,
+            held_speed_rad_s=speed_rad_s,
         )
         for number, speed_rad_s in enumerate(parameters.speeds_rad_s, 1)
     ]

@@ -8,7 +8,7 @@ from pydantic import model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, numbers
@@ -44,24 +44,20 @@ class StepsParameters(Parameters):
 
 def _plan(parameters: StepsParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     return [
-        TrialPlan(
-            name=f"step-{repeat:03d}",
-            conditions=conditions(
-                configuration,
-                load_kg=parameters.load_kg,
-                balanced=False,
-                angle_rad=parameters.angle_rad,
-                approach_rad_s=parameters.approach_rad_s(repeat),
-                repeat=repeat,
-            ),
-            procedure=partial(
+        trial_plan(
+            configuration,
+            f"step-{repeat:03d}",
+            partial(
                 measure_at_rest,
                 configuration,
                 parameters.angle_rad,
                 parameters.searches,
                 parameters.approach_rad_s(repeat),
             ),
-            load_kg=parameters.load_kg,
+            parameters.load_kg,
+            angle_rad=parameters.angle_rad,
+            approach_rad_s=parameters.approach_rad_s(repeat),
+            repeat=repeat,
         )
         for repeat in range(1, parameters.repeats + 1)
     ]

@@ -1,6 +1,7 @@
 """A master and a slave: the slave follows, and its load is reflected to the operator, with compensation and without."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from math import sqrt
@@ -15,11 +16,12 @@ from bench.control.drive_factory import is_simulated
 from bench.errors import ConfigurationError, LimitError, quantity_message
 from bench.experiments.analysis.reflection_results import error_results, rest_results, truth_n_m, widest_swing
 from bench.experiments.analysis.stability_margin import STAGE_S, ladder, margin
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, conditions
+from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.load_follower import LoadFollower
 from bench.experiments.parts.pair_joints import MARGIN_RAD, Coupling, PairJoints, PairPart, Way
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
 from bench.json_types import Value, number, numbers
+from compensator.lab.recordings.recording import Condition
 
 LEAD_S = 0.5  # coupled, before the first reach and after the last
 REST_S = 6.0  # to settle, to search, and back, roughly
@@ -92,27 +94,17 @@ def _reaches(
 
 
 def _plan(parameters: TeleoperationParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
-    wall = {} if parameters.wall_rad is None else {"wall_rad": parameters.wall_rad}
-    return [
-        TrialPlan(
-            name=f"{way}-{repeat:02d}",
-            conditions=conditions(
-                configuration,
-                load_kg=parameters.load_kg,
-                balanced=False,
-                reflect=way,
-                force_scale=parameters.force_scale,
-                motion_scale=parameters.motion_scale,
-                repeat=repeat,
-                **wall,
-            ),
-            procedure=partial(teleoperate, configuration, parameters, way),
-            load_kg=parameters.load_kg,
-            wall_rad=parameters.wall_rad,
+    wall: dict[str, Condition] = {} if parameters.wall_rad is None else {"wall_rad": parameters.wall_rad}
+    plans = [
+        trial_plan(
+            configuration, f"{way}-{repeat:02d}", partial(teleoperate, configuration, parameters, way),
+            parameters.load_kg, False, reflect=way, force_scale=parameters.force_scale,
+            motion_scale=parameters.motion_scale, repeat=repeat, **wall,
         )
         for repeat in range(1, parameters.repeats + 1)
         for way in parameters.reflect
-    ]
+    ]  # fmt: skip
+    return [replace(plan, wall_rad=parameters.wall_rad) for plan in plans]
 
 
 def _refuse(parameters: TeleoperationParameters, configuration: BenchConfiguration) -> None:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, ParameterError
-from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, conditions
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.injection import RESTS_S, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import MODES, Signal, play, refuse_signal
@@ -58,18 +58,14 @@ class WaveformParameters(Parameters):
 def _plan(parameters: WaveformParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     signal = parameters.signal(configuration.control.period_s)
     return [
-        TrialPlan(
-            name=f"waveform-{repeat:02d}",
-            conditions=conditions(
-                configuration,
-                load_kg=parameters.load_kg,
-                balanced=parameters.balanced,
-                waveform=parameters.source,
-                repeat=repeat,
-            ),
-            procedure=partial(play, configuration, signal),
-            load_kg=parameters.load_kg,
-            balanced=parameters.balanced,
+        trial_plan(
+            configuration,
+            f"waveform-{repeat:02d}",
+            partial(play, configuration, signal),
+            parameters.load_kg,
+            parameters.balanced,
+            waveform=parameters.source,
+            repeat=repeat,
         )
         for repeat in range(1, parameters.repeats + 1)
     ]

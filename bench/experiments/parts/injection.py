@@ -10,7 +10,7 @@ from pydantic import model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, quantity_message
-from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan, conditions
+from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
 from bench.json_types import Value, numbers
@@ -68,18 +68,14 @@ def plan_injection(
     """One trial per repeat."""
     signal = parameters.signal(wave)
     return [
-        TrialPlan(
-            name=f"{name}-{repeat:02d}",
-            conditions=conditions(
-                configuration,
-                load_kg=parameters.load_kg,
-                balanced=parameters.balanced,
-                **parameters.held(),
-                repeat=repeat,
-            ),
-            procedure=partial(play, configuration, signal),
-            load_kg=parameters.load_kg,
-            balanced=parameters.balanced,
+        trial_plan(
+            configuration,
+            f"{name}-{repeat:02d}",
+            partial(play, configuration, signal),
+            parameters.load_kg,
+            parameters.balanced,
+            **parameters.held(),
+            repeat=repeat,
         )
         for repeat in range(1, parameters.repeats + 1)
     ]
