@@ -24,11 +24,7 @@ _NO_STATE = "it does not say whether its power stage is on: shown is what it was
 class CubemarsActuator(MitActuator):
     """An actuator, opened: out of its motor mode, which is off.
 
-    Args:
-        port: open.
-        settings: which actuator.
-        joint: scales and signs.
-        leave: called when it is closed; gives the port back.
+    Arguments as of `MitActuator`.
 
     Raises:
         DriveError: at the first step that fails.

@@ -22,11 +22,7 @@ SIMULATED_SOFTWARE = 0xFFFF_FFFF
 class DamiaoActuator(MitActuator):
     """An actuator, opened: disabled, its ranges known, its watchdog set.
 
-    Args:
-        port: open.
-        settings: which actuator.
-        joint: scales and signs.
-        leave: called when it is closed; gives the port back.
+    Arguments as of `MitActuator`.
 
     Raises:
         DriveError: at the first step that fails.

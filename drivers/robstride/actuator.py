@@ -25,11 +25,7 @@ SIMULATED_SERIAL = "5349 4d55 4c41 5445"  # of our own simulated device: "SIMULA
 class RobstrideActuator(MitActuator):
     """An actuator, opened: stopped, its ranges looked at, its watchdog set.
 
-    Args:
-        port: open.
-        settings: which actuator.
-        joint: scales and signs.
-        leave: called when it is closed; gives the port back.
+    Arguments as of `MitActuator`.
 
     Raises:
         DriveError: at the first step that fails.

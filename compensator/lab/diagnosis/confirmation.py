@@ -1,4 +1,4 @@
-"""Whether a candidate is confirmed: what its evidence and its gain on held-out rows have to be."""
+"""Whether a candidate is confirmed by its evidence and its gain on held-out rows, and whether it is worth adding."""
 
 import math
 
@@ -11,7 +11,6 @@ from compensator.lab.screening.evidence import VERY_STRONG
 
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
-
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
 LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
 LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
