@@ -25,14 +25,17 @@ def commissioning(tmp_path: Path) -> Iterator[RunningService]:
 
 
 @pytest.fixture(scope="package")
-def chromium() -> Iterator[Any]:
+def chromium(service: RunningService) -> Iterator[Any]:
     """One browser context for all tests; session storage is each page's own."""
     if CHROMIUM is None:
         pytest.skip("Chromium is not installed; on Debian: apt-get install chromium")
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
-        yield browser.new_context()
+        # one process draws all pages, as long as one of them is open: to start one takes longer than most tests
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=[*ARGUMENTS, "--process-per-site"])
+        context = browser.new_context()
+        context.new_page().goto(f"{service.url}/static/style.css")
+        yield context
         browser.close()
 
 

@@ -197,7 +197,7 @@ def test_a_delay_beside_a_missing_effect_is_a_note():
     assert any("Measurement delay is missing" in note.text for note in found.notes)
 
 
-@pytest.mark.timeout(400)  # 22 diagnoses
+@pytest.mark.timeout(600)  # 22 diagnoses
 def test_a_complete_model_lacks_nothing():
     """A false alarm in at most 3 % of sets; the bound leaves room for luck only, not for a worse rate.
 
