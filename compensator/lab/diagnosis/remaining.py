@@ -7,7 +7,7 @@ from compensator.lab.diagnosis.bending import still_bending
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.wording import LOOK_AT_HOSES
 from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
-from compensator.lab.left_over.left_over import LeftOver, left_for_sure, left_over, unexplained_in_words
+from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.left_over.swinging import Swing, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering, wandering_in_words
@@ -28,10 +28,10 @@ def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: 
         generic: evidence for free curves.
         p_value: of the effects.
     """
-    left, bursts = left_for_sure(fit, gathered), _bursts(gathered)
+    left, bursts = left_over(gathered), _bursts(gathered)
     if bursts is not None and bursts.of_effort > LEAST_SHARE:
         return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials], p_value)
-    if left is None:
+    if not left.is_more_than_noise:
         return None
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
     wanders = _wanders(fit, left)

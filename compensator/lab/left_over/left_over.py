@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
@@ -14,18 +12,15 @@ from compensator.lab.left_over.ripple import ripple_of
 from compensator.lab.left_over.swinging import Swing, swing_of, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering, wandering_of
 from compensator.lab.left_over.white_rows import WhiteRows
-from compensator.lab.model.fit import fit_model, widened
+from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.recording import BoolArray
-from compensator.lab.recordings.regimes import Regime, within_spread
-from compensator.lab.rows.dataset import BLOCK_S, Dataset
+from compensator.lab.recordings.regimes import Regime
+from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import least_p_value
-from compensator.lab.screening.gathering import gather_curves, with_noise
-
-LEFT_SHARE = 0.8  # of the rows, at least: at a low cut-off the spread is most of a stroke, and few rows tell little
+from compensator.lab.screening.gathering import gather_curves
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,34 +123,3 @@ def unexplained_in_words(
         f"{none}, yet what is left, {left.remainder.share:.1%} of the effort, is more than noise; {how}. "
         "Repeat a trial: what comes again is the joint's, what does not has changed since."
     )
-
-
-def left_for_sure(fit: Fit, gathered: Candidates) -> LeftOver | None:
-    """What a model leaves on the rows that are judged; None where it is no more than noise, or of reversals alone.
-
-    The final filter spreads what happens at a reversal to both sides, in the same way in every trial of one motion.
-    What reaches rows that slide so is small beside any effect, but follows speed, load or temperature, as reversals do,
-    and is no noise. To name an effect these rows are worth more than they mislead; that something is left, be it so
-    small, must hold without them.
-
-    Args:
-        fit: the model.
-        gathered: what it may be missing.
-    """
-    left = left_over(gathered)
-    if not left.is_more_than_noise:
-        return None
-    clear = fit.training & ~_reached(fit.dataset)
-    if gathered.show_in != "sliding" or clear.sum() < LEFT_SHARE * fit.training.sum():
-        return left
-    again = with_noise(gather_curves(fit_model(fit.dataset, fit.names, clear, fit.shapes)))
-    return left if left_over(again).is_more_than_noise else None
-
-
-def _reached(dataset: Dataset) -> BoolArray:
-    """Rows that something of a reversal reaches through the filter, shape (N,)."""
-    reached = []
-    for trial in dataset.trials:
-        signals = trial.signals
-        reached.append(within_spread(signals.velocity, dataset.scales.slow, signals.rate_hz, dataset.cutoff_hz))
-    return np.concatenate([own[trial.picked] for own, trial in zip(reached, dataset.trials, strict=True)])

@@ -13,8 +13,6 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 SLIDE_MARGIN_S = 0.04
-# of the cut-off: beyond, the filter leaves a fortieth of a blow, and rows at reversals are off by so many times noise
-SPREAD_PERIODS = 1.4
 STUCK_AFTER_S = 0.1
 # of the time in which a joint is slow: it passes through rest with half of it below half of `slow`, and turns with 0.7
 STANDING_SHARE = 0.6
@@ -77,21 +75,6 @@ def _after_reversal(velocity: FloatArray, slow: float, rate_hz: float) -> BoolAr
     for change in changes:
         near[change : change + after] = True
     return near
-
-
-def within_spread(velocity: FloatArray, slow: float, rate_hz: float, cutoff_hz: float) -> BoolArray:
-    """Rows that the final filter brings something of slow motion or of a reversal to, shape (n,).
-
-    Args:
-        velocity: filtered velocity, shape (n,).
-        slow: speed below which the direction of motion is uncertain.
-        rate_hz: of the rows.
-        cutoff_hz: of the final low-pass.
-    """
-    turned = np.diff(np.sign(velocity), prepend=np.sign(velocity[:1])) != 0.0  # a quick reversal may have no slow row
-    there = (turned | (np.abs(velocity) < slow)).astype(np.uint8)
-    spread: BoolArray = maximum_filter1d(there, 2 * round(SPREAD_PERIODS / cutoff_hz * rate_hz) + 1) > 0
-    return spread
 
 
 def near_flank_change(carried: FloatArray, rate_hz: float) -> BoolArray:

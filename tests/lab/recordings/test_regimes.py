@@ -3,14 +3,11 @@
 import numpy as np
 import pytest
 
-from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.regimes import (
-    SPREAD_PERIODS,
     STANDING_PERIODS,
     Regime,
     classify,
     near_flank_change,
-    within_spread,
 )
 
 RATE_HZ = 200.0
@@ -77,24 +74,3 @@ def test_rows_near_a_change_of_flank():
     assert not near[432:].any()
     assert not near_flank_change(np.zeros(800), RATE_HZ).any()
     assert not near_flank_change(np.ones(800), RATE_HZ).any()
-
-
-def test_the_filter_spreads_slow_motion_and_quick_reversals_to_both_sides():
-    reach = round(SPREAD_PERIODS / 14.0 * RATE_HZ)
-    quick, slow = np.where(np.arange(800) < 400, 1.0, -1.0), np.full(800, 1.0)
-    slow[400:404] = 0.05
-    for velocity, last in ((quick, 400), (slow, 403)):
-        spread = within_spread(velocity, 0.1, RATE_HZ, 14.0)
-        assert spread[400 - reach : last + reach + 1].all()
-        assert not spread[: 400 - reach].any()
-        assert not spread[last + reach + 1 :].any()
-    assert not within_spread(np.ones(800), 0.1, RATE_HZ, 14.0).any()
-
-
-@pytest.mark.parametrize("cutoff_hz", [5.0, 14.0])
-def test_beyond_its_spread_the_filter_leaves_a_fortieth_of_a_blow(cutoff_hz):
-    blow = np.zeros(4001)
-    blow[2000] = 1.0
-    left = np.abs(low_pass(blow, cutoff_hz, RATE_HZ))
-    beyond = np.abs(np.arange(4001) - 2000) > SPREAD_PERIODS / cutoff_hz * RATE_HZ
-    assert left[beyond].max() < left.max() / 40.0
