@@ -36,7 +36,7 @@ def estimated(one: Recording) -> Recording:
 @pytest.fixture(scope="module")
 def alone() -> Fit:
     recorded = [estimated(one) for one in recordings(Joint(extra=wavy), Bench(noise=0.003), seed=3)]
-    return fit_model(make_dataset(recorded, FACTS, Processing()), [*DEFAULT, "dead_time"])
+    return fit_model(make_dataset(recorded, FACTS, Processing(cutoff_hz=2.0)), [*DEFAULT, "dead_time"])
 
 
 @pytest.fixture(scope="module")
