@@ -45,6 +45,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     singles = [one for one in answered if one.family == "single" and one.standings[0] is not None]
     strong = [one for one in singles if _standing(one).detectability >= MUST_NAME]
     right = [one for one in strong if _is_right(one)]
+    whole = [one for one in right if one.laws < SHOWN]  # beside other laws of friction a flag is right
     weak = [one for one in singles if _standing(one).detectability < MUST_NOT_NAME]
     shown = [one for one in singles if _standing(one).ratio >= SHOWN]
     findable = [one for one in shown if _standing(one).ratio >= _standing(one).smallest]
@@ -69,7 +70,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _mean("two effects of r >= 0.3, recall", "at least 95 %", [_recall(one) for one in pairs], 0.95),
         *_outside(answered),
         *_withheld(singles),
-        _share("false flags of something outside, where the truth was named", 0.05, right, _flagged, at_most=True),
+        _share("false flags of something outside, where the truth was named", 0.05, whole, _flagged, at_most=True),
         _share("the same, where two were named and no other", 0.05, exact, _flagged, at_most=True),
         _share("memory effects named first", 0.9, memory, _is_right),
         _share("the same, where d' >= 6", 0.9, [one for one in memory if _must_be_named(one)], _is_right),

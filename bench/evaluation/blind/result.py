@@ -105,6 +105,7 @@ class Result:
         withheld: answer of the lab to the same data where the catalogue has no name for the truth; None: not asked.
         withheld_left: standing of the truth beside what was named in its place; None where the oracle cannot say.
         settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
+        laws: r of friction laws that the base model does not have, whatever else is hidden.
     """
 
     key: str
@@ -122,6 +123,7 @@ class Result:
     settled: Settled | None = None
     withheld: LabAnswer | None = None
     withheld_left: Standing | None = None
+    laws: float = 0.0
 
     def to_json(self) -> dict[str, object]:
         """Nested dicts."""

@@ -118,11 +118,11 @@ def judge_second(item: Item) -> Result:
     except LabError as refusal:
         return Result(
             item.key, item.family, joint.truths, names, joint.sizes, None, standings, outside, float("nan"),
-            refusal=str(refusal),
+            refusal=str(refusal), laws=joint.laws,
         )  # fmt: skip
     return Result(
         item.key, item.family, joint.truths, names, joint.sizes, answer, standings, outside, error, rivals, seconds,
-        withheld=unlisted, withheld_left=left,
+        withheld=unlisted, withheld_left=left, laws=joint.laws,
     )  # fmt: skip
 
 

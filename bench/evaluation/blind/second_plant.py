@@ -3,7 +3,7 @@
 The only file that knows both the second plant and the lab's names. Names count for scoring alone.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
@@ -14,7 +14,7 @@ from compensator.lab.recordings.recording import Condition, Recording
 from sim_backend.second_plant.draw import draw_joint
 from sim_backend.second_plant.foreign_mechanisms import FOREIGN
 from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint, Level
-from sim_backend.second_plant.oracle import Evidence, evidence, floor_of
+from sim_backend.second_plant.oracle import Evidence, evidence, floor_of, laws_ratio
 from sim_backend.second_plant.recording import SecondRecording, record
 
 NAMES: dict[str, str] = {
@@ -62,10 +62,17 @@ LARGEST_STEP = 2.5  # of the logarithm of a size at once
 
 @dataclass(frozen=True)
 class SecondJoint:
-    """A joint and how far each of its mechanisms stands out alone, in their order."""
+    """A joint, and what the oracle says of it.
+
+    Attributes:
+        drawn: the joint.
+        evidences: how far each of its mechanisms stands out alone, in their order.
+        laws: r of its friction laws, as far as the base model does not have them.
+    """
 
     drawn: DrawnJoint
     evidences: tuple[Evidence, ...]
+    laws: float
 
     @property
     def truths(self) -> tuple[str, ...]:
@@ -89,7 +96,9 @@ def second_joint(seed: int, names: tuple[str, ...], ratios: tuple[float, ...], l
     """
     alone = [_of_ratio(seed, name, ratio, level) for name, ratio in zip(names, ratios, strict=True)]
     drawn = draw_joint(seed, names, [size for size, _ in alone], level)
-    return SecondJoint(drawn, tuple(found for _, found in alone))
+    plain = replace(drawn, hidden=())
+    laws = laws_ratio(plain, floor_of(plain, "")) if level == "foreign" else 0.0
+    return SecondJoint(drawn, tuple(found for _, found in alone), laws)
 
 
 def _of_ratio(seed: int, name: str, wanted: float, level: Level) -> tuple[float, Evidence]:
