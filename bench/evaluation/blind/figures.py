@@ -45,7 +45,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     singles = [one for one in answered if one.family == "single" and one.standings[0] is not None]
     strong = [one for one in singles if _standing(one).detectability >= MUST_NAME]
     right = [one for one in strong if _is_right(one)]
-    whole = [one for one in right if one.laws < SHOWN]  # beside other laws of friction a flag is right
+    whole = [one for one in right if not one.laws]  # beside other laws of friction a flag is right
     weak = [one for one in singles if _standing(one).detectability < MUST_NOT_NAME]
     shown = [one for one in singles if _standing(one).ratio >= SHOWN]
     findable = [one for one in shown if _standing(one).ratio >= _standing(one).smallest]
