@@ -60,7 +60,6 @@ class WhiteRows:
     Attributes:
         noise: that a complete model would leave.
         whitening: of weighted rows.
-        weights: of the rows, shape (n,).
         stretch: of each row, 0 .. S - 1, shape (n,).
         basis: orthonormal, of what the model explains, whitened, shape (n, b).
         residual: that it leaves, whitened, shape (n,).
@@ -68,7 +67,6 @@ class WhiteRows:
 
     noise: Noise
     whitening: Whitening
-    weights: FloatArray
     stretch: IntArray
     basis: FloatArray
     residual: FloatArray
@@ -94,7 +92,7 @@ class WhiteRows:
         residual = _bounded(white[:, -1] - basis @ (basis.T @ white[:, -1]))
         residual -= basis @ (basis.T @ residual)
         _, stretch = np.unique(gathered.fit.dataset.block_index[gathered.rows], return_inverse=True)
-        return cls(noise, whitening, gathered.weights, stretch.reshape(-1), basis, residual)
+        return cls(noise, whitening, stretch.reshape(-1), basis, residual)
 
     def beside(self, columns: FloatArray) -> FloatArray:
         """Weighted columns (n, k), whitened, without what the model explains of them."""

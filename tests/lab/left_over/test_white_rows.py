@@ -16,7 +16,7 @@ def rows(coefficients) -> WhiteRows:
     noise = learnt(coloured(np.random.default_rng(2)))
     count = len(STRETCH)
     residual = np.asarray(coefficients)[STRETCH] * COLUMN[:, 0]
-    return WhiteRows(noise, Whitening(()), np.ones(count), STRETCH, np.empty((count, 0)), residual)
+    return WhiteRows(noise, Whitening(()), STRETCH, np.empty((count, 0)), residual)
 
 
 def test_what_is_in_all_stretches_is_foretold_but_for_the_best_one():
