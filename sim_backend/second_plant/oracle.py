@@ -1,12 +1,15 @@
 """How far a mechanism stands out of recordings: what an ideal judge could know, who has both joints to compare.
 
 The joint is recorded without noise, and led without the mechanism along the same motion (`led`). Of both efforts, the
-base model over the motion that the encoder shows takes what it can; the difference D of what is left is the mechanism's
-evidence.
+base model over the motion that the encoder shows takes what it can; the difference D of what is left would be the
+mechanism's evidence, did the recording hold it. Motion between two samples or two counts is in D, but no recording
+shows it: a rigid joint that followed every blow of a backlash would need torques that nobody has measured. So of D
+counts what the recording's own remainder R has of it, by least squares.
 
     s = rms that the base model leaves of the joint without the mechanism, with noise, in steady motion, near
         reversals, and where the current is commanded, each for itself
-    r = sqrt(mean((D / s)^2))
+    a = R'D / D'D, both over s, 0 <= a <= 1
+    r = a sqrt(mean((D / s)^2))
     lambda = n / v ln(1 + r^2),   v = (1 + rho_1) / (1 - rho_1) of that remainder (rows per independent row)
     d' = sqrt(lambda (1 - rho^2)), rho the largest correlation of D / s with another mechanism's columns
 """
@@ -110,12 +113,16 @@ def laws_ratio(joint: DrawnJoint, floor: Floor) -> float:
 
 
 def _shown(joint: DrawnJoint, plain: DrawnJoint, floor: Floor) -> tuple[Rows, FloatArray, FloatArray]:
-    """Rows of a joint; what the base model leaves more of it than of a plain one, in motion; that model's basis."""
+    """Rows of a joint; how much more the base model leaves of it, in motion, than of a plain one; that model's basis."""
     rows, led = (Rows.of(recorded, joint.scales) for recorded in record_beside(joint, plain))
     weight = 1.0 / floor.left[rows.stratum]
     basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[rows.moving])
-    shown = (_remainder(rows, joint, floor.left) - _remainder(led, joint, floor.left))[rows.moving]
-    return rows, shown - basis @ (basis.T @ shown), basis
+    left, left_of_plain = (_remainder(one, joint, floor.left)[rows.moving] for one in (rows, led))
+    differs = left - left_of_plain
+    differs -= basis @ (basis.T @ differs)
+    power = float(differs @ differs)
+    held = float(np.clip(differs @ left / power, 0.0, 1.0)) if power > 0.0 else 0.0
+    return rows, held * differs, basis
 
 
 def _correlation(shown: FloatArray, basis: FloatArray, columns: FloatArray) -> float:
