@@ -8,8 +8,8 @@ from compensator.lab.recordings.reversals import deflection
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Distances from a thousandth to a tenth of the travel."""
-    return [(float(share * motion.position_span),) for share in np.geomspace(1e-3, 0.1, 7)]
+    """Distances from a ten-thousandth to a tenth of the travel: a gear gives by some hundredths of a degree."""
+    return [(float(share * motion.position_span),) for share in np.geomspace(1e-4, 0.1, 10)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
