@@ -17,8 +17,8 @@ class ErrorBudget:
 
     Attributes:
         wandering: dry friction, or a constant force, wanders in time, or jumps; of each of the three.
-        swing: it swings at one frequency, the motor's voltage or none as its carrier.
-        ripple: it swings with the voltage, by a matched filter, whose chances hold far into the tail.
+        swing: it swings at one frequency.
+        ripple: it swings so with the voltage, as nothing in a joint that lacks nothing does.
         line: it comes back with the position.
         growing: it does so, and grows with the square of the speed, which nothing in a joint that lacks nothing does.
     """
@@ -37,8 +37,8 @@ class ErrorBudget:
 
 PLAIN = ErrorBudget(
     wandering=5e-4,
-    swing=1e-4,
-    ripple=1e-3,
+    swing=5e-5,
+    ripple=5e-4,
     line=1e-6,
     growing=1e-4,
 )

@@ -6,17 +6,14 @@ from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
-from compensator.lab.left_over.orders import Line, growing_line_of, line_of, recurring_in_words
+from compensator.lab.left_over.orders import Line, line_of, recurring_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
-from compensator.lab.left_over.ripple import ripple_of
-from compensator.lab.left_over.swinging import Swing, swing_of, swinging_in_words
+from compensator.lab.left_over.swinging import Swing, ripple_of, swing_of, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering, wandering_of
-from compensator.lab.left_over.white_rows import WhiteRows
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import least_p_value
@@ -50,16 +47,14 @@ def left_over(gathered: Candidates) -> LeftOver:
     """Judge what a model leaves on the rows where a family shows.
 
     Near reversals a formula of memory that is nearly right leaves some in every stretch, so that nothing is asked to be
-    constant there; nor is it asked not to swing: teeth and shafts do, each reversal anew, at a frequency of their own.
+    constant there.
     """
     dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
     steady = gathered.show_in == "sliding"
     determined = RowWeights.learnt(dataset, gathered.fit.residual, rows).determined(dataset, rows)
     remainder = remainder_of(dataset, determined * base.residual / gathered.weights, rows)
-    sliding = dataset.regime[rows] == Regime.SLIDING
-    swing = swing_of(dataset, base.residual[sliding], rows & (dataset.regime == Regime.SLIDING))
-    if swing is not None and not swing.of_voltage and remainder.share <= LEAST_SHARE:
-        swing = None  # so little may be of the motion, whose own frequencies most trials can share
+    # so little may be of the motion, whose own frequencies most trials can share
+    swing = swing_of(gathered) if remainder.share > LEAST_SHARE else None
     if not steady:
         return LeftOver(remainder, swing)
     if not _is_plain(gathered.fit):
@@ -67,12 +62,7 @@ def left_over(gathered: Candidates) -> LeftOver:
         return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), WANDERING_BESIDE_A_NAME))
     in_motion = gather_in_motion(gathered.fit)
     wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering)
-    white = WhiteRows.of(gathered)
-    if white is None:
-        return LeftOver(remainder, swing, wandering)
-    swing = swing or ripple_of(in_motion)
-    line = line_of(gathered, white) or growing_line_of(gathered, white, PLAIN.growing)
-    return LeftOver(remainder, swing, wandering, line)
+    return LeftOver(remainder, swing or ripple_of(in_motion), wandering, line_of(gathered))
 
 
 def gather_constants(gathered: Candidates) -> Constants:

@@ -1,41 +1,40 @@
 """Whether what a model leaves comes back with the position: order analysis, whatever the order, and the catalogue.
 
 What turns with the joint, the motor or a wheel between them comes back after so much travel: an order, in cycles per
-turn. A periodogram over the position, on rows whitened by the noise that a complete model would leave, holds cosine and
-sine of every order against that noise, once as a force and once against the motion, as friction is (Lomb 1976, Scargle
-1982: least squares at uneven places). Chance has as many tries as there are independent orders, twice.
-
-Noise that is learnt from all that is left has a line in it, spread over a band, and so hides it. What may be a line is
-looked at again, against noise that it has no part in.
+turn. A periodogram over the position holds cosine and sine of every order against those around, as a force and against
+the motion, as friction is, beside all that the model and the chain explain (Lomb 1976, Scargle 1982: least squares at
+uneven places). Chance has as many tries as there are independent orders, for each.
 
 A line in one stretch may be of time as well as of position, so that the others must foretell what each stretch holds.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from compensator.lab.effects.effect import Motion
 from compensator.lab.left_over.error_budget import PLAIN
+from compensator.lab.left_over.lines import TINY, chance_of_one, is_peak, over_noise
 from compensator.lab.left_over.waves import Waves
-from compensator.lab.left_over.white_rows import FORETOLD, LOOK_AGAIN, WhiteRows
 from compensator.lab.model.held_out_error import rms
-from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.base import Base
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG
 
-STEPS = 3.0  # per width of a line, so that none falls between two orders
-MOST_ORDERS = 1500  # a joint of many turns is looked at up to so many
+STEPS = 4.0  # per width of a line, as of those in time
+MOST_ORDERS = 2000  # a joint of many turns is looked at up to so many
+REACH = (2.0, 40.0)  # widths: of a line to either side, and of noise that is smooth
 SLOW = 0.02  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
-TINY = float(np.finfo(float).tiny)
+FORETOLD = 20.0  # evidence, as 2 ln L, of what all other stretches foretell of each, the best one left out
 LEAST_OF_EFFORT = 0.0005  # root mean square: no sensor is more linear
+NEGLIGIBLE = 1e-8  # share of a direction in what columns explain
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,23 +43,20 @@ class Line:
 
     Attributes:
         order: cycles per turn; of a linear joint, cycles per unit of position.
-        against_motion: it changes its sign with the direction of motion, as friction does.
+        kind: a force, friction, or what grows with the square of the speed.
         chance: of such a line at any order, in noise alone.
         share: its root mean square over the effort's.
         foretold: its evidence (2 ln L) in each stretch by the coefficients of all others, without the best stretch.
-        growing: its amplitude grows with the square of the speed.
     """
 
     order: float
-    against_motion: bool
+    kind: str
     chance: float
     share: float
     foretold: float
-    growing: bool = False
 
-    def is_there(self, most: float) -> bool:
-        """Whether it is no noise, by the chance up to which it is none, nor next to nothing, nor of one stretch."""
-        return self.chance <= most and self.foretold >= FORETOLD and self.share >= LEAST_OF_EFFORT
+
+KINDS = FORCE, FRICTION, GROWING = ("force", "against the motion", "grows with the speed")
 
 
 @dataclass(frozen=True)
@@ -95,78 +91,135 @@ class _Path:
             2.0 * np.pi * dataset.cutoff_hz,
         )
 
+    @property
+    def once(self) -> float:
+        """The width of a line: once over the travel [rad per unit of position]."""
+        return float(2.0 * np.pi / max(float(np.ptp(self.position)), TINY))
+
+    @property
+    def orders(self) -> FloatArray:
+        """From once over the travel to what the filter takes off even the slowest rows [rad per unit of position]."""
+        highest = self.cutoff_rad_s / max(float(np.quantile(self.speed, SLOW)), TINY)
+        count = int(np.clip((highest / self.once - 1.0) * STEPS, 1.0, MOST_ORDERS))
+        orders: FloatArray = self.once * (1.0 + np.arange(count) / STEPS)
+        return orders
+
     def columns(self, orders: FloatArray) -> FloatArray:
         """Cosines, then sines, of orders (m,) [rad per unit of position], filtered and weighted, shape (n, 2m)."""
-        over = np.outer(self.speed, orders) / self.cutoff_rad_s
-        passed = 1.0 / (1.0 + over ** (2 * FILTER_ORDER))  # there and back
+        passed = 1.0 / (1.0 + (np.outer(self.speed, orders) / self.cutoff_rad_s) ** (2 * FILTER_ORDER))  # both ways
         passed *= self.weight[:, None]
         phase = np.outer(self.position, orders)
         return np.concatenate([passed * np.cos(phase), passed * np.sin(phase)], axis=1)
 
-
-def line_of(
-    gathered: Candidates, white: WhiteRows, most: float = PLAIN.line, look_again: float = LOOK_AGAIN
-) -> Line | None:
-    """The line that is least by chance; None where none is there for sure.
-
-    Args:
-        gathered: the model.
-        white: its rows.
-        most: chance in noise alone up to which it is none.
-        look_again: the same in noise that is learnt with it, up to which one without it is asked.
-    """
-    path = _Path.of(gathered)
-    orders, sizes = _scanned(path, white)
-    against, best = divmod(int(np.argmax(sizes)), len(orders))
-    tries = sizes.size / STEPS
-    chance = min(1.0, tries * white.noise.chance(float(sizes[against, best]), 2))
-    if chance > max(most, look_again):
-        return None
-    columns = path.columns(orders[best : best + 1]) * (path.direction[:, None] if against else 1.0)
-    if most < chance <= look_again:
-        white = white.cleared(gathered, columns)
-        chance = min(1.0, tries * _chance(white, columns))
-    line = _line(gathered, white, columns, float(orders[best]), chance)
-    line = replace(line, against_motion=bool(against))
-    return line if line.is_there(most) else None
+    def factor(self, kind: str) -> FloatArray:
+        """Of such columns of one kind, shape (n, 1)."""
+        factors = {FORCE: np.ones_like(self.speed), FRICTION: self.direction, GROWING: self.speed**2}
+        return factors[kind][:, None]
 
 
-def growing_line_of(gathered: Candidates, white: WhiteRows, most: float) -> Line | None:
-    """The line of any order that grows with the square of the speed, and is likelier so; None where none is there.
+def line_of(gathered: Candidates, most: float = PLAIN.line, most_growing: float = PLAIN.growing) -> Line | None:
+    """The line that is least by chance; None where none is there for sure, of more than one stretch.
 
-    An angle that is misread round and round seems to be accelerated so; a force of any kind is as large when slow.
+    An angle that is misread round and round seems to be accelerated so: it grows with the square of the speed, as no
+    force does, and has to be likelier so.
 
     Args:
         gathered: the model.
-        white: its rows.
-        most: chance in noise alone, over all orders, up to which it is none.
+        most: chance in noise alone, over all orders and both kinds, up to which a force, or friction, is none.
+        most_growing: the same of what grows with the speed.
     """
-    path = _Path.of(gathered)
-    orders, steady = _scanned(path, white)
-    growing = np.concatenate(
-        [_sizes_of(white, path.columns(some) * path.speed[:, None] ** 2) for some in _portions(path, orders)]
-    )
-    best = int(np.argmax(growing))
-    chance = min(1.0, len(orders) / STEPS * white.noise.chance(float(growing[best]), 2))
-    if chance > most or growing[best] < steady.max() + VERY_STRONG:
+    path, base = _Path.of(gathered), gathered.as_measured(WITH_CHAIN)
+    orders = path.orders
+    sizes = _scanned(path, base, orders, KINDS)
+    peaks = [one for kind in (FORCE, FRICTION) if (one := _peak(path, base, sizes[kind], kind)) is not None]
+    tries = len(orders) / STEPS
+    best = min(peaks, key=lambda one: one.chance, default=None)
+    if best is not None and min(1.0, 2.0 * tries * best.chance) <= most:
+        return _line(gathered, path, base, best, 2.0 * tries)
+    growing = _peak(path, base, sizes[GROWING], GROWING)
+    if growing is None or tries * growing.chance > most_growing:
         return None
-    columns = path.columns(orders[best : best + 1]) * path.speed[:, None] ** 2
-    line = replace(_line(gathered, white, columns, float(orders[best]), chance), growing=True)
-    return line if line.is_there(most) else None
+    steady = max(float(sizes[kind].max()) for kind in (FORCE, FRICTION))
+    likelier = float(sizes[GROWING].max()) >= steady + VERY_STRONG * growing.noise
+    return _line(gathered, path, base, growing, tries) if likelier else None
 
 
-def _chance(white: WhiteRows, columns: FloatArray) -> float:
-    """Of so much in noise alone at one order, by its cosine and sine (n, 2)."""
-    beside = orthonormal(white.beside(columns))
-    return white.noise.chance(float(np.sum((white.residual @ beside) ** 2)), max(beside.shape[1], 1))
+@dataclass(frozen=True)
+class _Peak:
+    """The order that stands out most.
+
+    Attributes:
+        kind: of the line.
+        order: in rad per unit of position.
+        chance: of so much at this order, in noise alone.
+        noise: mean square of what it puts into a direction.
+    """
+
+    kind: str
+    order: float
+    chance: float
+    noise: float
 
 
-def _line(gathered: Candidates, white: WhiteRows, columns: FloatArray, order: float, chance: float) -> Line:
-    """The line of cosine and sine (n, 2) of an order [rad per unit of position]."""
-    coefficients, foretold = white.foretold(white.beside(columns))
-    own, basis = columns @ coefficients, gathered.as_measured(WITH_CHAIN).basis
-    share = rms((own - basis @ (basis.T @ own)) / gathered.weights) / rms(gathered.fit.dataset.effort[gathered.rows])
-    return Line(order / _cycle(gathered.fit.dataset), False, chance, share, foretold)
+def _scanned(path: _Path, base: Base, orders: FloatArray, kinds: Sequence[str]) -> dict[str, FloatArray]:
+    """What cosine and sine of orders (m,) gain together beside the model, each kind of shape (m,)."""
+    sizes: dict[str, list[FloatArray]] = {kind: [] for kind in kinds}
+    for some in np.array_split(orders, -(-2 * len(orders) * len(path.position) // AT_ONCE)):
+        columns = path.columns(some)
+        for kind, found in sizes.items():
+            waves = Waves.of(path.factor(kind) * columns, base.basis, base.residual)
+            found.append(waves.where(np.all(waves.left > NEW * waves.whole, axis=0)))
+    return {kind: np.concatenate(found) for kind, found in sizes.items()}
+
+
+def _peak(path: _Path, base: Base, sizes: FloatArray, kind: str) -> _Peak | None:
+    """Of the sizes (m,) of all orders; None where none stands out.
+
+    The noise at an order is what is left around with the line in the model: where only the slowest rows show it, it
+    spreads over many orders.
+    """
+    orders = path.orders
+    over, _ = over_noise(orders, sizes[None], np.ones(1), (REACH[0] * path.once, REACH[1] * path.once))
+    standing_out = np.where(is_peak(sizes), over[0], 0.0)
+    if not standing_out.any():
+        return None
+    best = int(np.argmax(standing_out))
+    around = orders[np.abs(orders - orders[best]) <= REACH[1] * path.once]
+    beside = base.extended(path.factor(kind) * path.columns(orders[best : best + 1]))
+    left = _scanned(path, beside, around, (kind,))[kind]
+    noise = 0.5 * float(np.mean(left[left > 0.0])) if left.any() else TINY  # of two
+    chance = chance_of_one(float(sizes[best]) / (2.0 * noise), np.count_nonzero(left) / STEPS)
+    return _Peak(kind, float(orders[best]), chance, noise)
+
+
+def _line(gathered: Candidates, path: _Path, base: Base, peak: _Peak, tries: float) -> Line | None:
+    """The line of a peak, of as many that were tried; None where it is next to nothing, or of one stretch."""
+    columns = path.factor(peak.kind) * path.columns(np.array([peak.order]))
+    left = columns - base.basis @ (base.basis.T @ columns)
+    _, stretch = np.unique(gathered.fit.dataset.block_index[gathered.rows], return_inverse=True)
+    coefficients, foretold = foretold_by_others(left, base.residual, stretch.reshape(-1))
+    share = rms(left @ coefficients / gathered.weights) / rms(gathered.fit.dataset.effort[gathered.rows])
+    if foretold < FORETOLD * peak.noise or share < LEAST_OF_EFFORT:
+        return None
+    order = peak.order / _cycle(gathered.fit.dataset)
+    return Line(order, peak.kind, min(1.0, tries * peak.chance), share, foretold / peak.noise)
+
+
+def foretold_by_others(columns: FloatArray, residual: FloatArray, stretch: np.ndarray) -> tuple[FloatArray, float]:
+    """Coefficients of columns (n, k) beside the model; what they explain of each stretch by those of all others.
+
+    Of coefficients c that is 2 c's - c'Nc, of the stretch's scores s and normal matrix N. The best stretch is left out:
+    what is in one alone may be of that moment.
+    """
+    count, size = int(stretch.max()) + 1, columns.shape[1]
+    scores = np.array([np.bincount(stretch, one * residual, count) for one in columns.T]).T
+    products = (columns[:, :, None] * columns[:, None, :]).reshape(-1, size**2)
+    normal = np.array([np.bincount(stretch, one, count) for one in products.T]).T.reshape(-1, size, size)
+    whole, sums = normal.sum(axis=0), scores.sum(axis=0)
+    others = (np.linalg.pinv(whole - normal, rcond=NEGLIGIBLE) @ (sums - scores)[:, :, None])[:, :, 0]
+    evidence = 2.0 * np.sum(others * scores, axis=1) - np.einsum("si,sij,sj->s", others, normal, others)
+    coefficients: FloatArray = np.linalg.pinv(whole, rcond=NEGLIGIBLE) @ sums
+    return coefficients, float(evidence.sum() - evidence.max())
 
 
 def _cycle(dataset: Dataset) -> float:
@@ -174,40 +227,8 @@ def _cycle(dataset: Dataset) -> float:
     return 2.0 * np.pi if dataset.facts.joint == "linear" else 1.0
 
 
-def _orders(path: _Path) -> FloatArray:
-    """From once over the travel to what the filter takes off even the slowest rows [rad per unit of position]."""
-    once = 2.0 * np.pi / max(float(np.ptp(path.position)), TINY)
-    highest = path.cutoff_rad_s / max(float(np.quantile(path.speed, SLOW)), TINY)
-    count = int(np.clip((highest / once - 1.0) * STEPS, 1.0, MOST_ORDERS))
-    orders: FloatArray = once * (1.0 + np.arange(count) / STEPS)
-    return orders
-
-
-def _scanned(path: _Path, white: WhiteRows) -> tuple[FloatArray, FloatArray]:
-    """Every order (m,), and how far it is beyond noise as a force and against the motion, shape (2, m)."""
-    orders = _orders(path)
-    return orders, np.concatenate([_sizes(path, white, some) for some in _portions(path, orders)], axis=1)
-
-
-def _portions(path: _Path, orders: FloatArray) -> list[FloatArray]:
-    """So few orders at a time that their columns need little memory."""
-    return np.array_split(orders, -(-4 * len(orders) * len(path.position) // AT_ONCE))
-
-
-def _sizes(path: _Path, white: WhiteRows, orders: FloatArray) -> FloatArray:
-    """How far each order (m,) is beyond noise, as a force and against the motion, shape (2, m); chi-squared of two."""
-    plain = path.columns(orders)
-    return np.array([_sizes_of(white, plain), _sizes_of(white, plain * path.direction[:, None])])
-
-
-def _sizes_of(white: WhiteRows, columns: FloatArray) -> FloatArray:
-    """Of cosines and sines (n, 2m); 0 where they cannot be told from the model, or from each other."""
-    waves = Waves.of(white.whitening.whitened(columns), white.basis, white.residual)
-    return waves.where(np.all(waves.left > NEW * waves.whole, axis=0))
-
-
 def recurring_in_words(line: Line, facts: Facts) -> str:
     """What comes back with the position, how often, and where to look."""
     per = "a turn of the joint" if facts.joint == "rotary" else f"per {facts.position_unit}"
-    way = ", against the motion" if line.against_motion else ", and grows with the speed" if line.growing else ""
+    way = {FORCE: "", FRICTION: ", against the motion", GROWING: ", and grows with the speed"}[line.kind]
     return f"comes back with the position about {line.order:.3g} times {per}{way}: look at what goes round so often"

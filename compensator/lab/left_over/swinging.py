@@ -1,42 +1,47 @@
-"""Whether what a model leaves swings at one frequency, the same in most trials: something that goes by itself.
+"""Whether what a model leaves swings at one frequency, the same in all motions: something that goes by itself.
 
-What is missing and follows the motion has the motion's frequencies, which differ from one waveform to the next; a
-supply that hunts, or something that turns, keeps its own. In each trial the power at a frequency, over that of the
-noise around it, is exponentially distributed if it is noise (Schuster 1898). The noise itself is not white: time stamps
-that jitter move the position, and its second derivative is the steeper the higher the frequency. The lower median of
-the trials' powers tells, by the binomial distribution: a few trials that hold a line do not make it so. Trials of one
-motion, with whatever load, hold what the model misses of that motion in common; they tell once, by their mean.
+What is missing and follows the motion has the motion's frequencies, which differ from one waveform to the next; what
+turns by itself, or a supply that ripples, keeps its own. A matched filter tells: cosine and sine of every frequency,
+times the *carrier*, without what the model explains of them, by least squares in each trial, as the phase is another
+one in each. The carrier is one for what acts on the joint, and the voltage that drives the motor for what a supply
+does: near reversals, too, where some joints have five rows of six.
 
-What drives the motor may swing, too: a supply that ripples, unseen, changes the effort by so much of the voltage, and
-that voltage follows the motion. Its line is found in the residual times the voltage alone, as a modulated carrier's is.
+What the model misses of a motion comes back with it, whatever the load. So trials of one motion tell once, by their
+mean, and no motion more than up to a bound. Trials and motions count by how much a line would give them, the carrier's
+power over the noise: for a small one, no other sum tells as much (the locally best test), and what is gained where
+there is hardly any voltage is not the supply's.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, log
 
 import numpy as np
-from scipy.stats import binom
 
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
-from compensator.lab.rows.dataset import Dataset, Trial
+from compensator.lab.left_over.lines import MOST_GAIN, TINY, WIDTH, chance_over_noise, is_peak, over_noise
+from compensator.lab.left_over.waves import Waves
+from compensator.lab.recordings.recording import FloatArray, IntArray
+from compensator.lab.rows.dataset import Trial
+from compensator.lab.screening.base import Base
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
-CHANCE = PLAIN.swing  # of such a line in noise alone, with any carrier
 LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
 BAND = 0.9  # of the cut-off
-AROUND_HZ = 1.0  # to both sides: noise is smooth over so much, and a line is narrower
-BESIDE = (1.5, 3.5)  # widths of a line, to each side: what is as large there is no line, but noise that is slow
-WIDTH = 4  # of a line, in frequencies: none falls between two of them
+REACH_HZ = (0.3, 1.0)  # of a line in a trial of some seconds, and of noise that is smooth
 FEWEST_ROWS = 20
 FEWEST_TRIALS = 4
 ALIKE = 0.9  # correlation of two trials' velocities: of one motion
 MOMENTS = 200  # of a trial, at which that is looked at
+AT_ONCE = 2**21  # values of columns
+NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
+LEAST_SHARE = 1e-3  # of what counts most: what counts less is left out
+
+Indices = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 
 @dataclass(frozen=True, slots=True)
 class Swing:
-    """A line that most trials share.
+    """A line that all motions share.
 
     Attributes:
         frequency_hz: of it.
@@ -49,44 +54,130 @@ class Swing:
     of_voltage: bool
 
 
-def swing_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Swing | None:
-    """The line that most trials share most surely, if any does for sure.
-
-    Args:
-        dataset: of the rows.
-        residual: of the chosen rows, shape (rows.sum(),).
-        rows: chosen, shape (N,).
-    """
-    voltage = dataset.rows_of([voltage_of(trial) for trial in dataset.trials])[rows]
-    carriers = [(False, np.ones(len(residual)))]
-    if np.any(voltage):
-        carriers.append((True, voltage))
-    found = [_line(dataset, residual * carrier, rows, of_voltage) for of_voltage, carrier in carriers]
-    there = [one for one in found if one is not None and len(carriers) * one.chance <= CHANCE]
-    return min(there, key=lambda one: one.chance, default=None)
-
-
 @dataclass(frozen=True)
-class Frequencies:
-    """That a line is looked for at.
+class _Told:
+    """What motions tell of each frequency.
 
     Attributes:
-        at_hz: some per width of a line, shape (m,); independent: how many of them are.
+        gains: over the noise, shape (k, m).
+        shares: by which motions count, shape (k,).
+        known_from: how many independent powers tell the noise at each frequency, shape (m,).
     """
 
-    at_hz: FloatArray
-    independent: float
+    gains: FloatArray
+    shares: FloatArray
+    known_from: FloatArray
 
-    @classmethod
-    def of(cls, times_s: list[FloatArray], cutoff_hz: float) -> "Frequencies":
-        """Of trials' rows, each (n,)."""
-        longest_s = max(float(time_s[-1] - time_s[0]) for time_s in times_s)
-        highest_hz = BAND * min(cutoff_hz, *(0.5 / float(np.median(np.diff(time_s))) for time_s in times_s))
-        at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (WIDTH * longest_s))
-        return cls(at_hz, max((highest_hz - LEAST_HZ) * longest_s, 1.0))
+    @property
+    def whole(self) -> FloatArray:
+        """What all motions gain together, shape (m,)."""
+        found: FloatArray = self.shares @ np.minimum(self.gains, MOST_GAIN)
+        return found
 
 
-def voltage_of(trial: Trial) -> FloatArray:
+def swing_of(gathered: Candidates) -> Swing | None:
+    """What acts on the joint at one frequency; None where nothing does for sure."""
+    return _line(gathered, gathered.weights, of_voltage=False, most=PLAIN.swing)
+
+
+def ripple_of(gathered: Candidates) -> Swing | None:
+    """What goes with the voltage at one frequency; None where nothing does for sure, or where no duty is known.
+
+    Args:
+        gathered: the model, on all rows in motion.
+    """
+    dataset = gathered.fit.dataset
+    voltage = dataset.rows_of([_voltage_of(trial) for trial in dataset.trials])[gathered.rows]
+    return _line(gathered, gathered.weights * voltage, of_voltage=True, most=PLAIN.ripple)
+
+
+def _line(gathered: Candidates, carrier: FloatArray, of_voltage: bool, most: float) -> Swing | None:
+    """The line of a weighted carrier (n,) that stands out most; None where its chance in noise alone is more."""
+    dataset, rows = gathered.fit.dataset, gathered.rows
+    time_s = np.concatenate([dataset.time_of(trial) for trial in dataset.trials])[rows]
+    index = np.where(carrier != 0.0, dataset.trial_index[rows], -1)
+    numbers = [one for one in range(len(dataset.trials)) if (index == one).sum() >= FEWEST_ROWS]
+    if len(numbers) < FEWEST_TRIALS:
+        return None
+    trials = [np.flatnonzero(index == one) for one in numbers]
+    times_s = [time_s[own] for own in trials]
+    longest_s = max(float(own[-1] - own[0]) for own in times_s)
+    highest_hz = BAND * min(dataset.cutoff_hz, *(0.5 / float(np.median(np.diff(own))) for own in times_s))
+    at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (WIDTH * longest_s))
+    if len(at_hz) <= 2 * WIDTH:
+        return None
+    motions = motions_of([dataset.trials[one] for one in numbers])
+    told = _told(gathered, carrier, time_s, at_hz, trials, motions)
+    peaks = is_peak(told.whole)
+    if not peaks.any():
+        return None
+    best = int(np.argmax(np.where(peaks, told.whole, 0.0)))
+    independent = max((highest_hz - LEAST_HZ) * longest_s, 1.0)
+    by_chance = chance_over_noise(told.gains[:, best], told.shares, float(told.known_from[best]))
+    chance = min(1.0, independent * by_chance)
+    return Swing(float(at_hz[best]), chance, of_voltage) if chance <= most else None
+
+
+def _told(
+    gathered: Candidates,
+    carrier: FloatArray,
+    time_s: FloatArray,
+    at_hz: FloatArray,
+    trials: list[Indices],
+    motions: IntArray,
+) -> _Told:
+    """What trials (rows of each) tell of frequencies (m,), by their motions (trials,); carrier (n,) and time (n,).
+
+    Noise may be the denser the slower it is, so that frequencies below those that are asked count as noise, too.
+    """
+    base = gathered.as_measured(WITH_CHAIN)
+    step_hz = float(at_hz[1] - at_hz[0])
+    below = np.arange(at_hz[0] - step_hz, 0.0, -step_hz)[::-1]
+    every = np.concatenate([below, at_hz])
+    portions = -(-2 * len(every) * len(carrier) // AT_ONCE)
+    parts = [_gains(base, carrier, time_s, some, trials) for some in np.array_split(every, portions)]
+    gains = np.concatenate(parts, axis=1)
+    information = np.array([carrier[own] @ carrier[own] for own in trials]) / np.maximum(gains.mean(axis=1), TINY)
+    within, shares = _by_motion(information, motions)
+    counts = shares @ within
+    over, around = over_noise(every, gains, counts, REACH_HZ)
+    lasted_s = independent_s(counts, np.array([float(np.ptp(time_s[own])) for own in trials]))
+    return _Told((within @ over)[:, len(below) :], shares, around[len(below) :] * (step_hz * lasted_s))
+
+
+def _by_motion(information: FloatArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:
+    """How much each trial counts within its motion (k, trials), and the shares by which motions count (k,).
+
+    Args:
+        information: how much a line would give each trial, shape (trials,).
+        motions: of each trial, shape (trials,).
+    """
+    theirs = np.equal.outer(np.unique(motions), motions)
+    means = (theirs @ information) / theirs.sum(axis=1)
+    counts = means > LEAST_SHARE * means.max()
+    within = theirs[counts] * information
+    return within / within.sum(axis=1, keepdims=True), means[counts] / means.max()
+
+
+def independent_s(counts: FloatArray, lasted_s: FloatArray) -> float:
+    """How long one trial would last whose noise is known as well as that of trials (n,) as they count (n,)."""
+    return float(counts.sum() ** 2 / np.sum(counts**2 / lasted_s))
+
+
+def _gains(base: Base, carrier: FloatArray, time_s: FloatArray, at_hz: FloatArray, trials: list[Indices]) -> FloatArray:
+    """What each trial gains by each frequency (m,), shape (trials, m)."""
+    phase = 2.0 * np.pi * np.outer(time_s, at_hz)
+    columns = carrier[:, None] * np.concatenate([np.cos(phase), np.sin(phase)], axis=1)
+    return np.array([_gained(columns[own], base.basis[own], base.residual[own]) for own in trials])
+
+
+def _gained(columns: FloatArray, basis: FloatArray, residual: FloatArray) -> FloatArray:
+    """By cosines and sines (n, 2m) of one trial, beside what the model explains; 0 where they are not apart from it."""
+    waves = Waves.of(columns, basis, residual)
+    return waves.where(waves.left.sum(axis=0) > NEW * waves.whole.sum(axis=0))
+
+
+def _voltage_of(trial: Trial) -> FloatArray:
     """Duty times supply over the trial, up to a constant; zero where no duty is known."""
     signals = trial.signals
     channels = signals.recording.channels
@@ -96,31 +187,6 @@ def voltage_of(trial: Trial) -> FloatArray:
     supply = np.where(np.isfinite(signals.supply_v), signals.supply_v, 1.0)
     voltage: FloatArray = duty * supply
     return voltage
-
-
-def _line(dataset: Dataset, values: FloatArray, rows: BoolArray, of_voltage: bool) -> Swing | None:
-    """The frequency that stands out in most motions; None where there are too few trials."""
-    index = dataset.trial_index[rows]
-    parts = [
-        (number, dataset.time_of(trial)[rows[dataset.trial_index == number]], values[index == number])
-        for number, trial in enumerate(dataset.trials)
-        if int((index == number).sum()) >= FEWEST_ROWS
-    ]
-    parts = [(number, time_s, own) for number, time_s, own in parts if np.any(own)]
-    if len(parts) < FEWEST_TRIALS:
-        return None
-    frequencies = Frequencies.of([time_s for _, time_s, _ in parts], dataset.cutoff_hz)
-    at_hz = frequencies.at_hz
-    if len(at_hz) <= 2 * WIDTH:
-        return None
-    over = _over_noise(at_hz, [(time_s, own) for _, time_s, own in parts])
-    motions = motions_of([dataset.trials[number] for number, _, _ in parts])
-    told = np.array([over[motions == one].mean(axis=0) for one in np.unique(motions)])
-    lower = np.sort(told, axis=0)[(len(told) - 1) // 2]
-    best = int(np.argmax(np.where(is_peak(lower), lower, 0.0)))
-    count = len(told) - (len(told) - 1) // 2  # motions that hold so much, or more
-    chance = float(binom.sf(count - 1, len(told), exp(-float(lower[best]))))
-    return Swing(float(at_hz[best]), min(1.0, frequencies.independent * chance), of_voltage)
 
 
 def motions_of(trials: Sequence[Trial]) -> IntArray:
@@ -138,44 +204,7 @@ def motions_of(trials: Sequence[Trial]) -> IntArray:
     return np.array(numbers, dtype=np.int64)
 
 
-def is_peak(values: FloatArray) -> BoolArray:
-    """Which of the values (n,) are as large as all within the width of a line, to both sides.
-
-    At the ends, where one side is not known, none is: power that only rises towards the slow end is noise.
-    """
-    peaks = np.zeros(len(values), dtype=bool)
-    inner = slice(WIDTH, len(values) - WIDTH)
-    peaks[inner] = values[inner] >= np.lib.stride_tricks.sliding_window_view(values, 2 * WIDTH + 1).max(axis=1)
-    return peaks
-
-
-def _over_noise(at_hz: FloatArray, parts: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
-    """Power of each trial at each frequency over that of the noise, shape (trials, m).
-
-    Noise is the median around it, of all trials, or that of either side close by, where there is more. It may be the
-    denser the slower it is, so that frequencies below those that are asked count on the lower side.
-    """
-    step_hz = float(at_hz[1] - at_hz[0])
-    below = np.arange(at_hz[0] - step_hz, 0.0, -step_hz)[::-1]
-    every = np.concatenate([below, at_hz])
-    turns = 2j * np.pi
-    powers = np.array([np.abs(np.exp(-turns * np.outer(every, time_s)) @ own) ** 2 for time_s, own in parts])
-    asked = powers[:, len(below) :]
-    powers = powers / asked.mean(axis=1, keepdims=True)
-    floor = np.array([_noise_at(centre, every, powers, WIDTH * step_hz) for centre in at_hz])
-    over: FloatArray = log(2.0) * powers[:, len(below) :] / np.maximum(floor, np.finfo(float).tiny)
-    return over  # the median of Exp(1) is ln 2
-
-
-def _noise_at(centre_hz: float, every_hz: FloatArray, powers: FloatArray, width_hz: float) -> float:
-    """The median power (trials, m) of noise at a frequency where a line, if there is one, is so wide."""
-    apart = every_hz - centre_hz
-    chosen = [(np.abs(apart) <= AROUND_HZ) & (every_hz >= LEAST_HZ)]
-    chosen += [(way * apart >= BESIDE[0] * width_hz) & (way * apart <= BESIDE[1] * width_hz) for way in (-1, 1)]
-    return max(float(np.median(powers[:, some])) for some in chosen if some.any())
-
-
 def swinging_in_words(swing: Swing) -> str:
-    """What most trials share, and where to look."""
+    """What all motions share, and where to look."""
     where = "with the voltage: look at the supply" if swing.of_voltage else "in most trials: look at what turns"
     return f"swings at about {swing.frequency_hz:.2g} Hz {where}"

@@ -6,13 +6,13 @@ from inspect import signature
 import numpy as np
 import pytest
 
-from compensator.lab.left_over import left_over, ripple, swinging
+from compensator.lab.left_over import left_over, swinging
 from compensator.lab.left_over.error_budget import MOST, PLAIN, WANDERING_BESIDE_A_NAME
-from compensator.lab.left_over.orders import growing_line_of, line_of
+from compensator.lab.left_over.orders import line_of
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
-from compensator.lab.screening.gathering import gather, with_noise
-from tests.lab.left_over.judged import fitted, white_rows_of
+from compensator.lab.screening.gathering import gather, gather_curves
+from tests.lab.left_over.judged import fitted
 from tests.lab.synthetic import Joint, Law
 
 ROUGH = 0.02  # of Coulomb friction, root mean square
@@ -38,10 +38,16 @@ def test_a_complete_model_is_not_alarmed_about_more_often_than_the_budget_says()
     assert sum(parts) < PLAIN.whole <= MOST
 
 
-def test_each_question_has_its_own_part():
-    assert (PLAIN.swing, PLAIN.ripple) == (swinging.CHANCE, ripple.CHANCE)
+def test_each_question_has_its_own_part(monkeypatch):
+    asked = []
+    monkeypatch.setattr(swinging, "_line", lambda *_, of_voltage, most: asked.append((of_voltage, most)))
+    gathered = gather_curves(fitted())
+    swinging.swing_of(gathered)
+    swinging.ripple_of(gathered)
+    assert asked == [(False, PLAIN.swing), (True, PLAIN.ripple)]
     for question, part in ((line_of, PLAIN.line), (wandering_of, PLAIN.wandering)):
         assert signature(question).parameters["most"].default == part
+    assert signature(line_of).parameters["most_growing"].default == PLAIN.growing
 
 
 @pytest.mark.parametrize(("more", "chance"), [([], PLAIN.wandering), (["spring"], WANDERING_BESIDE_A_NAME)])
@@ -56,9 +62,9 @@ def test_what_a_further_formula_leaves_must_wander_more_surely(more, chance, mon
 
 @pytest.mark.parametrize("seed", [5, 7])
 def test_a_surface_that_is_a_little_rough_is_no_alarm(seed):
-    """Where it may be told by a chance of 1 in 1,000 it is one: what is of the path comes again in every stretch."""
-    gathered = with_noise(gather(fitted(rough(seed), seed)))
-    white = white_rows_of(gathered)
-    assert line_of(gathered, white) is None
-    assert growing_line_of(gathered, white, PLAIN.growing) is None
-    assert line_of(gathered, white, most=1e-3) is not None  # else this test shows nothing
+    assert line_of(gather(fitted(rough(seed), seed))) is None
+
+
+def test_a_rough_surface_would_be_an_alarm_by_a_chance_of_one_in_a_thousand():
+    """What is of the path comes again in every stretch; so orders have a smaller part of the budget than others."""
+    assert line_of(gather(fitted(rough(7), 7)), most=1e-3) is not None

@@ -9,22 +9,17 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import left_over
-from compensator.lab.left_over.orders import Line, growing_line_of, line_of
+from compensator.lab.left_over.orders import FORCE, FRICTION, GROWING, Line, foretold_by_others, line_of
 from compensator.lab.model.fitted import Fit
-from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.gathering import gather, with_noise
-from tests.lab.left_over.judged import fitted, white_rows_of
+from compensator.lab.screening.gathering import gather
+from tests.lab.left_over.judged import fitted
 
 ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known
 RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise
 
 
 def line(fit: Fit, most: float = PLAIN.line) -> Line | None:
-    return line_in(with_noise(gather(fit)), most)
-
-
-def line_in(gathered: Candidates, most: float = PLAIN.line) -> Line | None:
-    return line_of(gathered, white_rows_of(gathered), most)
+    return line_of(gather(fit), most)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -54,18 +49,15 @@ def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
     found = line(fit)
     assert found is not None
     assert found.order == pytest.approx(ORDER, rel=0.02)
-    assert not found.against_motion
+    assert found.kind == FORCE
     assert found.share == pytest.approx(RIPPLE_N_M / np.sqrt(2.0) / np.std(fit.dataset.effort), rel=0.5)
     answer = diagnose(fit)
     assert (answer.verdict, answer.remains) == ("nothing", True)
     assert f"comes back with the position about {found.order:.3g} times a turn of the joint:" in answer.sentence
 
 
-def test_a_line_does_not_hide_itself_in_noise_that_is_learnt_with_it():
-    gathered = with_noise(gather(fitted(lambda x: 0.55 * RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))))
-    white = white_rows_of(gathered)
-    assert line_of(gathered, white, 2e-4, look_again=0.0) is None
-    found = line_of(gathered, white, 2e-4)
+def test_a_line_does_not_hide_itself_in_the_noise_around():
+    found = line(fitted(lambda x: 0.55 * RIPPLE_N_M * np.cos(ORDER * x.q + 0.4)), 2e-4)
     assert found is not None
     assert found.order == pytest.approx(ORDER, rel=0.02)
 
@@ -74,7 +66,7 @@ def test_friction_that_rises_and_falls_with_the_position_is_told_as_such():
     found = line(fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q) * np.sign(x.v)))
     assert found is not None
     assert found.order == pytest.approx(ORDER, rel=0.02)
-    assert found.against_motion
+    assert found.kind == FRICTION
 
 
 def test_what_differs_along_the_path_but_does_not_come_back_is_no_line():
@@ -105,18 +97,18 @@ def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
 def test_cycles_of_a_linear_joint_are_counted_by_its_travel():
     fit = fitted(lambda x: 2.0 * RIPPLE_N_M * np.cos(ORDER * x.q))
     facts = replace(fit.dataset.facts, joint="linear")
-    gathered = with_noise(gather(fit))
-    found = line_in(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
+    gathered = gather(fit)
+    found = line_of(replace(gathered, fit=replace(fit, dataset=replace(fit.dataset, facts=facts))))
     assert found is not None
     assert found.order == pytest.approx(ORDER / (2.0 * np.pi), rel=0.02)
 
 
 def test_an_order_that_only_the_slowest_rows_show_is_told():
     """Teeth and magnets go round so often that the filter takes them off all but the ends of strokes."""
-    gathered = with_noise(gather(fitted(lambda x: 8.0 * RIPPLE_N_M * np.cos(QUICK_ORDER * x.q))))
+    gathered = gather(fitted(lambda x: 8.0 * RIPPLE_N_M * np.cos(QUICK_ORDER * x.q)))
     speed = np.abs(gathered.fit.dataset.rows_of([one.motion.velocity for one in gathered.fit.dataset.trials]))
     assert QUICK_ORDER * np.quantile(speed[gathered.rows], 0.1) > 2.0 * np.pi * gathered.fit.dataset.cutoff_hz
-    found = line_in(gathered)
+    found = line_of(gathered)
     assert found is not None
     assert found.order == pytest.approx(QUICK_ORDER, rel=0.02)
 
@@ -131,27 +123,40 @@ MISREAD_ORDER = 20.7
 def test_what_grows_with_the_speed_is_told_though_no_force_would_be():
     """An angle that is misread round and round seems to be accelerated so, and may have no name in the catalogue."""
     fit = fitted(lambda x: 0.5 * RIPPLE_N_M * x.v**2 * np.cos(MISREAD_ORDER * x.q + 0.4))
-    gathered = with_noise(gather(fit))
-    assert line_of(gathered, white_rows_of(gathered)) is None
-    found = left_over(gathered).line
+    assert line_of(gather(fit), most_growing=0.0) is None
+    found = left_over(gather(fit)).line
     assert found is not None
-    assert found.growing
+    assert found.kind == GROWING
     assert found.order == pytest.approx(MISREAD_ORDER, rel=0.05)
 
 
 def growing_line(law):
     """What of a ripple of some law grows with the square of the speed, at any order."""
-    gathered = with_noise(gather(fitted(lambda x: law(x) * np.cos(SLOW_ORDER * x.q + 0.4))))
-    return growing_line_of(gathered, white_rows_of(gathered), PLAIN.line)
+    return line_of(gather(fitted(lambda x: law(x) * np.cos(SLOW_ORDER * x.q + 0.4))), most=0.0)
 
 
 def test_an_acceleration_that_goes_round_grows_with_the_speed():
     found = growing_line(lambda x: 2.0 * RIPPLE_N_M * x.v**2)
     assert found is not None
-    assert found.growing
+    assert found.kind == GROWING
     assert found.order == pytest.approx(SLOW_ORDER, rel=0.1)
 
 
 @pytest.mark.parametrize("law", [lambda x: 4.0 * RIPPLE_N_M, lambda x: 4.0 * RIPPLE_N_M * np.sign(x.v), lambda x: 0.0])
 def test_neither_a_force_nor_friction_nor_noise_grows_with_the_speed(law):
     assert growing_line(law) is None
+
+
+STRETCH = np.repeat(np.arange(5), (40, 40, 40, 40, 400))
+COLUMN = np.random.default_rng(1).standard_normal((len(STRETCH), 1))
+
+
+def test_what_is_in_all_stretches_is_foretold_but_for_the_best_one():
+    coefficients, foretold = foretold_by_others(COLUMN, COLUMN[:, 0], STRETCH)
+    assert coefficients == pytest.approx([1.0])
+    assert foretold == pytest.approx(np.sum(COLUMN[STRETCH < 4] ** 2))
+
+
+@pytest.mark.parametrize("where", [0, 4])
+def test_what_is_in_one_stretch_alone_is_not(where):
+    assert foretold_by_others(COLUMN, (where == STRETCH) * COLUMN[:, 0], STRETCH)[1] <= 0.0

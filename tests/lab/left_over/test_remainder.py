@@ -13,6 +13,7 @@ from compensator.lab.left_over.swinging import swing_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from tests.lab.left_over.judged import leaving
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 
@@ -123,7 +124,7 @@ def test_noise_that_rises_with_frequency_does_not_swing(seed):
     found = remainder_of(fit.dataset, noise[fit.training], fit.training)
     assert found.share > 0.01
     assert not found.is_more_than_noise
-    assert swing_of(fit.dataset, noise[fit.training], fit.training) is None
+    assert swing_of(leaving(fit, noise[fit.training])) is None
 
 
 def test_too_few_stretches_to_name_anything_are_told_beside_what_is_left():

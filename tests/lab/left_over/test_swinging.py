@@ -9,16 +9,18 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.left_over import ripple
+from compensator.lab.left_over import lines, swinging
+from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import gather_in_motion, left_over
-from compensator.lab.left_over.ripple import MOST_GAIN, chance_of_sum, chance_over_noise, ripple_of
-from compensator.lab.left_over.swinging import Swing, motions_of, swing_of
+from compensator.lab.left_over.lines import MOST_GAIN, chance_of_sum, chance_over_noise
+from compensator.lab.left_over.swinging import REACH_HZ, Swing, motions_of, ripple_of, swing_of
 from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.gathering import gather_curves, with_noise
+from tests.lab.left_over.judged import leaving
 from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
@@ -53,7 +55,7 @@ def fitted(made: list[Recording]) -> Fit:
 
 
 def swing(fit: Fit) -> Swing | None:
-    return swing_of(fit.dataset, fit.residual[fit.training], fit.training)
+    return swing_of(gather_curves(fit))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -78,7 +80,7 @@ def test_noise_that_is_the_denser_the_slower_it_is_has_no_line_at_the_slow_end(f
     time_s = dataset.rows_of([trial.signals.time_s - trial.signals.time_s[0] for trial in dataset.trials])[rows]
     times_s = [time_s[numbers == one] for one in np.unique(numbers)]
     random = np.random.default_rng(3)
-    found = [swing_of(dataset, slow_noise(times_s, random, fastest_hz), rows) for _ in range(20)]
+    found = [swing_of(leaving(fit, slow_noise(times_s, random, fastest_hz))) for _ in range(20)]
     assert sum(one is not None for one in found) <= 2
 
 
@@ -95,7 +97,7 @@ def test_a_line_in_the_torque_is_told_with_its_frequency():
 
 
 def test_a_ripple_of_the_supply_is_told_where_it_follows_the_voltage():
-    found = swing(fitted(rippling(recorded(noise=0.004), 0.02)))
+    found = rippled(fitted(rippling(recorded(noise=0.004), 0.02)))
     assert found is not None
     assert found.of_voltage
     assert found.frequency_hz == pytest.approx(RIPPLE_HZ, rel=0.05)
@@ -141,7 +143,7 @@ def test_what_few_trials_have_at_another_frequency_does_not_hide_the_line_of_all
 
 def test_a_line_is_paid_for_by_all_frequencies_that_were_tried(monkeypatch):
     fit = fitted(rippling(recorded(seed=1, noise=0.004), SMALL_RIPPLE))
-    monkeypatch.setattr(ripple, "chance_of_sum", lambda *_: 0.1 * ripple.CHANCE)
+    monkeypatch.setattr(lines, "chance_of_sum", lambda *_: 0.1 * PLAIN.ripple)
     assert rippled(fit) is None
 
 
@@ -163,7 +165,7 @@ def test_what_the_model_misses_of_a_motion_is_no_ripple_though_every_load_has_it
     missed = dict(zip(theirs, rippling([made[one] for one in theirs], 2.0 * SMALL_RIPPLE), strict=True))
     fit = fitted([missed.get(index, one) for index, one in enumerate(rippling(made, 0.0))])
     assert rippled(fit) is None
-    monkeypatch.setattr(ripple, "motions_of", lambda trials: np.arange(len(trials)))
+    monkeypatch.setattr(swinging, "motions_of", lambda trials: np.arange(len(trials)))
     assert rippled(fit) is not None
 
 
@@ -172,33 +174,33 @@ def test_what_swings_where_there_is_hardly_any_voltage_is_not_the_supplys(monkey
     hardly = [replace(one, channels={**one.channels, "duty": 0.1 * one.channels["duty"]}) for one in made[:7]]
     fit = fitted([*hardly, *rippling(recorded(seed=1, noise=0.004)[7:], 0.0)])
     assert rippled(fit) is None
-    even = ripple._by_motion
-    monkeypatch.setattr(ripple, "_by_motion", lambda known, motions: even(np.ones_like(known), motions))
+    even = swinging._by_motion
+    monkeypatch.setattr(swinging, "_by_motion", lambda known, motions: even(np.ones_like(known), motions))
     assert rippled(fit) is not None
 
 
 def test_a_motion_counts_as_its_trials_do_on_average():
     gains, information = np.array([[4.0], [0.0], [2.0]]), np.array([1.0, 3.0, 1.0])
-    within, shares = ripple._by_motion(information, np.array([0, 0, 1]))
+    within, shares = swinging._by_motion(information, np.array([0, 0, 1]))
     assert (within @ gains).tolist() == [[1.0], [2.0]]
     assert shares.tolist() == [1.0, 0.5]
 
 
 def test_the_noise_is_that_of_the_trials_that_count():
-    """Two trials count, whose noise grows with the frequency; that of forty others does not."""
+    """Twelve trials count, whose noise grows with the frequency; that of forty others does not."""
     random, at_hz = np.random.default_rng(4), np.arange(0.5, 20.0, 0.05)
-    gains = random.exponential(size=(42, len(at_hz)))
-    gains[:2] *= 1.0 + at_hz / 10.0
-    counts = np.array([1.0, 0.8, *[0.001] * 40])
-    over, _ = ripple._over_noise(at_hz, gains, counts)
+    gains = random.exponential(size=(52, len(at_hz)))
+    gains[:12] *= 1.0 + at_hz / 10.0
+    counts = np.array([1.0, 0.8] * 6 + [0.001] * 40)
+    over, _ = lines.over_noise(at_hz, gains, counts, REACH_HZ)
     told = counts @ np.minimum(over, MOST_GAIN) / counts.sum()
     assert told[at_hz > 15.0].mean() == pytest.approx(1.0, abs=0.06)
     assert told[at_hz < 5.0].mean() == pytest.approx(1.0, abs=0.06)
 
 
 def test_trials_that_hardly_count_tell_hardly_anything_of_the_noise():
-    assert ripple.independent_s(np.ones(2), np.array([5.0, 5.0])) == pytest.approx(10.0)
-    assert ripple.independent_s(np.array([1.0, *[1e-4] * 40]), np.full(41, 5.0)) == pytest.approx(5.0, rel=0.01)
+    assert swinging.independent_s(np.ones(2), np.array([5.0, 5.0])) == pytest.approx(10.0)
+    assert swinging.independent_s(np.array([1.0, *[1e-4] * 40]), np.full(41, 5.0)) == pytest.approx(5.0, rel=0.01)
 
 
 def test_where_no_voltage_is_known_nothing_ripples_with_it():
@@ -230,7 +232,7 @@ def test_what_turns_less_than_twice_in_a_trial_is_no_line(monkeypatch):
     fit = fitted(rippling(slow, 0.02, at_hz=(0.33,)))
     found = rippled(fit)
     assert found is None or found.frequency_hz > 0.4
-    monkeypatch.setattr(ripple, "is_peak", lambda values: np.ones(len(values), dtype=bool))
+    monkeypatch.setattr(swinging, "is_peak", lambda values: np.ones(len(values), dtype=bool))
     told = rippled(fit)
     assert told is not None
     assert told.frequency_hz < 0.4
@@ -279,7 +281,7 @@ def ringing(x: Truth) -> np.ndarray:
     """A line near reversals alone, as a shaft makes that swings there."""
     reversals_s = x.time_s[np.flatnonzero(np.diff(np.sign(x.v)) != 0.0)]
     apart_s = np.min(np.abs(x.time_s[:, None] - reversals_s), axis=1)
-    return 6.0 * line(x) * (apart_s < 0.03)
+    return 20.0 * line(x) * (apart_s < 0.03)
 
 
 def line(x: Truth) -> np.ndarray:
@@ -288,6 +290,5 @@ def line(x: Truth) -> np.ndarray:
 
 @pytest.mark.parametrize(("law", "swings"), [(ringing, False), (line, True)])
 def test_what_rings_after_reversals_is_what_a_formula_of_memory_leaves(law, swings):
-    fit = widened(fitted(recorded(law)), "moving")
-    assert swing_of(fit.dataset, fit.residual[fit.training], fit.training) is not None
-    assert (left_over(gather_curves(fit, "moving")).swing is not None) == swings
+    gathered = gather_curves(widened(fitted(recorded(law)), "moving"), "moving")
+    assert (left_over(gathered).swing is not None) == swings
