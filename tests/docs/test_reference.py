@@ -1,12 +1,15 @@
 """The generated reference has everything that the program has, and the check of the site sees what is wrong."""
 
+import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from pydantic import BaseModel, Field
 
 from bench.cli.commands import COMMANDS
 from bench.config.configuration import BenchConfiguration
+from bench.drives.sim.faults import FaultSettings
 from bench.experiments.registry import KINDS
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.recordings.recording import CHANNELS
@@ -51,6 +54,14 @@ def test_the_table_of_columns_is_that_of_the_program() -> None:
     assert all(f"| `{name}` |" in table for name in CHANNELS)
     page = text_of(ROOT / "docs" / "reference" / "recording-set.md")
     assert table in page, f"write this into docs/reference/recording-set.md:\n{table}"
+
+
+def test_the_guide_to_faults_names_every_kind_and_its_key() -> None:
+    page = text_of(ROOT / "docs" / "how-to" / "faults.md")
+    for one in FaultSettings.__subclasses__():
+        [kind] = get_args(one.model_fields["kind"].annotation)
+        own = one.model_fields.keys() - FaultSettings.model_fields.keys() - {"kind"}
+        assert re.search(rf"^\| `{kind}` \| .* \| {''.join(f'`{name}` ' for name in own)}\|$", page, re.MULTILINE), kind
 
 
 class Painted(BaseModel):
