@@ -6,4 +6,4 @@ import os
 # numpy reads it when it is first imported, so it stands in the package that is imported before any of its modules.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"

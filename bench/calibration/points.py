@@ -77,8 +77,8 @@ def _points_of(row: Row) -> list[FrictionPoint]:
 def identify_motor(rows: Iterable[Row]) -> MotorIdentification:
     """R and Ke of the motor, as far as the sweep tells: stalled rows are locked samples, saturated ones running.
 
-    Without a measured current, the lightest load alone is looked at: friction that differs from row to row would not
-    let even the lumps show.
+    Without a measured current only the rows of the lightest load are used, since friction differs between loads and
+    would hide even R and Ke.
 
     Raises:
         CalibrationError: too few rows.

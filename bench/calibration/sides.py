@@ -1,7 +1,7 @@
 """At which angles loads are searched for a calibration at rest, and whether both sides were.
 
-Friction that differs by direction and what the gear loses under a load look alike on one side alone: they add there,
-and take from each other on the other side. `python -m tests.figures.intervals` shows what that leaves.
+Loads on one side cannot separate friction that differs by direction from the gear's loss under a load. On one side the
+two add, on the other they subtract. `python -m tests.figures.intervals` shows the error that one side alone leaves.
 """
 
 from collections.abc import Sequence

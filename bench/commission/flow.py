@@ -166,7 +166,7 @@ class Commission:
         )
 
     def _refuse_raised(self) -> None:
-        """The arm was held level a moment ago, and an arm with much friction stays where a hand has left it."""
+        """Refuse to push an arm that still stands level: with much friction it stays where the hand has left it."""
         at_rad = self._motions.look(self._table.bench()).sample.position_rad
         if abs(at_rad) > DOWN_RAD:
             raise CommissionError(

@@ -57,7 +57,7 @@ class Course:
 class Guide:
     """One commissioning at a time, of the drive that the bench's configuration names.
 
-    What it moves are experiments of the bench: STOP, limits, record and the drive's watchdog hold for them as ever.
+    Every motion is an experiment of the bench, with STOP, limits, record and the drive's watchdog.
 
     Args:
         runner: of the bench.

@@ -127,7 +127,7 @@ def propose(joint: Joint, load_kg: float) -> Proposal:
 
 
 def _dead_band_rad(joint: Joint, proportional_a_rad: float) -> float:
-    """Wide enough for what the joint jumps as it lets go: friction falls, and the servo has to be left by as much.
+    """At least the jump of the joint at breakaway, when friction falls from its static to its Coulomb value.
 
     A narrower one makes the servo hunt (Armstrong-Helouvry, Dupont, Canudas de Wit 1994, section 4.1).
     """

@@ -34,7 +34,7 @@ class VirtualClock:
 
 
 class WallClock:
-    """Waits for the wall: sleeps most of the period, and spins through the last part of it.
+    """Follows the wall clock: sleeps most of the period, and spins through the last part of it.
 
     Deadlines lie on a grid, so lateness of one cycle does not shift the next. After a cycle that is late by more
     than a period the grid starts anew: cycles are lost, and counted, but never made up for in a burst.

@@ -1,4 +1,4 @@
-"""Cycles that a late host loses: what they do to a run that goes on, and to one that is being ended."""
+"""Control cycles lost by a late host: in a run that goes on, and while the joint brakes."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -15,8 +15,8 @@ MOST_KEPT = 100
 class LateCycles:
     """Remembers when the host was late last.
 
-    Between two cycles the drive goes on with the last command. A position servo whose drive was left with a current has
-    a joint that is elsewhere when the host is back: the limit that trips then is right, but tells half of it.
+    Between two cycles the drive goes on with the last command. A current moves the joint away from its set point while
+    the host is late. The limit that trips then is right, but its message has to name the late cycles as the cause.
 
     Args:
         clock: of the loop.

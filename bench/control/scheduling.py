@@ -88,13 +88,13 @@ def describe() -> str:
 
 @contextmanager
 def undisturbed(paced: bool) -> Iterator[None]:
-    """For the thread of the control loop, while an experiment runs: before other programs, where that is permitted.
+    """Real-time priority while an experiment runs, where that is permitted.
 
-    All threads of the process are, and those that they start. Each holds the interpreter now and then, and the loop
-    waits for it: one that another program keeps from running meanwhile keeps the loop waiting, too.
+    All threads of the process get it, and those that they start. The control loop waits for whichever of them holds the
+    interpreter, so a thread without priority would delay the loop, too.
 
     Args:
-        paced: whether the wall clock paces it; what takes all the time there is must not come before others.
+        paced: whether the wall clock paces the loop; a loop that never sleeps must not have priority.
     """
     gc.collect()
     gc.freeze()  # what the experiment makes itself is little, and soon looked through

@@ -10,7 +10,7 @@ from bench.store.errors import StoreError
 
 
 class Claim(Protocol):
-    """The word of a process that it runs experiments. It ends with the process, however that ends."""
+    """A process's claim that it runs experiments. It ends with the process, however that ends."""
 
     token: str
 
@@ -48,7 +48,7 @@ class Backend(Protocol):
         """First thing in a transaction that writes: wait for other writers, and make sure that it can be kept."""
 
     def make_durable(self, connection: Connection) -> None:
-        """What this transaction writes is on disk when it is committed, whatever else is promised of others."""
+        """Have this transaction on disk when it is committed, also where others are flushed later."""
 
     def sending(self, connection: Connection) -> AbstractContextManager[object]:
         """Statements in it may be sent without waiting for the ones before; what fails is raised at its end at last."""

@@ -21,8 +21,6 @@ from compensator.line_fit import Interval, t_quantile
 from compensator.motion.calibration_points import check_accelerations, check_points
 from compensator.motion.curve_regression import Solution, solve
 from compensator.motion.kinetic_friction import FloatArray, KineticFriction
-from compensator.motor import dc_motor as motor
-from compensator.motor.dc_motor import MotorConstants
 
 NOT_TOLD = "not determined: static friction is not told from Coulomb friction"
 NOT_COVERED = "below the lowest speed measured: extrapolated"
@@ -88,14 +86,6 @@ def fit(
     parameters = _intervals(solution, quantile, float(np.min(np.abs(speed))))
     curve = KineticFriction(**{name: one.value for name, one in parameters.items() if name not in NO_PART_OF_THE_CURVE})
     return FrictionFit(curve, parameters, solution.scatter_a, len(speed), solution.covariance[:5, :5])
-
-
-def fit_duty(
-    speed_rad_s: ArrayLike, duty: ArrayLike, supply_v: float, constants: MotorConstants, stribeck: bool = True
-) -> FrictionFit:
-    """As `fit`, from duties [1] at a supply [V]: eq. (3) takes the back-EMF out of them. Speeds of the motor shaft."""
-    speed, duties = np.asarray(speed_rad_s, dtype=np.float64), np.asarray(duty, dtype=np.float64)
-    return fit(speed, motor.current_a(constants, duties, speed, supply_v), stribeck)
 
 
 def _intervals(solution: Solution, quantile: float, slowest_rad_s: float) -> dict[str, Interval]:

@@ -22,7 +22,6 @@ def pages() -> dict[str, str]:
         "effects.md": effects.page(),
         "experiments.md": experiments.page(),
         "command-line.md": command_line.page(),
-        "channels.txt": recording_set.channels(),
         "mapping.txt": recording_set.mapping(),
         "rooms.txt": rooms.rooms(),
         "walls.txt": rooms.walls(),

@@ -7,7 +7,7 @@ from docs.generate.schema import keys
 
 
 def channels() -> str:
-    """The columns that the CSV of a trial may have."""
+    """The columns that the CSV of a trial may have, as docs/reference/recording-set.md has them; a test compares."""
     return table(
         ("column", "unit", "meaning"), [(code(one.name), code(one.unit), one.meaning) for one in CHANNELS.values()]
     )

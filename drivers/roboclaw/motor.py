@@ -40,7 +40,7 @@ class Motor:
         return self._link.together(self._set_duty, counts, reads)
 
     def fall_silent(self) -> None:
-        """Where it does not answer: one last word, then none, as every byte may put off its serial time-out."""
+        """Send a duty of 0 once where it does not answer, then nothing: every byte may put off its serial time-out."""
         self._link.shout(self._set_duty, 0)
         self._silent_until_s = perf_counter() + self._watchdog_s
 

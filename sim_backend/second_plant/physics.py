@@ -89,7 +89,6 @@ class Physics(NamedTuple):
     cable_kg_m: float = 0.0  # mass times lever arm
     cable_rad_s: float = 1.0
     other_axis_v: float = 0.0
-    other_axis_s: float = 1.0
     creep_per_s: float = 0.0  # belt slip of the arm, in rad/s per N m of belt tension
     interpolation_rad: float = 0.0
     interpolation_order: float = 1.0

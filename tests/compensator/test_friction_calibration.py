@@ -5,9 +5,9 @@ import pytest
 
 from compensator.errors import CalibrationError
 from compensator.motion.calibration_points import check_points
-from compensator.motion.friction_calibration import NOT_COVERED, NOT_TOLD, fit, fit_duty
+from compensator.motion.friction_calibration import NOT_COVERED, NOT_TOLD, fit
 from compensator.motion.kinetic_friction import KineticFriction
-from compensator.motor.dc_motor import MotorConstants
+from compensator.motor.dc_motor import MotorConstants, current_a
 
 # the balanced joint of the paper's rig under 100 g, at the motor shaft
 TRUE = KineticFriction(coulomb_a=0.16, static_a=0.27, stribeck_speed_rad_s=5.0, shape=2.0, viscous_a_s_rad=2.1e-3)
@@ -115,7 +115,8 @@ def test_coulomb_and_viscous_friction_alone():
 def test_duties_give_the_same_curve():
     constants = MotorConstants(8.0, 0.05)
     duty = (8.0 * measured(0, noise_a=0.0) + 0.05 * SPEEDS) / 24.0
-    assert fit_duty(SPEEDS, duty, 24.0, constants).curve.coulomb_a == pytest.approx(0.16, rel=1e-4)
+    found = fit(SPEEDS, current_a(constants, duty, SPEEDS, 24.0))
+    assert found.curve.coulomb_a == pytest.approx(0.16, rel=1e-4)
 
 
 NAN = float("nan")

@@ -1,18 +1,23 @@
 """The generated reference has everything that the program has, and the check of the site sees what is wrong."""
 
+import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from pydantic import BaseModel, Field
 
 from bench.cli.commands import COMMANDS
 from bench.config.configuration import BenchConfiguration
+from bench.drives.sim.faults import FaultSettings
 from bench.experiments.registry import KINDS
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.recordings.recording import CHANNELS
 from docs.generate import command_line, docstrings, effects, experiments, pages, recording_set, rest_interface, site
 from docs.generate.schema import keys
 from docs.generate.settings import bench_toml
+from tests.docs.documents import text_of
+from tests.paths import ROOT
 
 
 def test_every_command_has_a_section_with_its_options() -> None:
@@ -39,10 +44,24 @@ def test_every_setting_stands_with_unit_and_default() -> None:
     assert "## `[master.rig]`\n\nThe master's joint; that of the slave where left out." in page
 
 
-def test_every_effect_and_every_kind_and_every_channel_is_there() -> None:
+def test_every_effect_and_every_kind_is_there() -> None:
     assert all(f"\n## {effect.title}\n" in effects.page() for effect in catalogue().values())
     assert all(f"\n## {kind.title}\n" in experiments.page() for kind in KINDS.values())
-    assert all(f"| `{name}` |" in recording_set.channels() for name in CHANNELS)
+
+
+def test_the_table_of_columns_is_that_of_the_program() -> None:
+    table = recording_set.channels()
+    assert all(f"| `{name}` |" in table for name in CHANNELS)
+    page = text_of(ROOT / "docs" / "reference" / "recording-set.md")
+    assert table in page, f"write this into docs/reference/recording-set.md:\n{table}"
+
+
+def test_the_guide_to_faults_names_every_kind_and_its_key() -> None:
+    page = text_of(ROOT / "docs" / "how-to" / "faults.md")
+    for one in FaultSettings.__subclasses__():
+        [kind] = get_args(one.model_fields["kind"].annotation)
+        own = one.model_fields.keys() - FaultSettings.model_fields.keys() - {"kind"}
+        assert re.search(rf"^\| `{kind}` \| .* \| {''.join(f'`{name}` ' for name in own)}\|$", page, re.MULTILINE), kind
 
 
 class Painted(BaseModel):

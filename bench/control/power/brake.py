@@ -73,7 +73,7 @@ class Brake:
     def hold(self, reading: Reading) -> Action:
         """The action that holds the joint where the watch began.
 
-        A duty of a motor that is not known yet holds by being none: the winding is shorted.
+        Where the motor is not known yet the duty is 0: the shorted winding holds the joint.
         """
         mode = self.wanted.command.mode
         if mode is Mode.POSITION:

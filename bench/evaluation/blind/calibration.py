@@ -1,5 +1,4 @@
-"""Whether what is stated holds: how often luck looks as good as p says, how often a name is right at each d', and what
-d' comes of the one that was predicted."""
+"""Whether stated probabilities hold: p on complete models, right names by d', and measured d' by predicted d'."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -82,7 +81,7 @@ def named_by_prediction(results: Sequence[Result]) -> list[Stated]:
 
 
 def came_of_prediction(results: Sequence[Result]) -> list[Came]:
-    """Of every round of suggested trials, the truth's d' as it came, by the one that was predicted."""
+    """The measured d' of the truth after each round of suggested trials, by the predicted d'."""
     rounds = [pair for one in results if one.settled is not None for pair in one.settled.stated if min(pair) > 0.0]
     rows = []
     for words, _, held in _by_d_prime([(pair[0], pair) for pair in rounds], PREDICTED):

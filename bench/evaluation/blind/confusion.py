@@ -1,4 +1,4 @@
-"""Which effect is answered with which: where the lab goes wrong, by effect; and what the rivals say to the same."""
+"""Confusion table: the effect that was hidden, and the names that the lab and the rival methods gave."""
 
 from collections import Counter
 from collections.abc import Sequence

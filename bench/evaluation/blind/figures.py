@@ -114,7 +114,7 @@ def _named_by_other_laws(answered: Sequence[Result]) -> Figure:
 
 
 def _outside(answered: Sequence[Result]) -> list[Figure]:
-    """What no name of the catalogue stands for: mechanisms outside it, and those that it does not have yet."""
+    """Mechanisms outside the catalogue."""
     outside = [one for one in answered if one.names == ("",) and one.unexplained is not None]
     middle = [one for one in outside if 0.3 <= _unexplained_ratio(one) < 0.6]
     large = [one for one in outside if _unexplained_ratio(one) >= 0.6]
@@ -125,7 +125,7 @@ def _outside(answered: Sequence[Result]) -> list[Figure]:
 
 
 def _withheld(singles: Sequence[Result]) -> list[Figure]:
-    """What the catalogue knows, asked as if it did not: whatever the lab names, it has to say that this is not all."""
+    """Effects withheld from the catalogue: the lab may name another, but has to say that more is missing."""
     asked = [one for one in singles if one.withheld is not None]
 
     def says_so(one: Result) -> bool:
@@ -144,13 +144,13 @@ def _withheld(singles: Sequence[Result]) -> list[Figure]:
 
 
 def _can_be_flagged(one: Result) -> bool:
-    """Whether what is withheld leaves as much beside the formula named in its place as theory can find."""
+    """Whether the withheld effect leaves enough, beside the name given in its place, for theory to find it."""
     left = one.withheld_left
     return left is not None and left.ratio >= left.smallest
 
 
 def _unexplained_ratio(one: Result) -> float:
-    """The r of what no effect of the catalogue stands for: by how much the base model leaves more because of it."""
+    """The r of a mechanism outside the catalogue, from the growth of the base model's residual."""
     return ratio_of(one.unexplained or 1.0)
 
 

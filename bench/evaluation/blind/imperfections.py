@@ -1,4 +1,4 @@
-"""What a recording suffers on its way: lost rows and stamps that jitter. (Delay is the plant's own.)"""
+"""Faults of the line, applied to a recording: lost rows and time stamps that jitter. The plant itself has the delay."""
 
 from collections.abc import Sequence
 

@@ -96,7 +96,7 @@ def _unlisted(fit: Fit, truths: tuple[str, ...]) -> LabAnswer | None:
 
 
 def left_beside(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -> Standing | None:
-    """How far a truth stands out of the model with what was named in its place: all that is left to be flagged."""
+    """Evidence for the truth beside the name that was given in its place: what a flag has to rest on."""
     if not can_be_seen(fit, name):
         return None
     return standing(_judged(fit, base, list(named), name), name)

@@ -24,7 +24,7 @@ def memory_protocol(
 ) -> Protocol:
     """Excitation, reversals, breakaway ramps there and back through rests and rates, twice, and a chirp with a load.
 
-    Friction scatters from stop to stop, so that a rise of a fifth takes some seventy starts to be sure of.
+    Static friction scatters from start to start, so some seventy starts are needed to detect a rise of a fifth.
     """
     motions: dict[str, Value] = {"loads_kg": [0.0, heaviest_kg], "repeats": 1, "waveforms": list(WAVEFORMS)}
     motions |= {"speed_rad_s": round(top_rad_s, 2), "duration_s": duration_s}

@@ -94,10 +94,10 @@ def refitted(fit: Fit, recordings: Sequence[Recording]) -> Fit:
 
 @dataclass(frozen=True)
 class Scale:
-    """What an r is measured by: what the base model leaves of the joint without what it hides, in the effort's unit.
+    """The denominator of r, in the effort's unit: the base model's residual on the joint without the hidden mechanism.
 
-    Friction that scatters differs from recording to recording by as much as a small mechanism makes: its own part is
-    taken from two recordings of the joint with neither scatter nor noise, with it and without.
+    Scatter of friction changes a recording by as much as a small mechanism does. So the mechanism's own part comes from
+    two recordings without scatter and noise, one with the mechanism and one without.
 
     Attributes:
         item, attempt: whose joint.

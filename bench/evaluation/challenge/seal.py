@@ -1,6 +1,6 @@
-"""Seals an answer: a glance at the file does not spoil it, and a change of it or of the recordings is noticed.
+"""Seals an answer, so that nobody reads it by accident, and a change of it or of the recordings is noticed.
 
-The seal is no secret: whoever wants to look can. It keeps honest people honest.
+This is no encryption: whoever wants to read the answer can.
 """
 
 import base64

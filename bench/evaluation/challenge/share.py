@@ -1,4 +1,4 @@
-"""How much of the effort a hidden mechanism makes: the same joint with it and without it, everything else alike."""
+"""The share of the effort that a hidden mechanism changes: the same joint with it and without it."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ KIND = "excitation"  # moves alike in all, set point for set point
 def effort_share(with_it: Sequence[Recording], without: Sequence[Recording], again: Sequence[Recording]) -> float:
     """RMS of what the mechanism changes in the motor current over the current's own RMS, over all motions.
 
-    Stick and slip and noise make two runs differ whatever is hidden: that much is taken off the power of the change.
+    Two runs also differ by stick-slip and noise. The power of that difference is subtracted.
 
     Args:
         with_it: trials of the joint as it is.

@@ -1,4 +1,4 @@
-"""What bounds a figure, whatever is done with the samples: scatter of friction at rest, free play in motion."""
+"""Lower bounds of the figures' errors for any estimator: scatter of friction at rest, free play in motion."""
 
 from collections.abc import Mapping, Sequence
 from math import pi, sqrt

@@ -56,7 +56,7 @@ class Score:
 
 
 def score_rest(score: Score, rival: Rival, knowledge: Knowledge, trial: Recorded, rig: Rig, per_kg_a: float) -> None:
-    """A trial at rest, half a second on: without the search for those who do without, after it for those who use it."""
+    """A trial at rest, half a second on: before the search for rivals that need none, after it for the others."""
     search = search_of(trial)
     if search is None:
         return

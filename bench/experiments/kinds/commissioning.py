@@ -9,12 +9,11 @@ from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings, position_findings
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, results_of_the_trial, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.position_push import push_there_and_back
 from bench.experiments.parts.push import PushSettings, push
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents
-from bench.json_types import Value
 from drivers.contract import Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
@@ -119,10 +118,6 @@ def _duration_s(parameters: CommissioningParameters, _configuration: BenchConfig
     return 2.0 * (1.0 / parameters.rate_a_s + 1.0)
 
 
-def _summarise(_parameters: CommissioningParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
-    return dict(trials[0].results) if trials else {}
-
-
 KIND = ExperimentKind(
     name=NAME,
     title="Commissioning move",
@@ -132,6 +127,6 @@ KIND = ExperimentKind(
     plan=_plan,
     refuse=_refuse,
     duration_s=_duration_s,
-    summarise=_summarise,
+    summarise=results_of_the_trial,
     adapt=_adapt,
 )

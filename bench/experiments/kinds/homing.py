@@ -13,10 +13,9 @@ from bench.config.drives.real import HomingSettings, RealDriveSettings
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Action, Procedure, Reading
 from bench.errors import ConfigurationError, ExperimentError, LimitError, quantity_message
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, results_of_the_trial, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
-from bench.json_types import Value
 from drivers.contract import Command, Mode
 
 NAME = "homing"
@@ -227,10 +226,6 @@ def _duration_s(_parameters: HomingParameters, configuration: BenchConfiguration
     return 3.0 * homing.travel_rad / homing.speed_rad_s
 
 
-def _summarise(_parameters: HomingParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
-    return dict(trials[0].results) if trials else {}
-
-
 KIND = ExperimentKind(
     name=NAME,
     title="Homing",
@@ -239,5 +234,5 @@ KIND = ExperimentKind(
     plan=_plan,
     refuse=_refuse,
     duration_s=_duration_s,
-    summarise=_summarise,
+    summarise=results_of_the_trial,
 )

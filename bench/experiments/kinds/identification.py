@@ -10,7 +10,7 @@ from bench.control.cycle import Procedure
 from bench.errors import ExperimentError, LimitError, quantity_message
 from bench.experiments.analysis.commissioning_checks import Push
 from bench.experiments.analysis.identification import Identified, identified
-from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, results_of_the_trial, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.push import PushSettings, push
 from bench.experiments.parts.refusal import refuse_angles, refuse_coasting, refuse_currents
@@ -140,10 +140,6 @@ def _duration_s(parameters: IdentificationParameters, _configuration: BenchConfi
     return 6.0 * len(parameters.excursions_rad)
 
 
-def _summarise(_parameters: IdentificationParameters, trials: list[FinishedTrial]) -> dict[str, Value]:
-    return dict(trials[0].results) if trials else {}
-
-
 def _modes(parameters: IdentificationParameters) -> frozenset[Mode]:
     return frozenset({Mode.CURRENT if parameters.effort == "current" else Mode.DUTY})
 
@@ -157,6 +153,6 @@ KIND = ExperimentKind(
     plan=_plan,
     refuse=_refuse,
     duration_s=_duration_s,
-    summarise=_summarise,
+    summarise=results_of_the_trial,
     modes=_modes,
 )

@@ -1,7 +1,7 @@
 """STOP, from the service to the control loop: a few bytes of memory that both processes have.
 
-The control loop looks at them in every cycle. No queue, no lock and no thread lies between: whatever else is held up,
-STOP is not. A socket of the same two processes could be full; memory cannot.
+The control loop looks at them in every cycle. There is no queue, lock or thread between, which could delay STOP, and no
+socket, whose buffer could be full.
 """
 
 import mmap

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.service.auth.access import allow_read, require_token
@@ -30,7 +30,6 @@ else:
 
 router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
-ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
 
 
 class Studies(Page):

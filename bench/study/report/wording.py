@@ -1,4 +1,4 @@
-"""Names of the lab as words: in a report nobody is to type `viscous_asymmetry` or `load_kg` anywhere."""
+"""Names of the lab as words for a report: "viscous asymmetry" and not `viscous_asymmetry`."""
 
 import re
 from collections.abc import Collection, Sequence

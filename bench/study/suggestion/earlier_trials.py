@@ -1,4 +1,4 @@
-"""Trials that were suggested before and did not come to their end: what trips once trips again."""
+"""Trials that were suggested before and did not complete. They would trip again, so they are not suggested."""
 
 import json
 from collections.abc import Sequence

@@ -1,7 +1,7 @@
 """Trials in rounds: a few are suggested and recorded, then the rivals are named anew; what trips is replaced.
 
-What two trials tell may bring up a rival that nobody thought of before, or settle what six were planned for: a design
-that follows the data needs fewer trials than one that is made beforehand (Box and Hill 1967).
+Two trials may bring up a new rival, or settle what six were planned for. A sequential design needs fewer trials than
+one that is made beforehand (Box and Hill 1967).
 """
 
 from collections.abc import Callable, Collection, Sequence
