@@ -9,7 +9,7 @@ from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import as_in_the_ladder, best_shapes, examine, share_of
-from compensator.lab.diagnosis.physical import is_past_scan, is_too_small, is_within_bounds
+from compensator.lab.diagnosis.physical import is_before_scan, is_past_scan, is_too_small, is_within_bounds
 from compensator.lab.diagnosis.remaining import beside_a_name, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
@@ -136,7 +136,8 @@ class _Family:
         if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
             return None
         too_far = candidate.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
-        return (candidate, too_far) if too_far or is_too_small(gathered, most) else None
+        part = is_too_small(gathered, most) and not is_before_scan(gathered, most)
+        return (candidate, too_far) if too_far or part else None
 
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
 
@@ -62,11 +62,23 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    effect, shape = effect_named(item.block.name), shape_of(item)
-    if not effect.ends_within_scan or not shape:
-        return False
-    ends = np.max(effect.shapes(gathered.fit.dataset.trials[0].motion), axis=0)
-    return bool(np.any(np.array(shape) >= (1.0 - ROUNDING) * ends))
+    return bool(effect_named(item.block.name).ends_within_scan and np.any(_at_ends(gathered, item)[1]))
+
+
+def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
+    """Whether it lies at a lower end: of something shorter a part of the friction is found there."""
+    return bool(np.any(_at_ends(gathered, item)[0]))
+
+
+def _at_ends(gathered: Candidates, item: Evidence) -> BoolArray:
+    """Which values of a shape are the least, and the most, of those scanned, shape (2, values)."""
+    shape = np.array(shape_of(item))
+    if not len(shape):
+        return np.zeros((2, 0), dtype=bool)
+    scanned = effect_named(item.block.name).shapes(gathered.fit.dataset.trials[0].motion)
+    return np.array(
+        [shape <= (1.0 + ROUNDING) * np.min(scanned, axis=0), shape >= (1.0 - ROUNDING) * np.max(scanned, axis=0)]
+    )
 
 
 def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:

@@ -109,7 +109,6 @@ def _says_wanders(name: str, wandering: Wandering, words: str) -> Note:
         "effect": name,
         "what": wandering.what,
         "share": wandering.share,
-        "jumps": wandering.jumps,
     }
     return Note("wanders", text, values)
 

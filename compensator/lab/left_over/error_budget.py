@@ -16,7 +16,7 @@ class ErrorBudget:
     """Chances in noise alone, each over all that its question tries.
 
     Attributes:
-        wandering: dry friction, or a constant force, wanders in time, or jumps; of each of the three.
+        wandering: dry friction, or a constant force, is another one for seconds; of each of both.
         swing: it swings at one frequency.
         ripple: it swings so with the voltage, as nothing in a joint that lacks nothing does.
         line: it comes back with the position.
@@ -32,7 +32,7 @@ class ErrorBudget:
     @property
     def whole(self) -> float:
         """The chance that any of them is answered by noise alone, at most."""
-        return float(sum(getattr(self, one.name) for one in fields(self))) + 2.0 * self.wandering
+        return float(sum(getattr(self, one.name) for one in fields(self))) + self.wandering
 
 
 PLAIN = ErrorBudget(

@@ -15,7 +15,6 @@ from compensator.lab.recordings.recording import FloatArray
 SMALLEST, LARGEST = 1e-5, 50.0  # of a component, as a share of the residual's power
 WHITE = 1e-3  # of it is white, at least
 STEPS = 60
-FEW_STEPS = 12  # where others are taken in turn with them
 
 
 @dataclass(frozen=True)
@@ -74,37 +73,6 @@ def likeliest(parts: Sequence[Part], start: FloatArray | None = None) -> tuple[F
     )
     variances: FloatArray = scale * np.exp(best.x)
     return variances, likelihood(variances, parts)
-
-
-def likeliest_of_moments(moments: Sequence[FloatArray], kernels: Sequence[FloatArray], start: FloatArray) -> FloatArray:
-    """Likelier variances (k,) of components, where second moments are expected, whatever they are expected by.
-
-    Args:
-        moments: of each part's residuals, shape (c, c).
-        kernels: covariance by each component of unit size, the first white, shape (k, c, c).
-        start: from these on, shape (k,).
-    """
-    count = sum(len(one) for one in moments)
-    power = float(sum(np.trace(one) for one in moments)) / count or 1.0
-    own = np.sum([np.trace(one, axis1=1, axis2=2) for one in kernels], axis=0) / count
-    scale = power / np.where(own > 0.0, own, 1.0)
-
-    def unlikely(logarithms: FloatArray) -> tuple[float, FloatArray]:
-        variances = np.exp(logarithms)
-        value, gradient = 0.0, np.zeros(len(variances))
-        for moment, kernel in zip(moments, kernels, strict=True):
-            precision, volume = _inverse_of(np.tensordot(variances, kernel, 1))
-            value += 0.5 * (volume + float(np.sum(precision * moment)))
-            gradient += 0.5 * np.tensordot(kernel, precision - precision @ moment @ precision, 2)
-        return value, gradient * variances
-
-    lowest = np.log(scale * np.r_[WHITE, np.full(len(scale) - 1, SMALLEST)])
-    bounds = list(zip(lowest, np.log(LARGEST * scale), strict=True))
-    begin = np.clip(np.log(start), *np.array(bounds).T)
-    options = {"maxiter": FEW_STEPS, "ftol": 1e-7}
-    best = minimize(unlikely, begin, jac=True, method="L-BFGS-B", bounds=bounds, options=options)
-    found: FloatArray = np.exp(best.x)
-    return found
 
 
 def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:

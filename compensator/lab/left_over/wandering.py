@@ -8,8 +8,6 @@ large to be told, only to last.
 
 Twice the logarithm of the likelihood gained by one more component is, in noise alone, zero in half of all cases and
 chi-squared of one degree of freedom in the others (Self, Liang 1987).
-
-What jumps between two values may be told by these where its variance is not sure (`jumps.py`).
 """
 
 from collections.abc import Sequence
@@ -21,14 +19,12 @@ from scipy.stats import chi2
 from compensator.lab.left_over.cells import cells_of, most_changed
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.left_over.jumps import jumps_of
 from compensator.lab.left_over.variance_components import CellsOfTrial, likeliest
 from compensator.lab.model.held_out_error import rms
 
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
 LEAST_OF_EFFORT = 0.001  # the same of a constant force
 FEWEST_CELLS = 40
-NO_HINT = 0.25  # chance of a variance in noise alone: what jumps has one, and where it has none, jumps need no search
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +34,9 @@ class Wandering:
     Attributes:
         what: DRY_FRICTION or OFFSET.
         chance: of so much in noise alone.
-        size: its root mean square, or the height of its jumps, in the effort's unit.
+        size: its root mean square, in the effort's unit.
         share: the same over dry friction, or, of an offset, over the effort.
         changes: trials where it changes most, most first, and when it does [s].
-        jumps: it jumps between two values.
     """
 
     what: str
@@ -49,7 +44,6 @@ class Wandering:
     size: float
     share: float
     changes: tuple[tuple[int, float], ...]
-    jumps: bool = False
 
     def is_there(self, most: float) -> bool:
         """Whether it is neither noise, by the chance up to which it is none, nor next to nothing."""
@@ -67,30 +61,25 @@ def wandering_of(constants: Constants, most: float = PLAIN.wandering) -> Wanderi
     direction = constants.direction
     whole = {DRY_FRICTION: (constants.friction, direction), OFFSET: (rms(constants.effort), np.ones(len(direction)))}
     found = [
-        one
+        _wandering(what, size, cells_of(constants, constants.weights * size * sign))
         for what, (size, sign) in whole.items()
         if size > 0.0
-        for one in _wandering(what, size, cells_of(constants, constants.weights * size * sign), most)
     ]
-    return min((one for one in found if one.is_there(most)), key=lambda one: one.chance, default=None)
+    there = [one for one in found if one is not None and one.is_there(most)]
+    return min(there, key=lambda one: one.chance, default=None)
 
 
-def _wandering(what: str, size: float, trials: list[CellsOfTrial], most: float) -> list[Wandering]:
-    """How much of something of a size wanders, and, if it is dry friction, jumps; none where too few rows can tell."""
+def _wandering(what: str, size: float, trials: list[CellsOfTrial]) -> Wandering | None:
+    """How much of something of a size wanders; None where too few rows can tell."""
     if sum(len(trial.time_s) for trial in trials) < FEWEST_CELLS:
-        return []
+        return None
     alone, without = likeliest([trial.part.without_last for trial in trials])
     beside, having = likeliest([trial.part for trial in trials], alone)
     share = float(np.sqrt(beside[-1]))
     # its likeliest course is the best linear prediction
     courses = [one.part.kernels[-1] @ own / one.size for one, own in zip(trials, having.weighed, strict=True)]
     chance = chance_of(2.0 * (having.value - without.value))
-    found = [Wandering(what, chance, share * size, share, most_changed(trials, courses))]
-    if what == DRY_FRICTION and chance <= NO_HINT and not found[0].is_there(most):
-        jumps = jumps_of(trials, alone)
-        chance, changes = chance_of(jumps.gained), most_changed(trials, jumps.courses)
-        found.append(Wandering(what, chance, jumps.height * size, jumps.height, changes, jumps=True))
-    return found
+    return Wandering(what, chance, share * size, share, most_changed(trials, courses))
 
 
 def chance_of(gained: float) -> float:
@@ -102,11 +91,6 @@ def wandering_in_words(wandering: Wandering, trials: Sequence[str], unit: str) -
     """What is another one for seconds, by how much, and where to look for that."""
     moments = " and ".join(f"{trials[index]} at {at_s:.1f} s" for index, at_s in wandering.changes)
     of = "it" if wandering.what == DRY_FRICTION else "the effort"
-    if wandering.jumps:
-        return (
-            f"{wandering.what} jumps between two values, {wandering.size:.2g} {unit} apart, {wandering.share:.1%} of "
-            f"{of}; most of all in {moments}"
-        )
     return (
         f"{wandering.what} is another one for seconds at a time, by {wandering.size:.2g} {unit}, {wandering.share:.1%} "
         f"of {of}; it changes most in {moments}"

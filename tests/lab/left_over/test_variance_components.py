@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from compensator.lab.left_over.variance_components import Part, likeliest, likeliest_of_moments, likelihood
+from compensator.lab.left_over.variance_components import Part, likeliest, likelihood
 
 
 def parts(variances, count=40, size=12, seed=2):
@@ -57,13 +57,3 @@ def test_the_gradient_of_the_likelihood_is_its_slope():
         beyond = at + step * np.eye(3)[index]
         slope = (likelihood(beyond, made).value - found.value) / step
         assert found.gradient[index] == pytest.approx(slope, rel=1e-3, abs=1e-4)
-
-
-def test_moments_have_the_variances_that_they_were_made_with():
-    wanted = np.array([0.5, 0.2])
-    kernels = [part.kernels for part in parts(wanted, count=3)]
-    moments = [np.tensordot(wanted, kernel, 1) for kernel in kernels]
-    found = np.array([0.05, 0.05])
-    for _ in range(3):
-        found = likeliest_of_moments(moments, kernels, found)
-    assert found == pytest.approx(wanted, rel=1e-2)

@@ -94,16 +94,6 @@ def test_the_answer_names_what_wanders_and_where():
     assert fit.dataset.trials[found.changes[0][0]].signals.recording.name in answer.sentence
 
 
-def test_a_jump_that_is_too_small_for_its_variance_is_told_by_its_two_values():
-    fit = fitted(jumping(SMALL), seed=2)
-    found = judged(fit)
-    assert wandering_of(constants_of(fit)) is None
-    assert found is not None
-    assert found.jumps
-    assert found.size == pytest.approx(2.0 * SMALL * COULOMB_N_M, rel=0.5)
-    assert "jumps between two values" in diagnose(fit).sentence
-
-
 def from_reversal_to_reversal(share):
     """What comes up anew after each reversal, and is gone where the joint slides."""
     random = np.random.default_rng(13)
