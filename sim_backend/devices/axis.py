@@ -21,6 +21,7 @@ _STEPS = round(TICK_S / COARSEST_STEP_S)
 _OVERLOAD_HOLDS_S = 1.0
 # called from here as Python: compiling it for one call in a while costs a second at the start
 _drifted = getattr(drifted, "py_func", drifted)
+_ELECTRICAL = ("rotor_rad_s", "current_a", "winding_c", "housing_c")
 _STAGE_NAMES = {OPEN: "open", VOLTAGE: "voltage", CURRENT: "current", BRAKE: "brake"}
 
 
@@ -97,11 +98,11 @@ class Axis:
 
     def trip(self) -> Trip | None:
         """Return what switches the drive off now, or None."""
-        return self.script.trip(self.time_s)
+        return self.script.trip(self.time_s) if self.script else None
 
     def torque_is_disabled(self) -> bool:
         """Tell whether the safe-torque-off circuit is open."""
-        return self.script.holding(TorqueDisabled, self.time_s) is not None
+        return bool(self.script) and self.script.holding(TorqueDisabled, self.time_s) is not None
 
     def mode_is_refused(self) -> bool:
         """Tell whether the drive takes no other mode."""
@@ -208,14 +209,13 @@ class Axis:
             return value
         if stage != CURRENT or not supply_v > 0.0:
             return 0.0
-        parameters, truth = self.plant.parameters, self.plant.truth()
-        motor = parameters.motor
+        parameters, motor = self.plant.parameters, self.plant.parameters.motor
+        rotor_rad_s, current_a, winding_c, housing_c = self.plant.true_values(*_ELECTRICAL)
         winding = _drifted(
-            parameters.thermal_drift, motor.resistance_ohm, motor.torque_constant_n_m_a,
-            truth.winding_c, truth.housing_c,
-        )  # fmt: skip
-        back_emf_v = winding.torque_constant_n_m_a * truth.rotor_rad_s * parameters.gear.ratio
-        duty = self._motor_sign * (winding.resistance_ohm * truth.current_a + back_emf_v) / supply_v
+            parameters.thermal_drift, motor.resistance_ohm, motor.torque_constant_n_m_a, winding_c, housing_c
+        )
+        back_emf_v = winding.torque_constant_n_m_a * rotor_rad_s * parameters.gear.ratio
+        duty = self._motor_sign * (winding.resistance_ohm * current_a + back_emf_v) / supply_v
         return min(max(duty, -1.0), 1.0)
 
 

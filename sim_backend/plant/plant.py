@@ -44,6 +44,9 @@ class Truth:
     housing_c: float
 
 
+_TRUE = tuple(name for name in Truth.__dataclass_fields__ if name != "time_s")
+
+
 @dataclass(frozen=True, slots=True)
 class Energy:
     """Energy since the plant was made [J]: supplied = lost + stored (+ what a technician's hand put in).
@@ -179,9 +182,12 @@ class Plant:
 
     def truth(self) -> Truth:
         """Return the true state."""
+        return Truth(self.time_s, *self.true_values(*_TRUE))
+
+    def true_values(self, *names: str) -> list[float]:
+        """Return some of the true state, by the names of `Truth` but the time: each takes a while to read."""
         state = self._state[0]
-        names = [name for name in Truth.__dataclass_fields__ if name != "time_s"]
-        return Truth(self.time_s, *(float(state[name]) for name in names))
+        return [float(state[name]) for name in names]
 
     def energy(self) -> Energy:
         """Return the energy balance so far."""

@@ -1,6 +1,7 @@
 """Drawn joints and what is recorded of them."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from sim_backend.second_plant.columns import Rows, base_columns
 from sim_backend.second_plant.draw import draw_joint
 from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint
 from sim_backend.second_plant.oracle import evidence, floor_of, laws_ratio
-from sim_backend.second_plant.recording import record, simulated
+from sim_backend.second_plant.recording import SecondRecording, record, simulated
 
 NOTHING = 0.04  # r of a joint that lacks nothing: within a tick it is led at an even speed
 
@@ -26,12 +27,18 @@ def test_the_same_seed_records_the_same_and_another_seed_another_joint():
     assert not np.array_equal(first[0].effort[:50], other[0].effort[:50])
 
 
+@cache
+def recorded(complete: DrawnJoint) -> list[SecondRecording]:
+    """Most mechanisms are hidden in one and the same joint."""
+    return record(complete)
+
+
 @pytest.mark.parametrize("name", list(MECHANISMS))
 def test_every_mechanism_changes_what_is_recorded_and_can_be_left_out(name):
     joint = short(draw_joint(3, (name,), (1.0,)), trials=3)
     complete = replace(joint, hidden=())
 
-    hidden, without, plain = record(joint), record(joint, without=frozenset({name})), record(complete)
+    hidden, without, plain = record(joint), record(joint, without=frozenset({name})), recorded(complete)
 
     assert any(not np.array_equal(a.effort, b.effort) for a, b in zip(hidden, plain, strict=True))
     assert all(np.array_equal(a.effort, b.effort) for a, b in zip(without, plain, strict=True))

@@ -5,7 +5,7 @@ regression diagnostics: Cook, Weisberg 1982). All units are judged in all quanti
 by Holm (1979), and after each outlier the others are judged anew without it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,7 +59,8 @@ def deviations(quantities: Sequence[UnitValues]) -> list[list[Deviation]]:
     kept = [np.ones(len(one.value), dtype=bool) for one in quantities]
     flagged: dict[tuple[int, int], tuple[float, float]] = {}
     tests, corrected = sum(len(one.value) for one in quantities), 0.0
-    chances = _chances(quantities, kept)
+    expected = _predictions(quantities, kept)
+    chances = _chances(quantities, expected)
     while doubtful := {place: one for place, one in chances.items() if kept[place[0]].sum() > FEWEST_LEFT}:
         place = min(doubtful, key=doubtful.__getitem__)
         corrected = max(corrected, min(1.0, chances[place] * (tests - len(flagged))))
@@ -68,12 +69,21 @@ def deviations(quantities: Sequence[UnitValues]) -> list[list[Deviation]]:
         flagged[place] = (chances[place], corrected)
         kept[place[0]][place[1]] = False
         chances = {key: one for key, one in chances.items() if key[0] != place[0]}
-        chances |= _chances([quantities[place[0]]], [kept[place[0]]], place[0])
+        anew = _predictions([quantities[place[0]]], [kept[place[0]]], place[0])
+        expected |= anew
+        chances |= _chances(quantities, anew)
     held = corrected_by_holm(list(chances.values()), tests - len(flagged))
     settled = flagged | {place: (chances[place], one) for place, one in zip(chances, held, strict=True)}
     return [
         [
-            _deviation(one, inside, unit, *settled[number, unit], (number, unit) in flagged)
+            _deviation(
+                one,
+                unit,
+                # others may have been found since it was flagged
+                _expected(one, inside, unit) if (number, unit) in flagged else expected[number, unit],
+                *settled[number, unit],
+                (number, unit) in flagged,
+            )
             for unit in range(len(one.value))
         ]
         for number, (one, inside) in enumerate(zip(quantities, kept, strict=True))
@@ -81,11 +91,18 @@ def deviations(quantities: Sequence[UnitValues]) -> list[list[Deviation]]:
 
 
 def _chances(
-    quantities: Sequence[UnitValues], kept: Sequence[BoolArray], first: int = 0
+    quantities: Sequence[UnitValues], expected: Mapping[tuple[int, int], _Prediction]
 ) -> dict[tuple[int, int], float]:
-    """Chance of each unit that is no outlier yet, by (quantity, unit); quantities are numbered from `first`."""
+    """Chance of each unit of which something is expected, by (quantity, unit)."""
+    return {place: _chance(quantities[place[0]], place[1], one) for place, one in expected.items()}
+
+
+def _predictions(
+    quantities: Sequence[UnitValues], kept: Sequence[BoolArray], first: int = 0
+) -> dict[tuple[int, int], _Prediction]:
+    """Of each unit that is no outlier yet, by (quantity, unit); quantities are numbered from `first`."""
     return {
-        (number, int(unit)): _chance(one, inside, int(unit))
+        (number, int(unit)): _expected(one, inside, int(unit))
         for number, (one, inside) in enumerate(zip(quantities, kept, strict=True), first)
         for unit in np.flatnonzero(inside)
     }
@@ -105,16 +122,14 @@ def corrected_by_holm(chances: Sequence[float], tests: int) -> list[float]:
     return found
 
 
-def _chance(found: UnitValues, kept: BoolArray, unit: int) -> float:
-    expected = _expected(found, kept, unit)
+def _chance(found: UnitValues, unit: int, expected: _Prediction) -> float:
     size = abs(float(found.value[unit]) - expected.mean) / np.sqrt(expected.variance)
     return float(2.0 * stdtr(expected.freedom, -size))
 
 
 def _deviation(
-    found: UnitValues, kept: BoolArray, unit: int, chance: float, corrected: float, is_outlier: bool
+    found: UnitValues, unit: int, expected: _Prediction, chance: float, corrected: float, is_outlier: bool
 ) -> Deviation:
-    expected = _expected(found, kept, unit)
     by, own2 = float(found.value[unit]) - expected.mean, float(found.variance[unit])
     # the others' mean is known by as many units, the own value by as many trials
     count = len(found.value) - 1.0

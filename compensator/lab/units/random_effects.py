@@ -92,12 +92,13 @@ def common_of(found: UnitValues) -> Common:
 
 def scatter_squared(found: UnitValues, wanted: float) -> float:
     """The variance between units at which the weighted sum of squares is as wanted; 0 where it never is so large."""
-    if _sum_of_squares(found, 0.0) <= wanted:
+    value, variance = found.value, found.variance
+    if _sum_of_squares(value, variance, 0.0) <= wanted:
         return 0.0
-    high = float(np.var(found.value))
-    while _sum_of_squares(found, high) > wanted:
+    high = float(np.var(value))
+    while _sum_of_squares(value, variance, high) > wanted:
         high *= 2.0
-    return float(brentq(lambda scatter2: _sum_of_squares(found, scatter2) - wanted, 0.0, high, rtol=1e-10))
+    return float(brentq(lambda scatter2: _sum_of_squares(value, variance, scatter2) - wanted, 0.0, high, rtol=1e-10))
 
 
 def weighted_mean(found: UnitValues, scatter2: float) -> tuple[float, float]:
@@ -115,10 +116,12 @@ def chance_of_one_value(found: UnitValues) -> float:
     weight = 1.0 / found.variance
     share = weight / weight.sum()
     doubt = float(np.sum((1.0 - share) ** 2 / found.freedom)) / (count**2 - 1.0)
-    between = _sum_of_squares(found, 0.0) / (count - 1.0)
+    between = _sum_of_squares(found.value, found.variance, 0.0) / (count - 1.0)
     return float(fdtrc(count - 1.0, 1.0 / (3.0 * doubt), between / (1.0 + 2.0 * (count - 2.0) * doubt)))
 
 
-def _sum_of_squares(found: UnitValues, scatter2: float) -> float:
-    mean, _ = weighted_mean(found, scatter2)
-    return float(np.sum((found.value - mean) ** 2 / (scatter2 + found.variance)))
+def _sum_of_squares(value: FloatArray, variance: FloatArray, scatter2: float) -> float:
+    """Of the values about their weighted mean, weighted."""
+    weight = 1.0 / (scatter2 + variance)
+    off = value - weight @ value / weight.sum()
+    return float(weight @ (off * off))

@@ -71,8 +71,9 @@ class Dictionary:
 
     def number(self, index: int, subindex: int = 0) -> int:
         """Return an integer; of a live one, what it is now."""
-        live = self.live.get((index, subindex))
-        value = live() if live else self._values[index, subindex]
+        place = index, subindex
+        live = self.live.get(place)
+        value = live() if live else self._values[place]
         assert isinstance(value, int)
         return value
 

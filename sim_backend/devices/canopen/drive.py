@@ -259,14 +259,10 @@ class ServoDrive:
         return self.axis.time_s - self._astray_since_s >= self.dictionary.number(0x6066) * 1e-3
 
     def _is_astray(self) -> bool:
+        if not self._enabled or self._mode is None:
+            return False
         window = self.dictionary.number(0x6065)  # 0 where nobody has set it
-        if (
-            not window
-            or window == NO_WINDOW
-            or not self._enabled
-            or self._mode is None
-            or self._mode.position() is None
-        ):
+        if not window or window == NO_WINDOW or self._mode.position() is None:
             return False
         return abs(self._position_demand() - self.axis.counts()) > self._measured.counts(window)
 

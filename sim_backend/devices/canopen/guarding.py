@@ -36,10 +36,10 @@ class LifeGuard:
 
     def loses(self, time_s: float) -> bool:
         """Tell whether the host has just gone missing, once."""
-        life_s = self._dictionary.number(0x100C) * self._dictionary.number(0x100D) * 1e-3
-        if self._deaf or not life_s or self._asked_s is None or self.has_lost:
+        if self._deaf or self._asked_s is None or self.has_lost:
             return False
-        self.has_lost = time_s - self._asked_s > life_s
+        life_s = self._dictionary.number(0x100C) * self._dictionary.number(0x100D) * 1e-3
+        self.has_lost = bool(life_s) and time_s - self._asked_s > life_s
         return self.has_lost
 
 
@@ -70,8 +70,10 @@ class Deadline:
 
     def passes(self, time_s: float) -> bool:
         """Tell whether it has just passed, once."""
-        limit_s = 0.0 if self._deaf else self._dictionary.number(self._link, 5) * 1e-3
-        if not limit_s or self._heard_s is None or time_s - self._heard_s <= limit_s:
+        if self._deaf or self._heard_s is None:
+            return False
+        limit_s = self._dictionary.number(self._link, 5) * 1e-3
+        if not limit_s or time_s - self._heard_s <= limit_s:
             return False
         self._heard_s = None
         return True

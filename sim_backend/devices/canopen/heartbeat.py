@@ -65,6 +65,8 @@ class HeartbeatConsumer:
 
     def loses(self, time_s: float) -> bool:
         """Tell whether a node has just gone missing, once for each."""
+        if not self._heard_s:
+            return False
         watched = self._watched()
         gone = {
             node_id

@@ -9,6 +9,7 @@ from sim_backend.devices.canopen.dictionary import Dictionary, Place
 from sim_backend.devices.canopen.objects.family import Family, Rating
 
 _AVERAGED_OVER_S = 0.01
+_SHARE = 1.0 - exp(-TICK_S / _AVERAGED_OVER_S)  # of the last tick in an average
 _DEFAULT_TEMPERATURE_C = 25.0
 
 
@@ -37,9 +38,8 @@ class Measured:
 
     def tick(self) -> None:
         """Average over the last tick."""
-        share = 1.0 - exp(-TICK_S / _AVERAGED_OVER_S)
-        self._current_a += share * (self.current_a() - self._current_a)
-        self._counts_per_s += share * (self._axis.counts_per_s() - self._counts_per_s)
+        self._current_a += _SHARE * (self.current_a() - self._current_a)
+        self._counts_per_s += _SHARE * (self._axis.counts_per_s() - self._counts_per_s)
 
     def counts_per_s(self, velocity: float) -> float:
         """Return the speed of a number in the drive's unit of velocity."""

@@ -197,8 +197,8 @@ class OwnDrive:
 
     def _chopped(self, demand: Demand, seen: Sample, limit_a: float) -> Demand:
         """Return the demand, or the limit current in its place while the duty would drive more than that."""
-        motor, truth = self.axis.plant.parameters.motor, self.axis.plant.truth()
-        back_emf_v = motor.torque_constant_n_m_a * truth.rotor_rad_s * self.axis.plant.parameters.gear.ratio
+        motor, (rotor_rad_s,) = self.axis.plant.parameters.motor, self.axis.plant.true_values("rotor_rad_s")
+        back_emf_v = motor.torque_constant_n_m_a * rotor_rad_s * self.axis.plant.parameters.gear.ratio
         back_emf_v *= self.axis.plant.parameters.wiring.motor_sign
         driven_a = (demand.value * seen.supply_v - back_emf_v) / motor.resistance_ohm
         self._limited = abs(driven_a) > limit_a

@@ -18,6 +18,7 @@ VERSION = b"USB Roboclaw 2x15a v4.1.34 simulated\n\0"  # so that no record of it
 SPEED_WINDOW_S = 1.0 / 300.0  # of commands 30, 31
 MEASURED = {"encoder": {"speed_window_s": SPEED_WINDOW_S}}
 _SPEED_LAG_S = 0.02  # of commands 18, 19, which the manual calls filtered and does not say how
+_SPEED_SHARE = 1.0 - exp(-TICK_S / _SPEED_LAG_S)
 _DEFAULT_TEMPERATURE_C = 25.0
 
 Values = tuple[int, ...]
@@ -77,10 +78,10 @@ class RoboClaw:
 
     def demand(self, seen: Sample) -> Demand:
         """Return the duty of motor 1 for the coming tick."""
-        self._counters[0].follow(self.axis.counts())
-        self._past_counts.append(self.axis.counts())
-        raw = self.axis.counts_per_s()
-        self._speed += (raw - self._speed) * (1.0 - exp(-TICK_S / _SPEED_LAG_S))
+        counts, raw = self.axis.counts(), self.axis.counts_per_s()
+        self._counters[0].follow(counts)
+        self._past_counts.append(counts)
+        self._speed += (raw - self._speed) * _SPEED_SHARE
         self._watch()
         if self.axis.trip() is not None or self.axis.torque_is_disabled():
             self._stop()

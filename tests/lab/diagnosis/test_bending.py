@@ -1,6 +1,7 @@
 """What bends along with the joint and slides is none of the catalogue, whatever formula imitates a part of it."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from compensator.lab.diagnosis import bending as own
 from compensator.lab.diagnosis.bending import Bending, bending, still_bending
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.unfollowed import provisional
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_effects, fit_model, with_columns
@@ -41,6 +43,7 @@ def asymmetry(x) -> np.ndarray:
     return 0.012 * np.abs(x.v)
 
 
+@cache
 def fit_of(extra: Law | None) -> Fit:
     return fit_model(make_dataset(recordings(Joint(extra=extra), seed=5), FACTS, Processing()), DEFAULT)
 
@@ -50,8 +53,12 @@ def bent() -> Fit:
     return fit_of(hose)
 
 
-def test_it_is_none_of_the_catalogue_and_a_curve_is_offered(bent):
-    found = diagnose(bent)
+@pytest.fixture(scope="module")
+def found(bent: Fit) -> Diagnosis:
+    return diagnose(bent)
+
+
+def test_it_is_none_of_the_catalogue_and_a_curve_is_offered(bent, found):
     assert (found.verdict, found.driver) == ("unknown-effect", "since_reversal"), found.sentence
     assert found.remains
     assert "hoses" in found.sentence
@@ -132,8 +139,8 @@ def free_hysteresis(fit: Fit) -> Bending:
     return Bending(evidence, held_out(model, None, fit.dataset.steadiness))
 
 
-def test_it_predicts_best_where_no_formula_does_as_well(bent):
-    assert free_hysteresis(bent).predicts_best(bent, diagnose(bent).candidates)
+def test_it_predicts_best_where_no_formula_does_as_well(bent, found):
+    assert free_hysteresis(bent).predicts_best(bent, found.candidates)
 
 
 def test_what_cannot_be_it_is_no_better_prediction():

@@ -21,6 +21,17 @@ from tests.lab.far_side import ARM_KG_M2, twisting
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
 
+@pytest.fixture(scope="module")
+def twisted():
+    """A model whose joint's shaft twists, what it may be missing, and how strongly that shows."""
+    stiffness = ARM_KG_M2 * (2.0 * np.pi * 60.0) ** 2
+    drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, stiffness_n_m_rad=stiffness)
+    made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
+    fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
+    gathered = on_own_load(gather(fit, "moving"))
+    return fit, gathered, screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
+
+
 @pytest.mark.parametrize(
     ("gain", "found", "verdict"),
     [
@@ -35,18 +46,13 @@ from tests.lab.synthetic import FACTS, Joint, plans, recordings
         ),  # a part of it
     ],
 )
-def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, gain, found, verdict):
-    stiffness = ARM_KG_M2 * (2.0 * np.pi * 60.0) ** 2
-    drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, stiffness_n_m_rad=stiffness)
-    made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
-    fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
-    gathered = on_own_load(gather(fit, "moving"))
+def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, twisted, gain, found, verdict):
+    fit, gathered, named = twisted
     monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
     if found:
         grown = fit_effects(fit.dataset, [*fit.names, "elasticity"], fit.training)
         terms = [replace(one, **found) if one.effect.name == "elasticity" else one for one in grown.terms]
         monkeypatch.setattr(families, "fit_effects", lambda *_: replace(grown, terms=terms))
-    named = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
     answer = answer_of(fit, gathered, named, None)
     assert answer.candidates[0].effect.name == "elasticity"
     assert answer.verdict == verdict
@@ -84,6 +90,16 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
 
 
+@pytest.fixture(scope="module")
+def bristled():
+    """As `twisted`, of a joint whose friction bends bristles, were its evidence weaker."""
+    made = recordings(Joint(extra=bristles), seed=4)
+    fit = widened(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), "moving")
+    gathered = on_own_load(gather(fit, "moving"))
+    named = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
+    return fit, gathered, replace(named, p_value=0.004)
+
+
 @pytest.mark.parametrize(
     ("show_in", "asked", "chance", "verdict"),
     [
@@ -94,12 +110,9 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     ],
 )
 def test_near_reversals_what_takes_much_of_the_error_for_sure_is_no_luck_of_few_stretches(
-    monkeypatch, show_in, asked, chance, verdict
+    monkeypatch, bristled, show_in, asked, chance, verdict
 ):
-    made = recordings(Joint(extra=bristles), seed=4)
-    fit = widened(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), "moving")
-    gathered = on_own_load(gather(fit, "moving"))
-    unsure = replace(screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows]), p_value=0.004)
+    fit, gathered, unsure = bristled
     assert among_all(unsure.p_value) > SIGNIFICANT
     if asked is not None:
         monkeypatch.setattr(families, "LARGE_GAIN", asked)

@@ -5,6 +5,7 @@ the interval. Where a test needs it to have none, its seed is one of the other n
 """
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -12,24 +13,40 @@ from bench.study.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
 from compensator.lab.diagnosis.confirmation import slight_one
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.search import Search, search
 from compensator.lab.diagnosis.wording import answer_in_words
 from compensator.lab.effects.catalogue import candidates, default_effects, effect_named
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.diagnosis.test_diagnose import PLANTED, WITH_MEMORY
-from tests.lab.synthetic import FACTS, Joint, Law, recordings
+from tests.lab.synthetic import FACTS, Joint, recordings
+
+LAWS = PLANTED | WITH_MEMORY
 
 
-def search_of(*laws: Law, most: int = 3) -> Search:
-    made = recordings(Joint(extra=lambda x: sum(law(x) for law in laws)), seed=5)
-    return search(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), most)
+@cache
+def fit_of(*names: str, seed: int) -> Fit:
+    """The first model of a joint with the laws of these names."""
+    made = recordings(Joint(extra=lambda x: sum(LAWS[name](x) for name in names)), seed=seed)
+    return fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+
+
+@cache
+def diagnosis_of(*names: str, seed: int) -> Diagnosis:
+    """What that model lacks: several tests begin from the same answer."""
+    return diagnose(fit_of(*names, seed=seed))
+
+
+def search_of(*names: str, most: int = 3) -> Search:
+    return search(fit_of(*names, seed=5), most)
 
 
 def test_two_effects_are_found_and_the_error_falls_with_each():
-    found = search_of(PLANTED["load_friction"], PLANTED["position_periodic_friction"])
+    found = search_of("load_friction", "position_periodic_friction")
     assert set(found.added) == {"load_friction", "position_periodic_friction"}
     errors = [step.held_out.relative for step in found.steps]
     assert errors == sorted(errors, reverse=True)
@@ -38,16 +55,14 @@ def test_two_effects_are_found_and_the_error_falls_with_each():
 
 
 def test_an_effect_with_memory_is_found_after_a_steady_one():
-    found = search_of(PLANTED["spring"], WITH_MEMORY["pre_sliding"])
+    found = search_of("spring", "pre_sliding")
     assert set(found.added) == {"spring", "pre_sliding"}
 
 
 def test_what_was_added_first_and_helps_no_more_is_dropped():
     """Named while the truth was missing, it may have been the truth's shadow."""
-    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    shadow = replace(diagnose(fit), classes=(("viscous_asymmetry",),))
-    found = search(fit, first=shadow)
+    shadow = replace(diagnosis_of("spring", seed=7), classes=(("viscous_asymmetry",),))
+    found = search(fit_of("spring", seed=7), first=shadow)
     assert [(step.change, step.effect) for step in found.steps[:2]] == [("add", "viscous_asymmetry"), ("add", "spring")]
     assert found.steps[-1].change == "drop"
     assert found.added == ("spring",)
@@ -55,18 +70,16 @@ def test_what_was_added_first_and_helps_no_more_is_dropped():
 
 @pytest.mark.parametrize(("outset", "added"), [(None, ("spring",)), (0.2, ())])
 def test_what_is_slight_beside_what_was_added_before_is_not_added(outset, added):
-    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    found = diagnose(fit)
+    found = diagnosis_of("spring", seed=7)
     small = replace(found.candidates[0], before=0.0106, after=0.0103, gain=Gain(0.03, 0.01, 0.06))
     first = replace(found, candidates=[small, *found.candidates[1:]])
-    assert search(fit, most=1, first=first, outset=outset).added == added
+    assert search(fit_of("spring", seed=7), most=1, first=first, outset=outset).added == added
 
 
 @pytest.mark.parametrize(("name", "slight"), [("cogging", True), ("measurement_delay", False)])
 def test_what_has_to_be_in_the_model_before_a_fault_of_the_chain_is_judged_is_never_slight(name, slight):
     """A filter of the effort is judged beside a delay alone, and may take ten times as much."""
-    found = diagnose(fit_model(make_dataset(recordings(Joint(), seed=7), FACTS, Processing()), default_effects(FACTS)))
+    found = diagnosis_of(seed=7)
     gain = Gain(0.03, 0.01, 0.06)
     one = replace(found.candidates[0], effect=effect_named(name), before=0.0106, after=0.0103, gain=gain)
     named = replace(found, verdict="missing", classes=((name,),), candidates=[one])
@@ -75,37 +88,33 @@ def test_what_has_to_be_in_the_model_before_a_fault_of_the_chain_is_judged_is_ne
 
 @pytest.mark.parametrize("there", [False, True])
 def test_what_made_up_for_a_name_that_has_given_way_is_dropped(monkeypatch, there):
-    laws = [PLANTED["load_friction"], PLANTED["position_periodic_friction"]][: 1 + there]
-    made = recordings(Joint(extra=lambda x: sum(law(x) for law in laws)), seed=5)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    named = replace(diagnose(fit), verdict="missing")
+    hidden = ("load_friction", "position_periodic_friction")[: 1 + there]
+    named = replace(diagnosis_of(*hidden, seed=5), verdict="missing")
     then = [
         replace(named, classes=(("position_periodic_friction",),)),
         replace(named, verdict="nothing", remains=False),
     ]
     monkeypatch.setattr(search_module, "diagnose", lambda _: then.pop(0))
-    found = search(fit, first=replace(named, classes=(("load_friction_quadratic",),)))
+    found = search(fit_of(*hidden, seed=5), first=replace(named, classes=(("load_friction_quadratic",),)))
     assert [(step.change, step.effect) for step in found.steps[:3]] == [
         ("add", "load_friction_quadratic"),
         ("add", "position_periodic_friction"),
         ("swap", "load_friction"),
     ]
-    assert found.added == ("load_friction", "position_periodic_friction")[: 1 + there]
+    assert found.added == hidden
 
 
 def test_what_was_named_last_stands_by_its_evidence_where_nothing_gave_way(monkeypatch):
     """Few trials may hold all of it, as those at the highest speed do of drag."""
-    made = recordings(Joint(extra=PLANTED["spring"]), seed=5)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    named = diagnose(fit)
+    named = diagnosis_of("spring", seed=5)
     monkeypatch.setattr(search_module, "held_out_gain", lambda *_: Gain(0.1, -0.01, 0.2))
     monkeypatch.setattr(search_module, "diagnose", lambda _: replace(named, verdict="nothing", remains=False))
-    assert search(fit, first=named).added == ("spring",)
+    assert search(fit_of("spring", seed=5), first=named).added == ("spring",)
 
 
 @pytest.mark.parametrize("most", [0, 1])
 def test_no_more_than_asked_for_is_added(most):
-    found = search_of(PLANTED["spring"], PLANTED["viscous_asymmetry"], most=most)
+    found = search_of("spring", "viscous_asymmetry", most=most)
     assert len(found.added) == most
     assert found.last.verdict == "missing"
 
@@ -113,38 +122,31 @@ def test_no_more_than_asked_for_is_added(most):
 @pytest.mark.parametrize("hidden", [("spring", "viscous_asymmetry"), ("spring",)])
 def test_two_formulas_that_leave_nothing_are_no_unknown_effect(hidden):
     """A free curve imitates both at once, and either formula but one; one formula alone was held against the curve."""
-    laws = [PLANTED[name] for name in hidden]
-    made = recordings(Joint(extra=lambda x: sum(law(x) for law in laws)), seed=7)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    unknown = replace(diagnose(fit), verdict="unknown-effect", remains=True)
-    found = search(fit, first=unknown)
+    unknown = replace(diagnosis_of(*hidden, seed=7), verdict="unknown-effect", remains=True)
+    found = search(fit_of(*hidden, seed=7), first=unknown)
     assert set(found.added) == (set(hidden) if len(hidden) > 1 else set())
     assert (found.last is unknown) == (len(hidden) == 1)
 
 
 def test_formulas_that_leave_something_do_not_stand_for_what_has_no_name(monkeypatch):
-    made = recordings(Joint(extra=lambda x: PLANTED["spring"](x) + PLANTED["viscous_asymmetry"](x)), seed=5)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    unknown = replace(diagnose(fit), verdict="unknown-effect", remains=True)
+    hidden = ("spring", "viscous_asymmetry")
+    unknown = replace(diagnosis_of(*hidden, seed=5), verdict="unknown-effect", remains=True)
     monkeypatch.setattr(search_module, "diagnose", lambda fit: replace(diagnose(fit), remains=True))
-    assert search(fit, first=unknown).added == ()
+    assert search(fit_of(*hidden, seed=5), first=unknown).added == ()
 
 
 @pytest.mark.parametrize(("low", "most"), [(-0.01, 4), (0.1, 1)])
 def test_past_a_curve_only_what_helps_for_sure_is_tried_and_only_where_two_may_be_added(monkeypatch, low, most):
-    made = recordings(Joint(extra=lambda x: PLANTED["spring"](x) + PLANTED["viscous_asymmetry"](x)), seed=5)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    found = diagnose(fit)
+    hidden = ("spring", "viscous_asymmetry")
+    found = diagnosis_of(*hidden, seed=5)
     candidates = [replace(one, gain=Gain(0.2, low, 0.3)) for one in found.candidates]
     unknown = replace(found, verdict="unknown-effect", remains=True, candidates=candidates)
     monkeypatch.setattr(search_module, "diagnose", lambda _: pytest.fail("a formula was tried"))
-    assert search(fit, most, first=unknown).added == ()
+    assert search(fit_of(*hidden, seed=5), most, first=unknown).added == ()
 
 
 def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else(monkeypatch):
-    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    named, asked_without = diagnose(fit), []
+    named, asked_without = diagnosis_of("spring", seed=7), []
     everything = {effect.name for effect in candidates(default_effects(FACTS), FACTS)}
     then = [named, replace(named, verdict="nothing", remains=False)]
 
@@ -153,7 +155,7 @@ def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else
         return then.pop(0)
 
     monkeypatch.setattr(search_module, "diagnose", diagnosed)
-    found = search(fit, first=replace(named, classes=(("viscous_asymmetry",),)))
+    found = search(fit_of("spring", seed=7), first=replace(named, classes=(("viscous_asymmetry",),)))
     dropped = {step.effect for step in found.steps if step.change == "drop"}
     assert dropped
     assert asked_without == [set(), dropped]
@@ -161,8 +163,7 @@ def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else
 
 @pytest.mark.parametrize(("low", "said"), [(0.01, " is missing:"), (-0.01, " is likely missing:")])
 def test_a_gain_that_other_trials_do_not_bear_out_is_said_to_be_likely_only(low, said):
-    made = recordings(Joint(extra=PLANTED["spring"]), seed=7)
-    found = diagnose(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)))
+    found = diagnosis_of("spring", seed=7)
     best = replace(found.candidates[0], gain=Gain(0.1, low, 0.2), rivals=())
     sentence = answer_in_words("missing", 0.001, [best], None)
     assert said in sentence

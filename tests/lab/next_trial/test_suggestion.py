@@ -53,8 +53,8 @@ def options(loads_kg, minutes=0.5):
     return [Option(one.name, minutes, (one,)) for one in made]
 
 
-def separated(fit, names):
-    found = {one.effect.name: one for one in diagnose(fit).candidates}
+def separated(fit, diagnosis, names):
+    found = {one.effect.name: one for one in diagnosis.candidates}
     return Separation(gather(fit), [found[name] for name in names])
 
 
@@ -67,29 +67,30 @@ def test_the_same_trials_again_add_as_much_as_they_told(fit, diagnosis):
         assert twice == pytest.approx(np.sqrt(2.0) * once, rel=1e-3)
 
 
-def test_what_is_predicted_is_what_a_longer_recording_shows(fit):
+def test_what_is_predicted_is_what_a_longer_recording_shows(fit, diagnosis):
     names = ("load_friction", "load_friction_quadratic")
-    separation = separated(fit, names)
+    separation = separated(fit, diagnosis, names)
     planned = options(HEAVY)
     brings = [separation.of_trials(more_trials(fit.dataset, option.recordings)) for option in planned]
     predicted = separation.d_prime(sum(brings, separation.measured), 0, 1)
     joint = Joint(extra=load_friction(0.012))
     both = recordings(joint, BENCH, plans(LIGHT), 0) + recordings(joint, BENCH, plans(HEAVY, seed=7), 6)
     longer = fit_model(make_dataset(both, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
-    observed = separated(longer, names)
+    observed = separated(longer, diagnose(longer), names)
     assert predicted == pytest.approx(observed.d_prime(observed.measured, 0, 1), rel=0.3)
     assert predicted > 2.0 * separation.d_prime(separation.measured, 0, 1)
 
 
-def test_a_rival_absorbs_what_looks_like_it(fit):
-    separation = separated(fit, ("load_friction", "load_friction_quadratic"))
+def test_a_rival_absorbs_what_looks_like_it(fit, diagnosis):
+    separation = separated(fit, diagnosis, ("load_friction", "load_friction_quadratic"))
     alone, against = (separation.d_prime(separation.measured, 0, rival) for rival in (None, 1))
     assert against < 0.6 * alone
 
 
 def test_it_is_all_the_same_to_the_truth_whether_what_imitates_it_is_a_rival_already(fit, diagnosis):
     names = ("load_friction", "load_friction_quadratic")
-    both, (first, *_) = separated(fit, names), [one for one in diagnosis.candidates if one.effect.name == names[0]]
+    both = separated(fit, diagnosis, names)
+    first, *_ = (one for one in diagnosis.candidates if one.effect.name == names[0])
     alone = Separation(gather(fit), [first], others=[names[1]])
     assert (both.suspects, alone.suspects) == (2, 1)
     assert alone.d_prime(alone.measured, 0, 1) == pytest.approx(both.d_prime(both.measured, 0, 1), rel=1e-6)
@@ -112,8 +113,8 @@ def test_heavier_loads_are_chosen_where_friction_grows_with_the_load(fit, diagno
     assert found.picks[-1].after == pytest.approx(min(pair.after for pair in found.pairs))
 
 
-def test_a_pick_tells_by_how_much_the_rivals_differ_in_it_given_what_is_known(fit):
-    separation = separated(fit, ("load_friction", "load_friction_quadratic"))
+def test_a_pick_tells_by_how_much_the_rivals_differ_in_it_given_what_is_known(fit, diagnosis):
+    separation = separated(fit, diagnosis, ("load_friction", "load_friction_quadratic"))
     known, brings = separation.measured, separation.of_trials(more_trials(fit.dataset, options(HEAVY)[0].recordings))
     pairs = ((0, 1), (0, None))
     rises = [separation.remaining(known + brings, *pair) - separation.remaining(known, *pair) for pair in pairs]
@@ -189,9 +190,13 @@ def ramps_in_step():
     )
 
 
-def test_a_slow_ramp_after_a_short_rest_tells_rate_from_dwell(ramps_in_step):
-    fit, ramp, more = ramps_in_step
-    found = diagnose(fit)
+@pytest.fixture(scope="module")
+def found_in_step(ramps_in_step):
+    return diagnose(ramps_in_step[0])
+
+
+def test_a_slow_ramp_after_a_short_rest_tells_rate_from_dwell(ramps_in_step, found_in_step):
+    (fit, ramp, more), found = ramps_in_step, found_in_step
     assert set(found.classes[0]) == {"rate_dependent_breakaway", "dwell_strengthening"}
     offered = {"swing": more, "in step": ramp("a", *IN_STEP[2]), "crossed": ramp("b", 0.3, 0.05)}
     suggested = suggest(fit, found, [Option(name, 1.0, (one,)) for name, one in offered.items()])
@@ -200,8 +205,8 @@ def test_a_slow_ramp_after_a_short_rest_tells_rate_from_dwell(ramps_in_step):
     assert all(pair.before < pair.by_chance < pair.after for pair in suggested.pairs)
 
 
-def test_where_nothing_is_sure_and_starts_alone_speak_for_an_effect_ramps_are_asked_for(ramps_in_step):
-    found = diagnose(ramps_in_step[0])
+def test_where_nothing_is_sure_and_starts_alone_speak_for_an_effect_ramps_are_asked_for(found_in_step):
+    found = found_in_step
     (best, *_) = from_rest = [one for one in found.candidates if one.rows == "breakaway"]
     assert best.score > 0.0
     assert best.physical
@@ -216,9 +221,9 @@ def test_where_nothing_is_sure_and_starts_alone_speak_for_an_effect_ramps_are_as
     assert not shows_from_rest(replace(unsure(steady, *from_rest), verdict="missing"))
 
 
-def test_predicted_d_prime_of_breakaway_comes_true(ramps_in_step):
+def test_predicted_d_prime_of_breakaway_comes_true(ramps_in_step, found_in_step):
     fit, ramp, _ = ramps_in_step
-    suggested = suggest(fit, diagnose(fit), [Option("crossed", 1.0, (ramp("a", 0.3, 0.05),))])
+    suggested = suggest(fit, found_in_step, [Option("crossed", 1.0, (ramp("a", 0.3, 0.05),))])
     assert suggested.pairs
     recorded = [trial.signals.recording for trial in fit.dataset.trials] + [
         ramp(f"more-{n}", 0.3, 0.05) for n in (1, 2)
