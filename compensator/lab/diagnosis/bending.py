@@ -19,10 +19,7 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import VERY_STRONG, Evidence, among_all, score_of, screen_against_noise
-from compensator.lab.screening.gathering import gather_curves, with_noise
-
-STRONG = 6.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, among_all, screen_against_noise
 
 
 @dataclass(frozen=True)
@@ -58,27 +55,6 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     gain = held_out_gain(before, after)
     sure = gain.low > 0.0 or found[0].score >= VERY_STRONG
     return Bending(found[0], after) if sure and gain.value >= LEAST_GAIN else None
-
-
-def still_bending(explained: Fit, gathered: Candidates, named: Evidence) -> bool:
-    """Whether it is missing beside an effect that is named, and what its formula leaves open: the name is but a part.
-
-    A formula that only imitates it has the less evidence of the two, and leaves some of it.
-
-    Args:
-        explained: the model with the effect.
-        gathered: what the model without it may be missing.
-        named: the effect's evidence.
-    """
-    given = gathered.with_block(named.block)
-    if given.noise is None or not _turns_back(gathered):
-        return False
-    beside = score_of(given.bases, given.curves.hysteresis, given.noise)
-    if beside >= 0.0 and score_of(gathered.bases, gathered.curves.hysteresis, gathered.noise) >= named.score + STRONG:
-        return True
-    if beside < VERY_STRONG:
-        return False
-    return bending(explained, with_noise(gather_curves(explained, gathered.show_in))) is not None
 
 
 def _turns_back(gathered: Candidates) -> bool:

@@ -10,7 +10,7 @@ from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import as_in_the_ladder, best_shapes, examine, share_of
 from compensator.lab.diagnosis.physical import is_before_scan, is_past_scan, is_too_small, is_within_bounds
-from compensator.lab.diagnosis.remaining import beside_a_name, without_a_name
+from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
 from compensator.lab.effects.effect import MotionRows
@@ -110,7 +110,7 @@ class _Family:
             return None
         examined = [first, *(one for one in self.examined if one is not candidate)]
         sentence = answer_in_words("missing", own_chance, examined, None)
-        notes = beside_a_name(explained, self.gathered, best)
+        notes = what_remains(explained, self.gathered, candidate.effect.name)
         strength, remains = best.noncentrality, bool(notes)
         return Answer("missing", sentence, own_chance, examined, None, notes, strength, remains, explained, best)
 

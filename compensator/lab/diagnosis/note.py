@@ -7,7 +7,6 @@ from typing import Literal
 NoteCode = Literal[
     "also-missing",
     "at-rest",
-    "bends-along",
     "differs-by-run",
     "structure-remains",
     "swings",
@@ -18,7 +17,6 @@ NoteCode = Literal[
 """
 also-missing: another family of effects has something missing, too.
 at-rest: the joint at rest contradicts the model.
-bends-along: what is left varies with where the joint has turned back.
 differs-by-run: a constant differs from run to run.
 structure-remains: with the effect named, structure over a variable remains.
 swings: with it, what is left swings at one frequency.

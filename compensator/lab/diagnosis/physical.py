@@ -6,7 +6,7 @@ import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
-from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
 
@@ -21,7 +21,8 @@ def shape_of(item: Evidence) -> Shape:
 
 def is_physical(gathered: Candidates, item: Evidence) -> bool:
     """Whether size and shape are such that it can be the effect."""
-    return is_possible(gathered, item) and not is_past_scan(gathered, item)
+    within = not is_past_scan(gathered, item) and not is_before_scan(gathered, item)
+    return within and is_possible(gathered, item)
 
 
 def is_possible(gathered: Candidates, item: Evidence) -> bool:
@@ -62,23 +63,25 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    return bool(effect_named(item.block.name).ends_within_scan and np.any(_at_ends(gathered, item)[1]))
+    ends, shape = _scanned(gathered, item), np.array(shape_of(item))
+    return len(ends) > 0 and bool(np.any(shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)))
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
-    """Whether it lies at a lower end: of something shorter a part of the friction is found there."""
-    return bool(np.any(_at_ends(gathered, item)[0]))
+    """Whether its extent, the first value of the shape, lies at the lower end: something shorter would fit as well.
+
+    It is found there with a part of its friction, and cannot be told from what the measuring chain makes of a sign.
+    """
+    ends, shape = _scanned(gathered, item), shape_of(item)
+    return len(ends) > 0 and bool(shape[0] <= (1.0 + ROUNDING) * np.min(ends[:, 0]))
 
 
-def _at_ends(gathered: Candidates, item: Evidence) -> BoolArray:
-    """Which values of a shape are the least, and the most, of those scanned, shape (2, values)."""
-    shape = np.array(shape_of(item))
-    if not len(shape):
-        return np.zeros((2, 0), dtype=bool)
-    scanned = effect_named(item.block.name).shapes(gathered.fit.dataset.trials[0].motion)
-    return np.array(
-        [shape <= (1.0 + ROUNDING) * np.min(scanned, axis=0), shape >= (1.0 - ROUNDING) * np.max(scanned, axis=0)]
-    )
+def _scanned(gathered: Candidates, item: Evidence) -> FloatArray:
+    """Shapes (s, values) that a scan of all that the effect can be holds; none where a scan does not hold all."""
+    effect = effect_named(item.block.name)
+    if not effect.ends_within_scan or not shape_of(item):
+        return np.empty((0, 0))
+    return np.array(effect.shapes(gathered.fit.dataset.trials[0].motion))
 
 
 def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:

@@ -3,9 +3,7 @@
 import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT
-from compensator.lab.diagnosis.bending import still_bending
 from compensator.lab.diagnosis.note import Note, Value
-from compensator.lab.diagnosis.wording import LOOK_AT_HOSES
 from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
@@ -15,7 +13,7 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, screen
+from compensator.lab.screening.evidence import Screening, screen
 from compensator.lab.screening.gathering import gather_curves
 
 
@@ -36,13 +34,6 @@ def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: 
     stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
     wanders = _wanders(fit, left)
     return unexplained_in_words(left, _nearest_driver(generic), p_value, stretches, fit.dataset.facts, wanders)
-
-
-def beside_a_name(explained: Fit, gathered: Candidates, best: Evidence) -> list[Note]:
-    """What is left of an effect that is named: beside its formula, or of what bends along, which it only imitates."""
-    if found := what_remains(explained, gathered, best.block.name):
-        return found
-    return [_bends_along(best.block.name)] if still_bending(explained, gathered, best) else []
 
 
 def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
@@ -120,12 +111,3 @@ def _unexplained_remains(name: str, share: float) -> Note:
         "has structure over no variable that is measured; add it and diagnose again."
     )
     return Note("unexplained-remains", text, {"effect": name, "share": share})
-
-
-def _bends_along(name: str) -> Note:
-    """What an effect that is named imitates in part."""
-    text = (
-        f"{name} describes it in part: beside it, what is left varies with where the joint has turned back, as what "
-        f"bends along and slides does. {LOOK_AT_HOSES}"
-    )
-    return Note("bends-along", text, {"effect": name})

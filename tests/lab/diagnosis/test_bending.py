@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import bending as own
-from compensator.lab.diagnosis.bending import Bending, bending, still_bending
+from compensator.lab.diagnosis.bending import Bending, bending
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.unfollowed import provisional
@@ -18,8 +18,7 @@ from compensator.lab.model.gain import Gain
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, screen_against_noise
+from compensator.lab.screening.evidence import screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.diagnosis.test_slow_turns import fitted as turns_one_way
 from tests.lab.synthetic import FACTS, Joint, Law, recordings
@@ -73,33 +72,11 @@ def test_nothing_bends_where_nothing_does(extra):
     assert bending(fit, with_noise(gather(fit))) is None
 
 
-def named_in(fit: Fit, name: str) -> tuple[Fit, Candidates, Evidence]:
-    """The model with an effect, what the one without it may be missing, and the evidence for the effect."""
-    gathered = with_noise(gather(fit))
-    assert gathered.noise is not None
-    blocks = [block for block in gathered.named if block.name == name]
-    found = screen_against_noise(gathered.bases, blocks, gathered.noise).evidence[0]
-    return fit_effects(fit.dataset, [*fit.names, name], fit.training), gathered, found
-
-
-def test_a_name_that_imitates_a_part_does_not_hide_the_rest():
-    assert still_bending(*named_in(fit_of(lambda x: hose(x) + asymmetry(x)), "viscous_asymmetry"))
-
-
-def test_a_name_with_less_evidence_is_but_a_part_though_no_held_out_error_falls(bent, monkeypatch):
-    monkeypatch.setattr(own, "bending", lambda *_: None)
-    assert still_bending(*named_in(bent, "spring"))
-
-
-def test_a_name_beside_which_nothing_bends_any_more_is_all_of_it_though_it_has_less_evidence(bent, monkeypatch):
-    fit, gathered, named = named_in(bent, "spring")
-    monkeypatch.setattr(own, "score_of", lambda bases, *_: 1e6 if bases is gathered.bases else -1.0)
-    monkeypatch.setattr(own, "bending", lambda *_: None)
-    assert not still_bending(fit, gathered, named)
-
-
-def test_a_name_that_is_right_leaves_nothing_that_bends():
-    assert not still_bending(*named_in(fit_of(asymmetry), "viscous_asymmetry"))
+@pytest.mark.parametrize(("extra", "bends"), [(lambda x: hose(x) + asymmetry(x), True), (asymmetry, False)])
+def test_what_bends_beside_a_name_is_told_once_the_name_is_in_the_model(extra, bends):
+    fit = fit_of(extra)
+    explained = fit_effects(fit.dataset, [*fit.names, "viscous_asymmetry"], fit.training)
+    assert (bending(explained, with_noise(gather(explained))) is not None) == bends
 
 
 @pytest.fixture(scope="module")
