@@ -68,12 +68,13 @@ def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
-    """Whether its extent, the first value of the shape, lies at the lower end: something shorter would fit as well.
+    """Whether an effect in the place of dry friction lies at the lower end of its scan: something shorter fits as well.
 
     It is found there with a part of its friction, and cannot be told from what the measuring chain makes of a sign.
     """
     ends, shape = _scanned(gathered, item), shape_of(item)
-    return len(ends) > 0 and bool(shape[0] <= (1.0 + ROUNDING) * np.min(ends[:, 0]))
+    replaces = effect_named(item.block.name).least_of_friction > 0.0
+    return replaces and len(ends) > 0 and bool(shape[0] <= (1.0 + ROUNDING) * np.min(ends[:, 0]))
 
 
 def _scanned(gathered: Candidates, item: Evidence) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.bending import bending
-from compensator.lab.diagnosis.confirmation import is_confirmed
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN, is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.effects.catalogue import effect_named
@@ -72,7 +72,10 @@ def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, 
 
 
 def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | None:
-    """The free curve with the best evidence, if the evidence is no luck and the curve lowers the held-out error."""
+    """The free curve with the best evidence, if that is no luck and the curve is of use on other trials for sure.
+
+    A curve has more coefficients than a formula: every chain bends a little of what it measures.
+    """
     if among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
         return None
     best = generic.evidence[0]
@@ -80,7 +83,8 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | Non
         return None
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     known = determination(fit)
-    return best if held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known)).low > 0.0 else None
+    gain = held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known))
+    return best if gain.low >= LEAST_GAIN else None
 
 
 @dataclass(frozen=True)
