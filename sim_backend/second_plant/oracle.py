@@ -113,7 +113,7 @@ def laws_ratio(joint: DrawnJoint, floor: Floor) -> float:
 
 
 def _shown(joint: DrawnJoint, plain: DrawnJoint, floor: Floor) -> tuple[Rows, FloatArray, FloatArray]:
-    """Rows of a joint; how much more the base model leaves of it, in motion, than of a plain one; that model's basis."""
+    """Rows of a joint; what the base model leaves of it, in motion, beyond a plain one; that model's basis."""
     rows, led = (Rows.of(recorded, joint.scales) for recorded in record_beside(joint, plain))
     weight = 1.0 / floor.left[rows.stratum]
     basis = _orthonormal((base_columns(rows, joint.scales) * weight[:, None])[rows.moving])
