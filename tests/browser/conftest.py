@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from tests.browser.browser import ARGUMENTS, CHROMIUM, WITH_TOKEN
+from tests.browser.browser import ARGUMENTS, CHROMIUM, HOW_TO_GET_IT, WITH_TOKEN
 from tests.commission.scripted import scripted_service
 from tests.service.running_service import RunningService, running_service
 
@@ -28,7 +28,7 @@ def commissioning(tmp_path: Path) -> Iterator[RunningService]:
 def chromium(service: RunningService) -> Iterator[Any]:
     """One browser context for all tests; session storage is each page's own."""
     if CHROMIUM is None:
-        pytest.skip("Chromium is not installed; on Debian: apt-get install chromium")
+        pytest.skip(HOW_TO_GET_IT)
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     with playwright.sync_playwright() as driver:
         # one process draws all pages, as long as one of them is open: to start one takes longer than most tests
