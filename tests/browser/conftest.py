@@ -52,7 +52,7 @@ class Pages:
 
     def __init__(self, context: Any, service: RunningService) -> None:
         self._context, self._service = context, service
-        self._opened: list[Any] = []
+        self._opened: list[Any] = []  # pages and contexts
         self.complaints: list[str] = []
 
     def __call__(
@@ -61,11 +61,15 @@ class Pages:
         token: bool = True,
         width: int = 1280,
         scheme: str = "light",
+        height: int = 900,
         service: RunningService | None = None,
+        apart: bool = False,
     ) -> Any:
-        page = self._context.new_page()
-        self._opened.append(page)
-        page.set_viewport_size({"width": width, "height": 900})
+        """A page; `apart`: for several at once. All of a context share six connections, and each listens on one."""
+        context = self._context.browser.new_context() if apart else self._context
+        page = context.new_page()
+        self._opened.append(context if apart else page)
+        page.set_viewport_size({"width": width, "height": height})
         page.emulate_media(color_scheme=scheme)
         if token:
             page.add_init_script(WITH_TOKEN)
@@ -76,8 +80,8 @@ class Pages:
         return page
 
     def close(self) -> None:
-        for page in self._opened:
-            page.close()
+        for one in self._opened:
+            one.close()
 
 
 @pytest.fixture
