@@ -1,14 +1,12 @@
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.browser.browser import ARGUMENTS, CHROMIUM, WITH_TOKEN
+from tests.browser.browser import ARGUMENTS, CHROMIUM, HOW_TO_GET_IT, WITH_TOKEN
 from tests.commission.scripted import scripted_service
 from tests.service.running_service import RunningService, running_service
-
-OpenPage = Callable[..., Any]
 
 
 @pytest.fixture(scope="package")
@@ -28,7 +26,7 @@ def commissioning(tmp_path: Path) -> Iterator[RunningService]:
 def chromium(service: RunningService) -> Iterator[Any]:
     """One browser context for all tests; session storage is each page's own."""
     if CHROMIUM is None:
-        pytest.skip("Chromium is not installed; on Debian: apt-get install chromium")
+        pytest.skip(HOW_TO_GET_IT)
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     with playwright.sync_playwright() as driver:
         # one process draws all pages, as long as one of them is open: to start one takes longer than most tests
@@ -44,33 +42,61 @@ def is_complaint(message: Any) -> bool:
     return message.type == "error" or "CSP" in message.text
 
 
-@pytest.fixture
-def open_page(chromium: Any, service: RunningService) -> Iterator[OpenPage]:
-    """Opens the page; at the end of the test, nothing may have been complained about (errors, policy violations)."""
-    complaints: list[str] = []
-    pages = []
+class Pages:
+    """Opens pages, and keeps what they complain about: errors, policy violations.
 
-    def opened(
+    Args:
+        context: the browser's.
+        service: whose page is opened, unless another one is named.
+    """
+
+    def __init__(self, context: Any, service: RunningService) -> None:
+        self._context, self._service = context, service
+        self._opened: list[Any] = []  # pages and contexts
+        self.complaints: list[str] = []
+
+    def __call__(
+        self,
         view: str = "#bench",
         token: bool = True,
         width: int = 1280,
         scheme: str = "light",
-        service: RunningService = service,
+        height: int = 900,
+        service: RunningService | None = None,
+        apart: bool = False,
     ) -> Any:
-        page = chromium.new_page()
-        pages.append(page)
-        page.set_viewport_size({"width": width, "height": 900})
+        """A page; `apart`: for several at once. All of a context share six connections, and each listens on one."""
+        context = self._context.browser.new_context() if apart else self._context
+        page = context.new_page()
+        self._opened.append(context if apart else page)
+        page.set_viewport_size({"width": width, "height": height})
         page.emulate_media(color_scheme=scheme)
         if token:
             page.add_init_script(WITH_TOKEN)
         page.set_default_timeout(45_000)  # of a loaded machine; nothing here takes a second by itself
-        page.on("console", lambda message: complaints.append(message.text) if is_complaint(message) else None)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.goto(f"{service.url}/{view}")
+        page.on("console", lambda message: self.complaints.append(message.text) if is_complaint(message) else None)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.goto(f"{(service or self._service).url}/{view}")
         return page
 
-    opened.complaints = complaints  # type: ignore[attr-defined]
-    yield opened
-    for page in pages:
-        page.close()
-    assert complaints == []
+    def close(self) -> None:
+        for one in self._opened:
+            one.close()
+
+
+@pytest.fixture
+def open_page(chromium: Any, service: RunningService) -> Iterator[Pages]:
+    """Opens the page; at the end of the test, nothing may have been complained about."""
+    pages = Pages(chromium, service)
+    yield pages
+    pages.close()
+    assert pages.complaints == []
+
+
+@pytest.fixture(scope="module")
+def shared_pages(chromium: Any, service: RunningService) -> Iterator[Pages]:
+    """The same for tests that leave a page as it was; each of them looks at the complaints itself, too."""
+    pages = Pages(chromium, service)
+    yield pages
+    pages.close()
+    assert pages.complaints == []

@@ -21,29 +21,21 @@ SIZES = ((1440, 900, "light"), (1440, 900, "dark"), (390, 844, "light"), (390, 8
 STEPS = ("record", "compare", "diagnose", "add", "result")
 STUDY = tuple(f"#study/1/{step}" for step in STEPS)
 VIEWS = ("#home", "#bench", "#commission", "#queue", "#trials/1", "#study", *STUDY, "#learn")
+WORDS = "walk.txt"
 WAIT_MS = 120_000
+BUSY = "[aria-busy=true], main .busy"
 
 
 def main() -> None:
-    """Walk."""
+    """Walk, and take every view."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/walk")
-    folder.mkdir(parents=True, exist_ok=True)
-    begin_s = time.monotonic()
     seeded = patch.object(challenges.secrets, "randbits", lambda _bits: SEED)
     with tempfile.TemporaryDirectory() as store, running_service(Path(store)) as service, browser() as chromium, seeded:
         page = open_page(chromium, service.url, 1440, "light", token=False)
-        walker = Walker(page, _camera(page, folder))
-        watch_and_stop(walker)
-        explain_a_challenge(walker)
-        print(f"from the first page to the explained effect: {time.monotonic() - begin_s:.0f} s")
-        print(f"{len(walker.clicks)} clicks: {', '.join(walker.clicks)}")
+        take_walk(page, folder)
+        print((folder / WORDS).read_text(), end="")
         page.close()
-        pages = {
-            f"{width}-{scheme}": open_page(chromium, service.url, width, scheme, height=height)
-            for width, height, scheme in SIZES
-        }
-        for view in VIEWS:
-            _view(pages, view, folder)
+        take_views(lambda width, scheme, height: open_page(chromium, service.url, width, scheme, height), folder)
     print(f"{len(list(folder.glob('*.png')))} pictures in {folder}")
 
 
@@ -57,6 +49,42 @@ def open_page(chromium: Any, url: str, width: int, scheme: str, height: int = 90
     return page
 
 
+def take_walk(page: Any, folder: Path) -> Walker:
+    """Go the walk, and keep a picture of each step; how long it took and the clicks stand beside them in words.
+
+    Args:
+        page: of a fresh service, at its address alone, without the token.
+        folder: where the pictures go; made where it is missing.
+
+    Returns:
+        The user who has gone it.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    begin_s = time.monotonic()
+    walker = Walker(page, _camera(page, folder))
+    watch_and_stop(walker)
+    explain_a_challenge(walker)
+    took = f"from the first page to the explained effect: {time.monotonic() - begin_s:.0f} s"
+    (folder / WORDS).write_text(f"{took}\n{len(walker.clicks)} clicks: {', '.join(walker.clicks)}\n")
+    return walker
+
+
+def take_views(opened: Callable[[int, str, int], Any], folder: Path) -> list[str]:
+    """A picture of every view, in all sizes and colours.
+
+    Args:
+        opened: opens a page, with the token, of a width, a colour scheme and a height, on a service after the walk.
+        folder: where the pictures go.
+
+    Returns:
+        Their names.
+    """
+    pages = {f"{width}-{scheme}": opened(width, scheme, height) for width, height, scheme in SIZES}
+    for page in pages.values():
+        page.set_default_timeout(WAIT_MS)  # all of them ask the lab at once
+    return [name for view in VIEWS for name in _take_view(pages, view, folder)]
+
+
 def _camera(page: Any, folder: Path) -> Callable[[str], None]:
     taken: list[str] = []
 
@@ -68,14 +96,19 @@ def _camera(page: Any, folder: Path) -> Callable[[str], None]:
     return shot
 
 
-def _view(pages: dict[str, Any], view: str, folder: Path) -> None:
+def _take_view(pages: dict[str, Any], view: str, folder: Path) -> list[str]:
     for page in pages.values():
         page.evaluate("(hash) => { location.hash = hash; }", view)
     for page in pages.values():
         page.locator("main :is(.panel, .door)").first.wait_for()
-    page.wait_for_timeout(4000)  # plots are drawn one after the other, in all pages at once
+    page.wait_for_timeout(500)  # what the views ask for is on its way
+    for page in pages.values():
+        page.wait_for_function("(busy) => !document.querySelector(busy)", arg=BUSY)
+    page.wait_for_timeout(2000)  # plots are drawn one after the other, in all pages at once
+    names = {name: f"{view[1:].replace('/', '-')}-{name}.png" for name in pages}
     for name, page in pages.items():
-        page.screenshot(path=folder / f"{view[1:].replace('/', '-')}-{name}.png", full_page=True)
+        page.screenshot(path=folder / names[name], full_page=True)
+    return list(names.values())
 
 
 if __name__ == "__main__":

@@ -13,10 +13,20 @@ from tests.browser.browser import imported
 pytestmark = pytest.mark.browser
 
 
-@pytest.fixture
-def call(open_page):
-    page = open_page()
+@pytest.fixture(scope="module")
+def opened(shared_pages):
+    """One page for all: what is called computes, and changes nothing that another test would see."""
+    return shared_pages()
 
+
+@pytest.fixture
+def page(opened, shared_pages):
+    yield opened
+    assert shared_pages.complaints == []
+
+
+@pytest.fixture
+def call(page):
     def called(module: str, expression: str):
         """What an expression makes of a module, there called `m`."""
         return page.evaluate(f"{imported(module)}.then((m) => {expression})")
@@ -244,8 +254,7 @@ def test_events_become_marks(call):
     assert call("plots/marks", "m.marksOf([{time_s: 1, name: 'end', detail: 'completed'}])") == []
 
 
-def test_every_equation_of_the_catalogue_is_set(open_page, service):
-    page = open_page()
+def test_every_equation_of_the_catalogue_is_set(page, service):
     equations = [one["equation"] for one in service.client.get("/effects").json()["items"]]
     shown = (
         f"(all) => {imported('learn/equation')}.then((m) => all.filter((one) => m.equation(one).tagName === 'CODE'))"
@@ -253,8 +262,7 @@ def test_every_equation_of_the_catalogue_is_set(open_page, service):
     assert page.evaluate(shown, equations) == []
 
 
-def test_every_module_is_imported_from_where_it_is(open_page):
-    page = open_page()
+def test_every_module_is_imported_from_where_it_is(page):
     names = [str(path.relative_to(WEB / "modules").with_suffix("")) for path in (WEB / "modules").rglob("*.js")]
     assert max(Counter(Path(name).parent for name in names).values()) <= 20
     for name in names:

@@ -15,6 +15,7 @@ import pytest
 
 from bench.service import server
 from bench.store import Store
+from tests.service.plain_http import NOBODY
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 
@@ -48,7 +49,7 @@ def _wait_until_answering(url: str) -> None:
     deadline_s = time.monotonic() + PATIENCE_S
     while True:
         try:
-            httpx.get(f"{url}/api/v1/bench", timeout=PATIENCE_S)
+            httpx.get(f"{url}/api/v1/bench", timeout=PATIENCE_S, verify=NOBODY)
             return
         except httpx.ConnectError:
             assert time.monotonic() < deadline_s

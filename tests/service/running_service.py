@@ -22,6 +22,7 @@ from bench.service.auth.token_register import TokenRegister
 from bench.service.auth.tokens import ENVIRONMENT, digest_of, make_token
 from bench.service.server import Address, BenchServer, listen
 from bench.store import Store
+from tests.service.plain_http import NOBODY
 
 TOKEN = "test-token-0123456789"
 
@@ -41,7 +42,8 @@ class RunningService:
         """A client with a new token; its caller closes it."""
         token = make_token()
         self.store.access.tokens.add(name, role, digest_of(token), **expires)
-        return httpx.Client(base_url=f"{self.url}/api/v1", headers={"Authorization": f"Bearer {token}"}, timeout=60)
+        headers = {"Authorization": f"Bearer {token}"}
+        return httpx.Client(base_url=f"{self.url}/api/v1", headers=headers, timeout=60, verify=NOBODY)
 
     def start(self, kind: str, pace: str = "fast", **parameters: Any) -> int:
         body = {"kind": kind, "parameters": parameters, "pace": pace}
@@ -62,7 +64,7 @@ def running_service(
     reads_open: bool = True,
     port: int = 0,
     tls: Certificate | None = None,
-    trust: ssl.SSLContext | bool = True,
+    trust: ssl.SSLContext = NOBODY,
     configuration: BenchConfiguration | None = None,
     in_process_of_its_own: bool = False,
 ) -> Iterator[RunningService]:

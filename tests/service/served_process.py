@@ -12,6 +12,7 @@ from pathlib import Path
 
 import httpx
 
+from tests.service.plain_http import NOBODY
 from tests.service.running_service import TOKEN
 
 UP_WITHIN_S = 60.0
@@ -49,11 +50,12 @@ def started_process(folder: Path, *options: str) -> "Iterator[tuple[subprocess.P
 
 def _wait_until_up(url: str) -> None:
     deadline_s = time.monotonic() + UP_WITHIN_S
-    while True:
-        try:
-            httpx.get(f"{url}/api/v1/bench")
-            return
-        except httpx.TransportError:
-            if time.monotonic() > deadline_s:
-                raise
-            time.sleep(0.1)
+    with httpx.Client(verify=NOBODY) as client:
+        while True:
+            try:
+                client.get(f"{url}/api/v1/bench")
+                return
+            except httpx.TransportError:
+                if time.monotonic() > deadline_s:
+                    raise
+                time.sleep(0.1)

@@ -24,6 +24,7 @@ from bench.store import Store
 from tests.devices.device_process import DeviceProcess, device_process
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S, configured
 from tests.experiments.calibrated import calibrated_configuration
+from tests.service.plain_http import NOBODY
 from tests.stopping.records import PATIENCE_S, FileRecords, Records, ServerRecords
 
 TOKEN = "a-token-for-the-kill-tests"
@@ -191,7 +192,8 @@ class Service:
     def another_client(self) -> httpx.Client:
         """One that has no connection yet."""
         headers = {"Authorization": f"Bearer {TOKEN}"}
-        return httpx.Client(base_url=f"http://127.0.0.1:{self._port}/api/v1", headers=headers, timeout=PATIENCE_S)
+        url = f"http://127.0.0.1:{self._port}/api/v1"
+        return httpx.Client(base_url=url, headers=headers, timeout=PATIENCE_S, verify=NOBODY)
 
     def wait_until_up(self, bench: Bench) -> None:
         def answers() -> bool:
@@ -246,7 +248,7 @@ def busy(service: Service) -> Iterator[None]:
 
 def _ask(base_url: str, over: Any, answers: Any) -> None:
     def ask(number: int) -> None:
-        with httpx.Client(base_url=base_url, timeout=PATIENCE_S) as client:
+        with httpx.Client(base_url=base_url, timeout=PATIENCE_S, verify=NOBODY) as client:
             while not over.is_set():
                 client.get(ASKED_FOR[number % len(ASKED_FOR)])
                 with answers.get_lock():
