@@ -52,6 +52,18 @@ def test_a_change_is_undone_from_any_step_and_done_again(service, open_page, stu
     page.get_by_role("button", name="Undo this change").wait_for()
 
 
+def test_a_change_is_undone_while_its_comparison_is_still_under_way(open_page, studies, changed):
+    page, held = open_page("#study", width=1440), []
+    page.route("**/compare?*", lambda route: held.append(route))
+    page.goto(page.url.split("#")[0] + f"#study/{studies[0]}/result")
+    page.get_by_role("button", name="Undo + viscous asymmetry").click()
+    page.wait_for_timeout(500)  # in which the model was removed, and its comparison asked for what is gone
+    for one in held:
+        one.continue_()
+    page.unroute("**/compare?*")
+    page.get_by_text("Undone: model").wait_for()
+
+
 def test_a_model_and_its_plots_are_kept_as_files(open_page, studies, changed):
     page = open_page(f"#study/{studies[0]}/result", width=1440)
     page.locator(".plot.ladder .trace").first.wait_for()

@@ -151,7 +151,15 @@ class Study {
   // back to the model before; the one that is left was made by the last change, and nothing was made from it
   undo(parent_id, rung = null) {
     return attempt(this.parts.change, async () => {
-      await remove(`${this.path}/models/${this.model}`);
+      const left = this.model;
+      this.model = null; // a comparison of it that is still under way is not shown, and asks nothing more of it
+      try {
+        await this.comparing;
+        await remove(`${this.path}/models/${left}`);
+      } catch (error) {
+        this.model = left;
+        throw error;
+      }
       replace(this.parts.change, rung && h("p", { role: "status" }, `Undone: model ${rungName(rung)}. `, this.redoButton(parent_id, rung)));
       await this.select(parent_id);
     });
