@@ -191,6 +191,7 @@ class Runner(BenchControl):
         return run.experiment_id
 
     def _carry_out(self, run: ExperimentRun, prepared: Prepared) -> None:
+        self._thread = threading.current_thread()  # who sees the run may wait for it, before its start has come back
         with self._host.during_run(prepared.real_time):
             run.carry_out(prepared, self._store, self._live)
 

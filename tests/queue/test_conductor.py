@@ -143,6 +143,23 @@ def test_stop_ends_a_paused_experiment(conductor, runner):
     assert (runner.status().outcome, runner.status().reason) == ("stopped", "enough")
 
 
+def test_a_run_is_waited_for_though_its_start_has_not_come_back(conductor, runner, monkeypatch):
+    start, come_back = threading.Thread.start, threading.Event()
+
+    def start_slowly(thread):
+        start(thread)
+        if thread.name.startswith("experiment"):
+            come_back.wait(20.0)
+
+    monkeypatch.setattr(threading.Thread, "start", start_slowly)
+    conductor.add([SLOW])
+    wait_for(lambda: len(runner.live().rows) > 20)
+    runner.stop("enough")
+    assert runner.wait(20.0)
+    assert runner.status().outcome == "stopped"
+    come_back.set()
+
+
 def test_what_is_added_after_a_pause_stays_also_where_it_was_just_being_looked_for(runner, store, monkeypatch):
     conductor = Conductor(runner, store)
     look, added = conductor.table.next, []
