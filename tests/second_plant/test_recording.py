@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from sim_backend.second_plant import oracle
 from sim_backend.second_plant.columns import Rows, base_columns
 from sim_backend.second_plant.draw import draw_joint
 from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint
@@ -110,6 +111,20 @@ def test_a_mechanism_too_small_to_show_has_no_evidence_though_each_run_sticks_at
 
     assert any(np.abs(one.effort - two.effort).max() > 0.0 for one, two in zip(found, without, strict=True))
     assert evidence(joint, "backlash").ratio < 0.1  # flanks give way a little, however small the gap
+
+
+@pytest.mark.parametrize("held", [0.0, 1.0])
+def test_of_a_difference_counts_what_the_recording_itself_has_of_it(monkeypatch, held):
+    """What a joint without the mechanism would have needed, and nobody has measured, is no evidence."""
+    joint = short(draw_joint(9), 4)
+    plain = record(joint, quiet=True)
+    random = np.random.default_rng(1)
+    unlike = [0.2 * np.std(one.effort) * random.standard_normal(len(one.effort)) for one in plain]
+    with_it = [replace(one, effort=one.effort + held * by) for one, by in zip(plain, unlike, strict=True)]
+    without = [replace(one, effort=one.effort - (1.0 - held) * by) for one, by in zip(plain, unlike, strict=True)]
+    monkeypatch.setattr(oracle, "record_beside", lambda *_: (with_it, without))
+    ratio = evidence(joint, "").ratio
+    assert (ratio > 1.0) if held else (ratio < 0.1)
 
 
 def test_a_spring_stands_out_by_what_the_weight_does_not_take_of_its_torque():

@@ -37,6 +37,7 @@ from tests.service import bare_loop, timed_process
 from tests.service.host_watch import watched
 from tests.service.lateness import Measured, Stretch, report
 from tests.service.recorded_joint import recording_set_zip
+from tests.service.served_process import wait_until_up
 from tests.service.timed_process import Cycles
 
 TOKEN = "a-token-for-the-benchmark"
@@ -166,23 +167,11 @@ def service(folder: Path) -> Iterator[Bench]:
     environment = os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}
     process = subprocess.Popen(command, env=environment, cwd=ROOT, stdout=subprocess.DEVNULL)
     try:
-        _wait_until_up(port)
+        wait_until_up(f"http://127.0.0.1:{port}")
         yield Bench(port, folder)
     finally:
         process.send_signal(signal.SIGTERM)
         process.wait(60)
-
-
-def _wait_until_up(port: int) -> None:
-    deadline_s = time.monotonic() + 60.0
-    while True:
-        try:
-            httpx.get(f"http://127.0.0.1:{port}/api/v1/bench")
-            return
-        except httpx.TransportError:
-            if time.monotonic() > deadline_s:
-                raise
-            time.sleep(0.1)
 
 
 def main() -> None:

@@ -41,14 +41,15 @@ def started_process(folder: Path, *options: str) -> "Iterator[tuple[subprocess.P
     process = subprocess.Popen(command, env=environment, cwd=folder, stdout=subprocess.DEVNULL)
     url = f"http://127.0.0.1:{port}"
     try:
-        _wait_until_up(url)
+        wait_until_up(url)
         yield process, url
     finally:
         process.send_signal(signal.SIGTERM)
         process.wait(UP_WITHIN_S)
 
 
-def _wait_until_up(url: str) -> None:
+def wait_until_up(url: str) -> None:
+    """Until a service answers at its address; raises what the last attempt did after UP_WITHIN_S."""
     deadline_s = time.monotonic() + UP_WITHIN_S
     with httpx.Client(verify=NOBODY) as client:
         while True:

@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -71,11 +71,11 @@ def test_a_planted_effect_is_named_first(name):
     assert found.data_problems == []
 
 
-def bristles(x) -> np.ndarray:
-    """Coulomb friction of 0.08 N m that comes up over 10 mrad of travel, less the friction that is there at once."""
+def bristles(x, distance_rad: float = 0.01) -> np.ndarray:
+    """Coulomb friction of 0.08 N m that comes up over some travel, less the friction that is there at once."""
     state, states = 0.0, []
     for moved in np.diff(x.q, prepend=x.q[0]):
-        state = float(np.clip(state + moved / 0.01 * (1.0 - state * np.sign(moved)), -1.0, 1.0))
+        state = float(np.clip(state + moved / distance_rad * (1.0 - state * np.sign(moved)), -1.0, 1.0))
         states.append(state)
     return 0.08 * (np.array(states) - np.sign(x.v))
 
@@ -109,6 +109,16 @@ def test_an_effect_with_memory_is_named_from_rows_near_reversals(name):
     found = diagnose(fit_model(make_dataset(made, drawn, Processing()), DEFAULT))
     assert (found.verdict, found.candidates[0].effect.name) == ("missing", name), found.sentence
     assert found.candidates[0].gain.low > 0.0
+
+
+def test_pre_sliding_of_a_gear_is_named_though_it_is_over_in_a_milliradian():
+    fit = fit_model(
+        make_dataset(recordings(Joint(extra=partial(bristles, distance_rad=1e-3)), seed=4), FACTS, Processing()),
+        DEFAULT,
+    )
+    found = diagnose(fit)
+    assert found.classes[0][0] == "pre_sliding", found.sentence
+    assert found.candidates[0].shape[0] < 1e-3 * fit.dataset.trials[0].motion.position_span
 
 
 @pytest.mark.parametrize("left", [[], [Note("swings", "After frictional_lag, something is left.")]])

@@ -6,7 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.physical import is_before_scan, is_past_scan, is_possible, is_within_bounds
+from compensator.lab.diagnosis import physical
+from compensator.lab.diagnosis.physical import (
+    is_before_scan,
+    is_past_scan,
+    is_physical,
+    is_possible,
+    is_within_bounds,
+)
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import Evidence
@@ -70,11 +77,14 @@ def test_a_shape_at_an_upper_end_of_a_scan_goes_on_beyond_it(shape, past):
 
 
 @pytest.mark.parametrize(("distance_rad", "before"), [(2e-4, True), (5e-4, False)])
-def test_a_distance_at_the_lower_end_of_a_scan_may_be_shorter(distance_rad, before):
+def test_a_distance_at_the_lower_end_of_a_scan_may_be_shorter(monkeypatch, distance_rad, before):
     trial = SimpleNamespace(motion=SimpleNamespace(position_span=2.0))
     gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
     block = Block("pre_sliding", np.zeros((1, 1)), 0, 1, (distance_rad,))
-    assert is_before_scan(gathered, Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))) == before
+    item = Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))
+    monkeypatch.setattr(physical, "is_possible", lambda *_: True)
+    assert is_before_scan(gathered, item) == before
+    assert is_physical(gathered, item) != before
 
 
 @pytest.mark.parametrize(("excess", "possible"), [(0.02, True), (-0.02, False)])

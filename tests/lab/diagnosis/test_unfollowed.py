@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import unfollowed
-from compensator.lab.diagnosis.confirmation import is_confirmed
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN, is_confirmed
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.search import search
@@ -61,6 +61,13 @@ def test_friction_of_the_load_of_another_form_is_unknown(friction):
     assert found.verdict == "unknown-effect", found.sentence
     assert found.driver == "load against motion"
     assert found.candidates[0].effect.name == "load_friction"
+
+
+@pytest.mark.parametrize(("low", "unknown"), [(0.9 * LEAST_GAIN, False), (1.1 * LEAST_GAIN, True)])
+def test_a_curve_is_of_use_on_other_trials_for_sure_or_no_unknown_effect(monkeypatch, low, unknown):
+    fit = fit_to(lambda x: 0.05 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
+    monkeypatch.setattr(unfollowed, "held_out_gain", lambda *_: Gain(0.02, low, 0.03))
+    assert (diagnose(fit).verdict == "unknown-effect") == unknown
 
 
 def test_what_builds_on_nothing_is_the_worse_for_nothing_that_is_missing():
