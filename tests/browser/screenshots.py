@@ -107,6 +107,7 @@ def _take_view(pages: dict[str, Any], view: str, folder: Path) -> list[str]:
     page.wait_for_timeout(2000)  # plots are drawn one after the other, in all pages at once
     names = {name: f"{view[1:].replace('/', '-')}-{name}.png" for name in pages}
     for name, page in pages.items():
+        page.evaluate("scrollTo({top: 0, behavior: 'instant'})")  # the bar sticks to the top of what is in sight
         page.screenshot(path=folder / names[name], full_page=True)
     return list(names.values())
 
