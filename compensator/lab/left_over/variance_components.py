@@ -5,6 +5,7 @@ Restricted likelihood (Patterson, Thompson 1971): what a base could explain of t
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotri
@@ -46,12 +47,20 @@ class Likelihood:
     weighed: list[FloatArray]
 
 
-def likeliest(parts: Sequence[Part], start: FloatArray | None = None) -> tuple[FloatArray, Likelihood]:
-    """The likeliest variances (k,) of components, and their likelihood.
+class Likeliest(NamedTuple):
+    """The likeliest variances (k,), the same as shares (k,) of the residual's power, and their likelihood."""
+
+    variances: FloatArray
+    shares: FloatArray
+    likelihood: Likelihood
+
+
+def likeliest(parts: Sequence[Part], start: FloatArray | None = None) -> Likeliest:
+    """The likeliest variances of components.
 
     Args:
         parts: all rows.
-        start: variances of all components but the last, where they are known, shape (k - 1,).
+        start: shares of the first components, where they are about known, shape (up to k,).
     """
     power = float(np.mean(np.concatenate([part.residual for part in parts]) ** 2)) or 1.0
     count = sum(len(part.residual) for part in parts)
@@ -60,7 +69,7 @@ def likeliest(parts: Sequence[Part], start: FloatArray | None = None) -> tuple[F
     begin = np.full(len(scale), 0.3 / len(scale))
     begin[0] = 0.5
     if start is not None:
-        begin = np.append(np.maximum(start / scale[:-1], 10.0 * SMALLEST), 0.05)
+        begin = np.append(np.maximum(start, 10.0 * SMALLEST), np.full(len(scale) - len(start), 0.05))
 
     def unlikely(logarithms: FloatArray) -> tuple[float, FloatArray]:
         variances = scale * np.exp(logarithms)
@@ -71,8 +80,8 @@ def likeliest(parts: Sequence[Part], start: FloatArray | None = None) -> tuple[F
     best = minimize(
         unlikely, np.log(begin), jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": STEPS, "ftol": 1e-7}
     )
-    variances: FloatArray = scale * np.exp(best.x)
-    return variances, likelihood(variances, parts)
+    shares: FloatArray = np.exp(best.x)
+    return Likeliest(scale * shares, shares, likelihood(scale * shares, parts))
 
 
 def likelihood(variances: FloatArray, parts: Sequence[Part]) -> Likelihood:

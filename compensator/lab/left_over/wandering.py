@@ -14,12 +14,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
 
+from compensator.lab.chance import chance_beyond
 from compensator.lab.left_over.cells import cells_of, most_changed
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.error_budget import PLAIN
-from compensator.lab.left_over.variance_components import CellsOfTrial, likeliest
+from compensator.lab.left_over.variance_components import CellsOfTrial, Likeliest, likeliest, likelihood
 from compensator.lab.model.held_out_error import rms
 
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
@@ -60,31 +60,35 @@ def wandering_of(constants: Constants, most: float = PLAIN.wandering) -> Wanderi
     """
     direction = constants.direction
     whole = {DRY_FRICTION: (constants.friction, direction), OFFSET: (rms(constants.effort), np.ones(len(direction)))}
-    found = [
-        _wandering(what, size, cells_of(constants, constants.weights * size * sign))
-        for what, (size, sign) in whole.items()
-        if size > 0.0
-    ]
+    found, scatter = [], None
+    for what, (size, sign) in whole.items():
+        trials = cells_of(constants, constants.weights * size * sign) if size > 0.0 else []
+        if sum(len(trial.time_s) for trial in trials) < FEWEST_CELLS:
+            continue
+        # what scatters is nearly the same beside either
+        alone = likeliest([trial.part.without_last for trial in trials], scatter)
+        scatter = alone.shares
+        found.append(_wandering(what, size, trials, alone))
     there = [one for one in found if one is not None and one.is_there(most)]
     return min(there, key=lambda one: one.chance, default=None)
 
 
-def _wandering(what: str, size: float, trials: list[CellsOfTrial]) -> Wandering | None:
-    """How much of something of a size wanders; None where too few rows can tell."""
-    if sum(len(trial.time_s) for trial in trials) < FEWEST_CELLS:
-        return None
-    alone, without = likeliest([trial.part.without_last for trial in trials])
-    beside, having = likeliest([trial.part for trial in trials], alone)
-    share = float(np.sqrt(beside[-1]))
+def _wandering(what: str, size: float, trials: list[CellsOfTrial], alone: Likeliest) -> Wandering | None:
+    """How much of something of a size wanders beside what scatters alone; None where nothing does."""
+    parts = [trial.part for trial in trials]
+    if likelihood(np.append(alone.variances, 0.0), parts).gradient[-1] <= 0.0:
+        return None  # the likelihood falls with it from the first on: the score, which most joints stop at
+    variances, _, having = likeliest(parts, alone.shares)
+    share = float(np.sqrt(variances[-1]))
     # its likeliest course is the best linear prediction
     courses = [one.part.kernels[-1] @ own / one.size for one, own in zip(trials, having.weighed, strict=True)]
-    chance = chance_of(2.0 * (having.value - without.value))
+    chance = chance_of(2.0 * (having.value - alone.likelihood.value))
     return Wandering(what, chance, share * size, share, most_changed(trials, courses))
 
 
 def chance_of(gained: float) -> float:
     """Of so much more likelihood, as twice its logarithm, by a component that is not there."""
-    return 0.5 * float(chi2.sf(gained, 1)) if gained > 0.0 else 1.0
+    return 0.5 * float(chance_beyond(np.array([gained]), 1)[0]) if gained > 0.0 else 1.0
 
 
 def wandering_in_words(wandering: Wandering, trials: Sequence[str], unit: str) -> str:

@@ -6,13 +6,11 @@ autocorrelation for detection, and (elsewhere) the held-out gain. See docs/expla
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from scipy.stats import chi2
 
-from compensator.lab.chance import SIGN_FLIPS
+from compensator.lab.chance import SIGN_FLIPS, chance_beyond
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base, Block
@@ -128,7 +126,7 @@ def screen_against_noise(bases: Sequence[Base], blocks: Sequence[Block], noise: 
         score = gain - _price(block, directions, inflation)
         evidence.append(Evidence(block, score, gain, noise.chance(size, len(share)), direction / norm))
     least = min(item.p_value for item in evidence)
-    chance = partial(noise.joint_chance, covariance, places)
+    chance = noise.joint_chances(covariance, places)
     return Screening(sorted(evidence, key=lambda item: -item.score), chance(least), chance)
 
 
@@ -288,8 +286,7 @@ def _robust_p(by_stretch: FloatArray, signs: FloatArray) -> FloatArray:
     covariance = by_stretch.T @ by_stretch
     sums = signs @ by_stretch
     statistic = np.einsum("fi,fi->f", sums, np.linalg.lstsq(covariance, sums.T, rcond=1e-10)[0].T)
-    p_values: FloatArray = chi2.sf(statistic, by_stretch.shape[1])
-    return p_values
+    return chance_beyond(statistic, by_stretch.shape[1])
 
 
 def inflation_of(residual: FloatArray) -> float:

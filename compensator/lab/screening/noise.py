@@ -8,7 +8,7 @@ their own colour, of one source (a filter that changes with the speed: Priestley
 stop to stop beside that (`stops`).
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -228,13 +228,12 @@ class Noise:
         """The chance that noise alone is as strong in one block of that rank (Snedecor's F: the noise is learnt)."""
         return float(fisher.sf(strength_found / rank, rank, self.known_from))
 
-    def joint_chance(self, covariance: FloatArray, blocks: list[slice], least: float, seed: int = 0) -> float:
-        """The chance that noise alone brings any of the blocks' own chances down to `least`.
+    def joint_chances(self, covariance: FloatArray, blocks: Sequence[slice], seed: int = 0) -> Callable[[float], float]:
+        """How likely noise alone brings any of the blocks' own chances down to a given one.
 
         Args:
             covariance: of all blocks' shares, shape (K, K).
             blocks: which of them each block has.
-            least: the lowest chance found.
             seed: of the draws.
         """
         powers, axes = np.linalg.eigh(covariance)
@@ -242,14 +241,21 @@ class Noise:
         generator = np.random.default_rng(seed)
         drawn = generator.standard_normal((DRAWS, len(powers))) @ root.T
         known = generator.chisquare(self.known_from, DRAWS) / self.known_from
-        reached = np.zeros(DRAWS, dtype=bool)
+        strongest: dict[int, FloatArray] = {}  # of each draw, by rank
         for own in blocks:
             shares = drawn[:, own]
             rank = shares.shape[1]
-            solved = np.linalg.lstsq(covariance[own, own], shares.T, rcond=1e-9)[0].T
-            most = rank * float(fisher.isf(least, rank, self.known_from))
-            reached |= np.einsum("nk,nk->n", shares, solved) / known >= most * (1.0 - 1e-9)
-        return (1.0 + float(reached.sum())) / (1.0 + DRAWS)
+            strengths = np.einsum("nk,nk->n", shares @ np.linalg.pinv(covariance[own, own], 1e-9, True), shares)
+            strongest[rank] = np.maximum(strongest.get(rank, 0.0), strengths / known)
+
+        def chance(own: float) -> float:
+            reached = [
+                found >= rank * float(fisher.isf(own, rank, self.known_from)) * (1.0 - 1e-9)
+                for rank, found in strongest.items()
+            ]
+            return (1.0 + float(np.any(reached, axis=0).sum())) / (1.0 + DRAWS)
+
+        return chance
 
 
 def strength(share: FloatArray, covariance: FloatArray) -> float:

@@ -18,23 +18,37 @@ def parts(variances, count=40, size=12, seed=2):
 
 
 def test_variances_are_those_that_were_made():
-    found, _ = likeliest(parts([0.5, 0.2], count=400))
-    assert found == pytest.approx([0.5, 0.2], rel=0.2)
+    found = likeliest(parts([0.5, 0.2], count=400))
+    assert found.variances == pytest.approx([0.5, 0.2], rel=0.2)
 
 
 def test_a_component_that_is_not_there_gains_next_to_nothing():
     made = parts([0.5, 0.0])
-    alone, without = likeliest([part.without_last for part in made])
-    _, having = likeliest(made, alone)
-    assert having.value - without.value < 2.0
+    alone = likeliest([part.without_last for part in made])
+    assert likeliest(made, alone.shares).likelihood.value - alone.likelihood.value < 2.0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_score_that_is_not_above_zero_leaves_nothing_to_gain(seed):
+    made = parts([0.5, 0.0], count=12, seed=seed)
+    alone = likeliest([part.without_last for part in made])
+    score = likelihood(np.append(alone.variances, 0.0), made).gradient[-1]
+    gained = likeliest(made, alone.shares).likelihood.value - alone.likelihood.value
+    assert (gained > 1e-3) == (score > 0.0)
+
+
+def test_where_it_starts_does_not_matter():
+    made = parts([0.5, 0.2])
+    near = likeliest(made, np.array([0.9, 0.001]))
+    assert near.variances == pytest.approx(likeliest(made).variances, rel=0.01)
 
 
 def test_noise_gains_no_more_than_half_a_chi_squared_of_one_degree_of_freedom():
     gains = []
     for seed in range(60):
         made = parts([0.5, 0.0], count=12, seed=seed)
-        alone, without = likeliest([part.without_last for part in made])
-        gains.append(2.0 * (likeliest(made, alone)[1].value - without.value))
+        alone = likeliest([part.without_last for part in made])
+        gains.append(2.0 * (likeliest(made, alone.shares).likelihood.value - alone.likelihood.value))
     chances = np.where(np.array(gains) > 0.0, 0.5 * chi2.sf(np.maximum(gains, 0.0), 1), 1.0)
     few, many = binom.ppf([1e-3, 1.0 - 1e-3], len(chances), 0.1)
     assert few <= np.sum(chances <= 0.1) <= many
