@@ -1,5 +1,6 @@
 """Bounded least squares that says which columns the data cannot tell apart, instead of dividing by nearly nothing."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,30 +59,30 @@ class Term:
 
 
 def independent(columns: FloatArray) -> BoolArray:
-    """Which columns of (N, k) are not combinations of those before them; modified Gram-Schmidt."""
-    kept = np.zeros(columns.shape[1], dtype=bool)
-    whole, rank = np.empty(columns.shape, order="F"), 0
-    for index, column in enumerate(columns.T):
-        norm = float(np.linalg.norm(column))
-        basis = whole[:, :rank]
-        rest = column - basis @ (basis.T @ column)
-        rest -= basis @ (basis.T @ rest)  # twice is enough (Kahan, Parlett)
-        left = float(np.linalg.norm(rest))
-        if norm > 0.0 and left > DEPENDENT * norm:
-            kept[index] = True
-            whole[:, rank] = rest / left
-            rank += 1
-    return kept
+    """Which columns of (N, k) are not combinations of those before them."""
+    return _gram_schmidt(columns)[0]
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:
     """Orthonormal basis of the span of (N, k); shape (N, rank)."""
-    # one column needs no other to be told from
-    kept = np.array([columns.any()]) if columns.shape[1] == 1 else independent(columns)
-    if not kept.any():
-        return np.empty((len(columns), 0))
-    basis: FloatArray = np.linalg.qr(columns[:, kept])[0]
-    return basis
+    return _gram_schmidt(columns)[1]
+
+
+def _gram_schmidt(columns: FloatArray) -> tuple[BoolArray, FloatArray]:
+    """Which columns of (N, k) say something new, and an orthonormal basis (N, rank) of them, in their order."""
+    kept = np.zeros(columns.shape[1], dtype=bool)
+    whole, rank = np.empty(columns.shape, order="F"), 0
+    for index, column in enumerate(columns.T):
+        norm = math.sqrt(column @ column)
+        basis = whole[:, :rank]
+        rest = column - basis @ (basis.T @ column)
+        rest -= basis @ (basis.T @ rest)  # twice is enough (Kahan, Parlett)
+        left = math.sqrt(rest @ rest)
+        if norm > 0.0 and left > DEPENDENT * norm:
+            kept[index] = True
+            whole[:, rank] = rest / left
+            rank += 1
+    return kept, whole[:, :rank]
 
 
 def solve(columns: FloatArray, effort: FloatArray, bounds: Bounds) -> Solution:
