@@ -33,25 +33,23 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     dataset = at_true_position(dataset, terms)
     per_torque = effort_per_torque(dataset, terms)
     motions = [trial.motion for trial in dataset.trials]
-    totals = [np.zeros(len(motion.time_s)) for motion in motions]
-    carried = [np.zeros(len(motion.time_s)) for motion in motions]
+    total, carried = np.zeros((2, sum(len(motion.time_s) for motion in motions)))
     for term in terms:
         if term.effect.builds_on == "effort":
             continue  # its column is made of the rest
-        for index, columns in enumerate(dataset.at_full_rate(term.effect, term.shape)):
-            part = term.coefficients @ columns
-            totals[index] += part
-            if term.effect.carried:
-                carried[index] += part
+        part = term.coefficients @ dataset.at_full_rate(term.effect, term.shape)
+        total += part
+        if term.effect.carried:
+            carried += part
     loads, beyond, wholes = [], [], []
-    for motion, own in zip(motions, carried, strict=True):
+    for motion, own in zip(motions, dataset.by_trial(carried), strict=True):
         known = _inertia_beyond(terms, motion, per_torque)
         whole = whole_inertia(terms, motion)
         inertia = known if motion.facts.arm_inertia_kg_m2 else whole
         beyond.append((inertia, (own + inertia * motion.acceleration) / (inertia or np.inf)))
         loads.append(own + known * motion.acceleration)
         wholes.append(whole)
-    dataset = dataset.with_prediction(loads, totals, beyond, wholes)
+    dataset = dataset.with_prediction(loads, dataset.by_trial(total), beyond, wholes)
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset

@@ -91,7 +91,7 @@ class Dataset:
     crosses_free_play: bool = False
     uncorrected: "Dataset | None" = None
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
-    unfiltered: dict[tuple[str, Shape], list[FloatArray]] = field(default_factory=dict, repr=False, compare=False)
+    unfiltered: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def effort(self) -> FloatArray:
@@ -229,18 +229,22 @@ class Dataset:
             for e, shapes in wanted
         ]
 
-    def at_full_rate(self, effect: Effect, shape: Shape) -> list[FloatArray]:
-        """The effect's columns (k, n) over each trial's motion, before they are filtered.
+    def at_full_rate(self, effect: Effect, shape: Shape) -> FloatArray:
+        """The effect's columns (k, m) over all trials' motions, one after the other, before they are filtered.
 
         Those that do not depend on the predicted load are kept: each pass of a fit asks for them.
         """
         kept = self.unfiltered.get((effect.name, shape))
         if kept is not None:
             return kept
-        made = [effect.columns(trial.motion, shape) for trial in self.trials]
+        made = np.concatenate([effect.columns(trial.motion, shape) for trial in self.trials], axis=1)
         if not effect.uses_prediction:
             self.unfiltered[effect.name, shape] = made
         return made
+
+    def by_trial(self, full_rate: FloatArray) -> list[FloatArray]:
+        """Parts of an array (m,) over all trials' motions, (n,) each."""
+        return np.split(full_rate, np.cumsum([len(trial.motion.time_s) for trial in self.trials])[:-1])
 
     def _portions(self, wanted: Sequence[tuple[Effect, Shape]]) -> Iterator[Sequence[tuple[Effect, Shape]]]:
         """So many at a time that one trial's columns at the full rate are filtered at once."""
