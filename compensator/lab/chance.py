@@ -1,23 +1,10 @@
 """How a chance is stated: never smaller than what signs flipped at random can know."""
 
-import numpy as np
-from scipy.special import chdtrc, erfc
-
-from compensator.lab.recordings.recording import FloatArray
-
 SIGNIFICANT = 0.01  # p-value up to which a finding is taken for no luck
 
 SIGN_FLIPS = 999
 LEAST_STATED = 1.0 / (1.0 + SIGN_FLIPS)
 """No flip of 999 did as well: the chance is this at most. Tails of F and chi-squared go on."""
-
-
-def chance_beyond(statistic: FloatArray, degrees: int) -> FloatArray:
-    """The chance of more than each statistic (n,) where chi-squared of so many degrees of freedom is expected."""
-    if degrees == 1:  # as the incomplete gamma function has it, which takes fifty times as long
-        tail: FloatArray = erfc(np.sqrt(0.5 * np.maximum(statistic, 0.0)))
-        return tail
-    return np.asarray(chdtrc(degrees, np.maximum(statistic, 0.0)))
 
 
 def stated(p_value: float) -> float:

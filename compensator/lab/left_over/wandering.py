@@ -15,12 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.chance import chance_beyond
 from compensator.lab.left_over.cells import cells_of, most_changed
 from compensator.lab.left_over.constants import DRY_FRICTION, OFFSET, Constants
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.variance_components import CellsOfTrial, Likeliest, likeliest, likelihood
 from compensator.lab.model.held_out_error import rms
+from compensator.lab.screening.evidence import chance_beyond
 
 LEAST_OF_FRICTION = 0.002  # root mean square: less is the joint's own
 LEAST_OF_EFFORT = 0.001  # the same of a constant force
