@@ -32,7 +32,7 @@ class Bending:
     def predicts_best(self, fit: Fit, candidates: Sequence[Candidate]) -> bool:
         """Whether it has a lower held-out error, for sure, than the model with any of the effects that can be it."""
         known = determination(fit)
-        others = [held_out(with_effect(fit, one.effect.name, one.shape), None, known) for one in _possible(candidates)]
+        others = [held_out(with_effect(fit, one.effect.name, one.shape), None, known) for one in candidates if one.physical]
         return all(held_out_gain(other, self.after).low > 0.0 for other in others)
 
 
@@ -63,7 +63,3 @@ def _turns_back(gathered: Candidates) -> bool:
     ways = np.sign(dataset.rows_of([trial.motion.velocity for trial in dataset.trials]))
     trials = [set(dataset.trial_index[gathered.rows & (ways == way)].tolist()) for way in (1.0, -1.0)]
     return bool(trials[0] & trials[1])
-
-
-def _possible(candidates: Sequence[Candidate]) -> list[Candidate]:
-    return [one for one in candidates if one.physical]

@@ -23,7 +23,7 @@ from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.diagnosis.wording import named_in_words
 from compensator.lab.effects.catalogue import candidates
-from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import chance_not_worse, held_out_gain
@@ -170,13 +170,9 @@ def _judge(base: BreakawayFit, evidence: list[Evidence], known: dict[str, Effect
     judged = []
     for item in list(found.values())[:EXAMINED]:
         effect = known[item.block.name]
-        fit = fit_breakaway(base.rows, [*base.rows.fit.effects, effect], {**shapes, effect.name: _shape(item)})
+        fit = fit_breakaway(base.rows, [*base.rows.fit.effects, effect], {**shapes, effect.name: item.block.shape})
         judged.append(_Judged(effect, item, held_out_breakaway(fit, base.weight), fit))
     return judged
-
-
-def _shape(item: Evidence) -> Shape:
-    return item.block.key if isinstance(item.block.key, tuple) else ()
 
 
 def _candidate(
@@ -194,7 +190,7 @@ def _candidate(
     coefficients = one.fit.coefficients_of(one.effect.name)
     return Candidate(
         effect=one.effect,
-        shape=_shape(one.item),
+        shape=one.item.block.shape,
         score=one.item.score,
         p_value=one.item.p_value,
         detectability=float(np.sqrt(one.item.noncentrality * max(0.0, 1.0 - nearest**2))),

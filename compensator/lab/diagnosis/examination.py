@@ -10,7 +10,7 @@ from compensator.lab import progress
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
+from compensator.lab.diagnosis.physical import is_physical, is_possible
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import Effect, MotionRows
@@ -68,7 +68,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     """Candidates for the best shape of each effect: the answer, others that are confirmed, the rest; each by score."""
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
-    fits = [with_effect(fit, item.block.name, shape_of(item), sliding) for item in progress.each(evidence)]
+    fits = [with_effect(fit, item.block.name, item.block.shape, sliding) for item in progress.each(evidence)]
     afters = [_held_out(explained, gathered.show_in) for explained in fits]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
@@ -193,7 +193,7 @@ def _candidate(
     before, after = errors
     return Candidate(
         effect=effect_named(item.block.name),
-        shape=shape_of(item),
+        shape=item.block.shape,
         score=item.score,
         p_value=item.p_value,
         detectability=_detectability(item, nearest),
